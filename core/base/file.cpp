@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/base/file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <vector>
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) { EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr); }
+  void add(const void* bytes, std::size_t size) { EVP_DigestUpdate(context_.get(), bytes, size); }
+  std::string hex() {
+    unsigned char digest[32];
+    EVP_DigestFinal_ex(context_.get(), digest, nullptr);
+    std::string text;
+    for (unsigned char byte : digest) {
+      text += "0123456789abcdef"[byte >> 4];
+      text += "0123456789abcdef"[byte & 15];
+    }
+    return text;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+// Removes a file when it goes, unless released.
+struct TemporaryFile {
+  Path path;
+  ~TemporaryFile() {
+    std::error_code ignored;
+    if (!path.empty()) fs::remove(path, ignored);
+  }
+};
+
+void flush_to_disk(const Path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  ::fsync(file);
+  ::close(file);
+}
+}  // namespace
+
+std::string read_file(const Path& path, std::uint64_t limit) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) throw Error("this is a folder", path.string(), "name a file");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
+  const std::uint64_t size = fs::file_size(path, error);
+  if (error) throw Error("this is not a regular file", path.string(), "name a file on disk");
+  if (size > limit)
+    throw Error("the file has " + std::to_string(size) + " bytes", path.string(),
+                "files of this kind may have " + std::to_string(limit) + " bytes at most");
+  std::string bytes(size, '\0');
+  if (!in.read(bytes.data(), static_cast<std::streamsize>(size)))
+    throw Error("the file cannot be read to its end", path.string(), "check the disk and try again");
+  return bytes;
+}
+
+void write_atomically(const Path& path, const std::function<void(const Path&)>& write) {
+  std::error_code error;
+  const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
+  if (!fs::is_directory(folder, error)) throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
+  if (fs::is_directory(path, error)) throw Error("a folder stands where the file should go", path.string(), "choose another name");
+
+  // The whole name after the first dot is kept behind the mark, because a writer chooses its format by extension.
+  const TemporaryFile temporary{folder / (".limber-" + std::to_string(::getpid()) + "-" + path.filename().string())};
+  write(temporary.path);
+  flush_to_disk(temporary.path);
+  fs::rename(temporary.path, path, error);
+  if (error) throw Error("the file cannot be written", path.string(), error.message());
+}
+
+void write_file_atomically(const Path& path, const std::string& bytes) {
+  write_atomically(path, [&](const Path& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.flush();
+    if (!out) throw Error("the file cannot be written", path.string(), "check permissions and free space");
+  });
+}
+
+std::string sha256_of_bytes(const void* bytes, std::size_t size) {
+  Sha256 hash;
+  hash.add(bytes, size);
+  return hash.hex();
+}
+
+std::string sha256_of_file(const Path& path) {
+  Sha256 hash;
+  if (fs::is_directory(path)) {
+    std::vector<Path> files;
+    for (const auto& entry : fs::directory_iterator(path))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (const Path& file : files) {
+      const std::string one = sha256_of_file(file);
+      hash.add(one.data(), one.size());
+    }
+    return hash.hex();
+  }
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
+  std::vector<char> block(1 << 16);
+  while (in.read(block.data(), std::ssize(block)) || in.gcount() > 0) hash.add(block.data(), in.gcount());
+  return hash.hex();
+}
+
+}  // namespace limber

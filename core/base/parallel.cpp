@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/base/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace limber {
+
+namespace {
+// The arena of the living ThreadCount. It is a setting of the machine's use, not of any computation: results never
+// depend on it.
+std::atomic<tbb::task_arena*> current_arena = nullptr;
+
+template <class Body>
+void for_blocks(std::int64_t count, std::int64_t grain, const Body& body) {
+  if (count <= 0) return;
+  grain = std::max<std::int64_t>(grain, 1);
+  const std::int64_t blocks = (count + grain - 1) / grain;
+  auto run = [&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::int64_t>(0, blocks, 1),
+        [&](const tbb::blocked_range<std::int64_t>& range) {
+          for (auto block = range.begin(); block != range.end(); ++block)
+            body(block, block * grain, std::min(count, (block + 1) * grain));
+        },
+        tbb::simple_partitioner());
+  };
+  if (blocks == 1)
+    body(std::int64_t{0}, std::int64_t{0}, count);
+  else if (auto* arena = current_arena.load())
+    arena->execute(run);
+  else
+    run();
+}
+}  // namespace
+
+struct ThreadCount::Limit {
+  tbb::global_control control;
+  tbb::task_arena arena;
+  tbb::task_arena* previous;
+};
+
+ThreadCount::ThreadCount(int threads) {
+  if (threads < 1) throw std::invalid_argument("ThreadCount needs at least one thread");
+  limit_.reset(new Limit{tbb::global_control(tbb::global_control::max_allowed_parallelism, threads),
+                         tbb::task_arena(threads), nullptr});
+  limit_->previous = current_arena.exchange(&limit_->arena);
+}
+
+ThreadCount::~ThreadCount() { current_arena = limit_->previous; }
+
+void parallel_for(std::int64_t count, std::int64_t grain, const std::function<void(std::int64_t, std::int64_t)>& body) {
+  for_blocks(count, grain, [&](std::int64_t, std::int64_t begin, std::int64_t end) { body(begin, end); });
+}
+
+double parallel_sum(std::int64_t count, std::int64_t grain,
+                    const std::function<double(std::int64_t, std::int64_t)>& body) {
+  if (count <= 0) return 0;
+  grain = std::max<std::int64_t>(grain, 1);
+  std::vector<double> part((count + grain - 1) / grain);
+  for_blocks(count, grain,
+             [&](std::int64_t block, std::int64_t begin, std::int64_t end) { part[block] = body(begin, end); });
+  double sum = 0;
+  for (double value : part) sum += value;
+  return sum;
+}
+
+}  // namespace limber

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The command line's subcommands: one file each, one function each, gathered in main.cpp. A function adds its
+// subcommand with its options to the app and sets a callback that does the work; errors are thrown, never printed there.
+// Exit codes: 0 done, 1 the input or the request is wrong, 2 usage, 3 cancelled.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "core/base/progress.h"
+
+namespace limber::cmd {
+
+void add_info(CLI::App& app);
+
+// One line on stderr: "limber: warning: ...".
+void warn(const std::string& line);
+void warn(const std::vector<std::string>& lines);
+
+// What a long command shows while it works: a bar when stderr is a terminal, JSON lines ({"stage", "fraction"}) with
+// --progress json, else nothing. Ctrl-C cancels it.
+class CommandProgress final : public Progress {
+ public:
+  // `mode`: "" (choose by terminal) or "json"
+  explicit CommandProgress(const std::string& mode);
+  ~CommandProgress() override;
+  bool cancelled() const override;
+
+ protected:
+  void on_update(std::string_view stage, double fraction) override;
+
+ private:
+  enum class Mode { Silent, Bar, Json } mode_;
+  std::string stage_;
+  double shown_ = -1;
+};
+
+// Adds --threads N and --progress json.
+struct RunOptions {
+  int threads = 0;  // 0: every core
+  std::string progress;
+};
+void add_run_options(CLI::App& command, RunOptions& options);
+
+}  // namespace limber::cmd

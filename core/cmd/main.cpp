@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The program without the editor: subcommands only.
+#include <cstdio>
+#include <new>
+
+#include "core/base/error.h"
+#include "core/cmd/command.h"
+
+int main(int argc, char** argv) {
+  using namespace limber;
+  CLI::App app("Limber changes the pose of labelled voxel anatomy.", "limber");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", LIMBER_VERSION);
+  cmd::add_info(app);
+
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const Cancelled&) {
+    return 3;
+  } catch (const Error& error) {
+    std::fprintf(stderr, "limber: %s\n", error.what());
+    return 1;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "limber: there is not enough memory: this request: use a coarser spacing or a smaller volume\n");
+    return 1;
+  }
+}

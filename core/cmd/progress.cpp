@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <csignal>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "core/cmd/command.h"
+
+namespace limber::cmd {
+
+namespace {
+// A signal handler can reach nothing but a global.
+volatile std::sig_atomic_t interrupted = 0;
+void on_interrupt(int) { interrupted = 1; }
+}  // namespace
+
+void warn(const std::string& line) { std::fprintf(stderr, "limber: warning: %s\n", line.c_str()); }
+void warn(const std::vector<std::string>& lines) {
+  for (const auto& line : lines) warn(line);
+}
+
+CommandProgress::CommandProgress(const std::string& mode)
+    : mode_(mode == "json" ? Mode::Json : ::isatty(STDERR_FILENO) ? Mode::Bar : Mode::Silent) {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+CommandProgress::~CommandProgress() {
+  if (mode_ == Mode::Bar && !stage_.empty()) std::fprintf(stderr, "\r\033[K");
+  std::fflush(stderr);
+}
+
+bool CommandProgress::cancelled() const { return interrupted != 0 || Progress::cancelled(); }
+
+void CommandProgress::on_update(std::string_view stage, double fraction) {
+  const bool new_stage = stage != stage_;
+  if (!new_stage && fraction < 1 && fraction - shown_ < 0.01) return;
+  stage_ = stage;
+  shown_ = fraction;
+  if (mode_ == Mode::Json) {
+    std::fprintf(stderr, "%s\n", nlohmann::json{{"stage", stage_}, {"fraction", fraction}}.dump().c_str());
+  } else if (mode_ == Mode::Bar) {
+    constexpr int kWidth = 32;
+    const int full = static_cast<int>(fraction * kWidth + 0.5);
+    std::fprintf(stderr, "\r\033[K%-12s [%s%s] %3.0f %%", stage_.c_str(), std::string(full, '#').c_str(),
+                 std::string(kWidth - full, ' ').c_str(), fraction * 100);
+    std::fflush(stderr);
+  }
+}
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  command.add_option("--threads", options.threads, "threads to use (default: every core)")->check(CLI::Range(1, 1024));
+  command.add_option("--progress", options.progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+}
+
+}  // namespace limber::cmd

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The one entry from a pose to a posed label volume. Deformation is cells with rest and posed vertices (deform/lattice),
+// rasterized to the inverse map (deform/inverse_map); labels are then read from the rest volume, so there are no holes
+// to fill and the rest pose gives back the input bit for bit. Bones are painted rigidly by every method.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/pose/pose.h"
+#include "core/skin/skin_weights.h"
+#include "core/volume/tissue_table.h"
+#include "core/volume/volume_io.h"
+
+namespace limber {
+
+struct LinearBlend {};
+struct DualQuaternion {};
+using Method = std::variant<LinearBlend, DualQuaternion>;
+
+struct ResampleSettings {
+  bool nearest = false;                 // labels by the nearest rest voxel instead of the largest interpolated membership
+  std::optional<double> spacing;        // mm, isotropic output spacing; none keeps the input's
+  bool displacement = false;            // also return the displacement field
+  bool jacobian = false;                // also return det of the posed-from-rest map
+  const GreyVolume* grey = nullptr;     // moved by the same map
+};
+
+// What the resampling itself saw; compare() adds what two volumes tell.
+struct DeformReport {
+  std::int64_t tissue_voxels = 0;
+  std::int64_t dropped_voxels = 0;        // tissue voxels whose image lies outside the output grid
+  std::int64_t new_hole_voxels = 0;       // posed voxels inside the image of a tissue cell that carry no label
+  std::int64_t overlap_voxels = 0;        // posed voxels claimed by cells that are no neighbours at rest
+  std::int64_t bone_overlap_voxels = 0;   // posed voxels claimed by two rig bones' bone tissue
+  std::vector<std::int64_t> overlap_by_label;  // [65536], rest voxels that lost their place, by label
+  struct BoneResidual {
+    std::string name;
+    double rigid_residual_mm = 0;         // largest distance of a painted bone voxel's map from the best rigid motion
+  };
+  std::vector<BoneResidual> bones;
+  double seconds_deform = 0, seconds_rasterize = 0;
+};
+
+struct Posed {
+  LabelVolume volume;
+  DeformReport report;
+  std::vector<glm::vec3> displacement;  // posed - rest, mm, on the output grid; zero in air
+  std::vector<float> jacobian;          // on the output grid; zero in air
+  GreyVolume grey;
+};
+
+Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
+               const Pose& pose, const Method& method, const ResampleSettings& settings = {},
+               Progress& progress = no_progress());
+
+}  // namespace limber

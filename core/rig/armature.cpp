@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/rig/armature.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "core/base/error.h"
+
+namespace limber {
+
+namespace {
+constexpr int kMostBones = 4096;
+
+bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+std::string names_of(const Armature& armature) {
+  std::string names;
+  for (size_t i = 0; i < armature.bones.size() && i < 8; ++i) names += (i ? ", " : "") + armature.bones[i].name;
+  if (armature.bones.size() > 8) names += ", ...";
+  return names;
+}
+}  // namespace
+
+std::optional<int> Armature::find(std::string_view name) const {
+  for (size_t i = 0; i < bones.size(); ++i)
+    if (bones[i].name == name) return static_cast<int>(i);
+  return std::nullopt;
+}
+
+int require_bone(const Armature& armature, std::string_view name) {
+  if (auto bone = armature.find(name)) return *bone;
+  throw Error("no such bone", std::string(name), "use one of the rig's bones (" + names_of(armature) + ")");
+}
+
+void check_armature(const Armature& armature, const std::string& where) {
+  if (armature.bones.empty()) throw Error("the rig has no bones", where, "add at least one bone with head and tail");
+  if (armature.bones.size() > kMostBones)
+    throw Error("the rig has " + std::to_string(armature.bones.size()) + " bones", where,
+                "use at most " + std::to_string(kMostBones));
+  std::set<std::string_view> names;
+  for (size_t i = 0; i < armature.bones.size(); ++i) {
+    const Bone& bone = armature.bones[i];
+    const std::string here = where + ", bone " + std::to_string(i) + (bone.name.empty() ? "" : " (" + bone.name + ")");
+    if (bone.name.empty()) throw Error("a bone has no name", here, "give every bone a name of its own");
+    if (!names.insert(bone.name).second) throw Error("two bones share a name", here, "give every bone a name of its own");
+    if (bone.parent < -1 || bone.parent >= static_cast<int>(i))
+      throw Error("a bone's parent does not come before it", here, "list parents before their children");
+    if (!finite(bone.head) || !finite(bone.tail) || !std::isfinite(bone.roll))
+      throw Error("a bone's position is not a finite number", here, "give head, tail and roll as finite numbers");
+  }
+}
+
+glm::dmat3 rest_axes(const Bone& bone) {
+  const glm::dvec3 along = bone.tail - bone.head;
+  const double length = glm::length(along);
+  const glm::dvec3 y = length > 0 ? along / length : glm::dvec3(0, 1, 0);
+
+  // The shortest turn from +y to the bone [Blender, vec_roll_to_mat3]; straight down, a half turn about z.
+  glm::dmat3 axes(1);
+  const double theta = 1 + y.y;
+  if (theta > 1e-9) {
+    axes[1] = y;
+    axes[0] = {1 - y.x * y.x / theta, -y.x, -y.x * y.z / theta};
+    axes[2] = {-y.x * y.z / theta, -y.z, 1 - y.z * y.z / theta};
+  } else {
+    axes = glm::dmat3({-1, 0, 0}, {0, -1, 0}, {0, 0, 1});
+  }
+  const double c = std::cos(bone.roll), s = std::sin(bone.roll);
+  const glm::dvec3 x = axes[0], z = axes[2];
+  axes[0] = c * x - s * z;
+  axes[2] = s * x + c * z;
+  return axes;
+}
+
+glm::dvec3 flex_axis(const Armature& armature, int bone_index) {
+  const Bone& bone = armature.bones[bone_index];
+  if (bone.limits.type == JointLimits::Type::Hinge) return bone.limits.axis;
+  const std::string remedy = "give the bone a hinge axis in its limits, or pose it with --pose";
+  if (bone.parent < 0) throw Error("the bone has no parent to flex against", bone.name, remedy);
+
+  const Bone& parent = armature.bones[bone.parent];
+  const glm::dvec3 a = parent.tail - parent.head, b = bone.tail - bone.head;
+  const double lengths = glm::length(a) * glm::length(b);
+  const glm::dvec3 axis = glm::cross(a, b);
+  // sin 10 degrees: below it the direction of the axis is mostly noise.
+  if (lengths == 0 || glm::length(axis) < lengths * std::sin(10 * std::numbers::pi / 180))
+    throw Error("the bone is nearly straight with its parent, so its flex axis is not known", bone.name, remedy);
+  return glm::normalize(axis);
+}
+
+double distance_to_bone(const Bone& bone, const glm::dvec3& p) {
+  const glm::dvec3 along = bone.tail - bone.head;
+  const double squared_length = glm::dot(along, along);
+  const double t = squared_length > 0 ? std::clamp(glm::dot(p - bone.head, along) / squared_length, 0.0, 1.0) : 0.0;
+  return glm::length(p - (bone.head + t * along));
+}
+
+}  // namespace limber

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Weights by heat diffusion through the tissue itself [after Baran & Popovic 2007, in the volume]: every bone part is
+// held at 1 for its own rig bone and at 0 for the others, heat flows through soft tissue (never through air) with a
+// conductivity by tissue kind, and the steady temperatures are the weights.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/rig/armature.h"
+#include "core/rig/bone_parts.h"
+#include "core/skin/skin_weights.h"
+#include "core/volume/tissue_table.h"
+
+namespace limber {
+
+struct HeatDiffusion {
+  double residual = 1e-5;     // relative 2-norm at which a bone's solve stops
+  int maximum_iterations = 200;
+};
+
+struct WeightsReport {
+  double residual = 0;                 // largest over bones, relative
+  int iterations = 0;                  // largest over bones
+  std::vector<std::string> warnings;   // "no bone reaches 213 voxels of label 3 near (..): given to Forearm"
+};
+
+// throws Error when the solve does not reach its residual
+SkinWeights diffuse_heat(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
+                         const HeatDiffusion& settings = {}, Progress& progress = no_progress(),
+                         WeightsReport* report = nullptr);
+
+}  // namespace limber

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/volume/tissue_voxels.h"
+
+#include <algorithm>
+
+namespace limber {
+
+TissueVoxels::TissueVoxels(const LabelVolume& volume) : grid_size_(volume.grid.size) {
+  brick_grid_ = (grid_size_ + (kBrick - 1)) / kBrick;
+  brick_of_.assign(std::int64_t{brick_grid_.x} * brick_grid_.y * brick_grid_.z, -1);
+  std::int64_t cell = 0;
+  for (int bz = 0; bz < brick_grid_.z; ++bz)
+    for (int by = 0; by < brick_grid_.y; ++by)
+      for (int bx = 0; bx < brick_grid_.x; ++bx, ++cell) {
+        Brick brick{glm::ivec3(bx, by, bz) * kBrick, size_, {}};
+        const glm::ivec3 end = glm::min(brick.corner + kBrick, grid_size_);
+        for (int z = brick.corner.z; z < end.z; ++z)
+          for (int y = brick.corner.y; y < end.y; ++y) {
+            const Label* row = &volume.voxels[volume.grid.index({brick.corner.x, y, z})];
+            std::uint64_t bits = 0;
+            for (int x = 0; x < end.x - brick.corner.x; ++x) bits |= std::uint64_t{row[x] != 0} << x;
+            brick.mask[z & 7] |= bits << (8 * (y & 7));
+          }
+        const int count = brick.count();
+        if (count == 0) continue;
+        brick_of_[cell] = static_cast<std::int32_t>(bricks_.size());
+        bricks_.push_back(brick);
+        size_ += count;
+      }
+}
+
+}  // namespace limber
