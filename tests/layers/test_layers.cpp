@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The floors of the house: editor above render above core. No file includes upward, and each heavy library is included
+// only behind its own door.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Include {
+  std::string file;  // from the root, "core/rig/bvh.cpp"
+  std::string header;
+};
+
+const fs::path kRoot = LIMBER_SOURCE_DIR;
+
+std::vector<fs::path> sources() {
+  std::vector<fs::path> files;
+  for (const char* floor : {"core", "render", "editor", "tests"}) {
+    if (!fs::exists(kRoot / floor)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / floor))
+      if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp") files.push_back(fs::relative(entry.path(), kRoot));
+  }
+  return files;
+}
+
+std::vector<Include> includes_of(const fs::path& file) {
+  static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+  std::vector<Include> includes;
+  std::ifstream in(kRoot / file);
+  for (std::string line; std::getline(in, line);)
+    if (std::smatch match; std::regex_search(line, match, pattern)) includes.push_back({file.generic_string(), match[1]});
+  return includes;
+}
+
+bool starts_with_any(const std::string& text, const std::vector<std::string>& beginnings) {
+  return std::any_of(beginnings.begin(), beginnings.end(), [&](const auto& beginning) { return text.starts_with(beginning); });
+}
+
+struct Door {
+  std::string library;
+  std::vector<std::string> headers;  // beginnings
+  std::vector<std::string> allowed;  // beginnings of file paths
+};
+
+const std::vector<Door> kDoors = {
+    {"ITK", {"itk", "gdcm"}, {"core/volume/volume_io.cpp", "core/volume/dicom.cpp", "tests/"}},
+    {"niftilib", {"nifti", "nifti1", "nifti2"}, {"core/volume/volume_io.cpp"}},
+    {"TetGen", {"tetgen"}, {"core/mesh/tetrahedralize.cpp"}},
+    {"CHOLMOD", {"cholmod", "suitesparse/"}, {"core/base/cholesky.cpp"}},
+    {"TBB", {"tbb/", "oneapi/"}, {"core/base/parallel.cpp"}},
+    {"SQLite", {"sqlite3"}, {"core/project/"}},
+    {"zstd", {"zstd"}, {"core/project/"}},
+    {"CLI11", {"CLI/"}, {"core/cmd/"}},
+    {"tinygltf", {"tiny_gltf"}, {"core/rig/gltf.cpp"}},
+    {"OpenSSL", {"openssl/"}, {"core/base/file.cpp"}},
+    {"GLFW", {"GLFW/"}, {"editor/window.cpp"}},
+    {"OpenGL", {"epoxy/", "GL/", "EGL/"}, {"render/", "editor/"}},
+    {"Dear ImGui", {"imgui"}, {"editor/"}},
+};
+
+}  // namespace
+
+TEST_CASE("layers: no file includes a floor above its own") {
+  for (const auto& file : sources())
+    for (const auto& include : includes_of(file)) {
+      INFO(include.file, " includes ", include.header);
+      if (include.file.starts_with("core/")) CHECK_FALSE(starts_with_any(include.header, {"render/", "editor/", "tests/"}));
+      if (include.file.starts_with("render/")) CHECK_FALSE(starts_with_any(include.header, {"editor/", "tests/"}));
+      if (include.file.starts_with("editor/")) CHECK_FALSE(starts_with_any(include.header, {"tests/"}));
+    }
+}
+
+TEST_CASE("layers: each heavy library is included only behind its door") {
+  for (const auto& file : sources())
+    for (const auto& include : includes_of(file))
+      for (const auto& door : kDoors)
+        if (starts_with_any(include.header, door.headers)) {
+          INFO(include.file, " includes ", include.header, " of ", door.library);
+          CHECK(starts_with_any(include.file, door.allowed));
+        }
+}
+
+TEST_CASE("layers: JSON stays in sources, never in a header") {
+  for (const auto& file : sources())
+    for (const auto& include : includes_of(file))
+      if (include.header.starts_with("nlohmann/")) {
+        INFO(include.file);
+        CHECK(file.extension() == ".cpp");
+      }
+}
+
+TEST_CASE("layers: core's own folders are used from the command line downward, never the other way") {
+  for (const auto& file : sources())
+    for (const auto& include : includes_of(file))
+      if (include.file.starts_with("core/") && !include.file.starts_with("core/cmd/")) {
+        INFO(include.file, " includes ", include.header);
+        CHECK_FALSE(include.header.starts_with("core/cmd/"));
+      }
+}
+
+TEST_CASE("layers: every source names its licence in its first line") {
+  for (const auto& file : sources()) {
+    std::ifstream in(kRoot / file);
+    std::string first;
+    std::getline(in, first);
+    INFO(file.generic_string());
+    CHECK(first == "// SPDX-License-Identifier: AGPL-3.0-or-later");
+  }
+}
+
+TEST_CASE("layers: the top level holds what the map of the tree says, and nothing else") {
+  const std::vector<std::string> allowed = {"CMakeLists.txt", "core", "render", "editor", "assets", "tests", "third_party",
+                                            "README.md", "LICENSE", "run", "out"};
+  for (const auto& entry : fs::directory_iterator(kRoot)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(".") || name.starts_with("build")) continue;
+    INFO(name);
+    CHECK(std::find(allowed.begin(), allowed.end(), name) != allowed.end());
+  }
+}
