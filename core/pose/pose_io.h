@@ -11,6 +11,9 @@ namespace limber {
 
 // Throws Error for an unknown bone, a zero axis or quaternion, a number that is not finite.
 Pose read_pose(const Path& path, const Armature& armature);
+Pose parse_pose(const std::string& text, const std::string& where, const Armature& armature);
+
+// What reads back as the same pose, bit for bit.
 void write_pose(const Pose& pose, const Armature& armature, const Path& path);
 
 }  // namespace limber

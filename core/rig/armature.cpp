@@ -52,6 +52,39 @@ void check_armature(const Armature& armature, const std::string& where) {
   }
 }
 
+Armature parents_first(std::vector<Bone> bones, const std::string& where) {
+  const int count = static_cast<int>(bones.size());
+  bool ordered = true;
+  for (int i = 0; i < count; ++i) {
+    if (bones[i].parent < -1 || bones[i].parent >= count)
+      throw Error("the parent of bone " + std::to_string(i) + " is number " + std::to_string(bones[i].parent) + " of " +
+                      std::to_string(count) + " bones", where, "let it name one of the rig's bones, or -1 for a root");
+    ordered = ordered && bones[i].parent < i;
+  }
+  if (ordered) return {std::move(bones)};
+
+  // Depth first from the roots; what is never reached stands in a circle.
+  std::vector<std::vector<int>> children(count);
+  std::vector<int> ready, order, place(count);
+  for (int i = count; i-- > 0;) (bones[i].parent < 0 ? ready : children[bones[i].parent]).push_back(i);
+  while (!ready.empty()) {
+    const int bone = ready.back();
+    ready.pop_back();
+    place[bone] = static_cast<int>(order.size());
+    order.push_back(bone);
+    ready.insert(ready.end(), children[bone].begin(), children[bone].end());
+  }
+  if (static_cast<int>(order.size()) != count)
+    throw Error("some bones are their own ancestors", where, "let every chain of parents end at a bone without one");
+  Armature armature;
+  for (int bone : order) {
+    armature.bones.push_back(std::move(bones[bone]));
+    int& parent = armature.bones.back().parent;
+    if (parent >= 0) parent = place[parent];
+  }
+  return armature;
+}
+
 glm::dmat3 rest_axes(const Bone& bone) {
   const glm::dvec3 along = bone.tail - bone.head;
   const double length = glm::length(along);

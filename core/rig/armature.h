@@ -47,6 +47,10 @@ int require_bone(const Armature& armature, std::string_view name);
 // position that is not finite. `where` names the file.
 void check_armature(const Armature& armature, const std::string& where);
 
+// The bones with parents before children, which otherwise stay in the order given; `parent` may point anywhere in `bones`.
+// Throws Error for a parent that is not among them, or bones that are their own ancestors.
+Armature parents_first(std::vector<Bone> bones, const std::string& where);
+
 // Blender's bone matrix: columns x, y, z, with y from head to tail and the roll applied [vec_roll_to_mat3].
 glm::dmat3 rest_axes(const Bone& bone);
 

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/cmd/pose_options.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/cmd/command.h"
+#include "core/pose/pose_io.h"
+
+namespace limber::cmd {
+
+namespace {
+void apply_flex(Pose& pose, const Armature& armature, const std::string& request) {
+  const size_t equals = request.rfind('=');
+  double degrees = 0;
+  const char* end = request.data() + request.size();
+  const char* begin = equals == request.npos ? end : request.data() + equals + 1;
+  if (begin != end && *begin == '+') ++begin;
+  const auto [stop, error] = std::from_chars(begin, end, degrees);
+  if (equals == 0 || error != std::errc() || stop != end || !std::isfinite(degrees))
+    throw Error("this is no flex", "--flex " + request, "write BONE=DEG, as in --flex Forearm=45");
+  flex(pose, armature, require_bone(armature, request.substr(0, equals)), degrees);
+}
+}  // namespace
+
+void add_pose_options(CLI::App& command, PoseOptions& options) {
+  const std::string group = "Pose";
+  auto* pose = command.add_option("--pose", options.pose, "pose file (JSON)")->type_name("P.json")->group(group);
+  command.add_option("--flex", options.flex, "turn a bone about its hinge by degrees, positive bends further (repeatable)")
+      ->type_name("BONE=DEG")->expected(1)->take_all()->group(group);
+  auto* motion = command.add_option("--motion", options.motion, "motion capture (BVH) to take the pose from")
+                     ->type_name("F.bvh")->excludes(pose)->group(group);
+  command.add_option("--frame", options.frame, "its frame, from 0")->type_name("N")->check(CLI::NonNegativeNumber)->needs(motion)->group(group);
+  command.add_option("--map", options.map, "which joint moves which bone (default: by names)")->type_name("M.json")->needs(motion)->group(group);
+  command.add_flag("--root-motion", options.root_motion, "let the body travel as the motion does")->needs(motion)->group(group);
+}
+
+Pose read_pose_options(const PoseOptions& options, const Armature& armature) {
+  Pose pose = rest_pose(armature);
+  if (!options.pose.empty()) pose = read_pose(options.pose, armature);
+  for (const std::string& request : options.flex) apply_flex(pose, armature, request);
+  return pose;
+}
+
+}  // namespace limber::cmd

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How a command is told a pose:
+//   --pose P.json | --motion F.bvh --frame N [--map M.json] [--root-motion]     then, on top of it, any number of
+//   --flex BONE=DEG
+// Without any of them the pose is rest.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "core/pose/pose.h"
+
+namespace limber::cmd {
+
+struct PoseOptions {
+  std::string pose;               // file
+  std::vector<std::string> flex;  // BONE=DEG
+  std::string motion;             // file
+  int frame = 0;                  // of the motion, from 0
+  std::string map;                // file
+  bool root_motion = false;
+};
+
+// `options` must live as long as the command.
+void add_pose_options(CLI::App& command, PoseOptions& options);
+
+// Throws Error for what does not fit the rig; warnings of the files go to stderr.
+Pose read_pose_options(const PoseOptions& options, const Armature& armature);
+
+}  // namespace limber::cmd

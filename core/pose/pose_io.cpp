@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/pose/pose_io.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+
+namespace limber {
+
+namespace {
+using Json = nlohmann::json;
+
+// A rotation for each of 4096 bones is far smaller.
+constexpr std::uint64_t kMostBytes = 64 << 20;
+
+std::vector<double> numbers(const Json& value, size_t count, const char* key, const std::string& where) {
+  const std::string what = "\"" + std::string(key) + "\" is not " + std::to_string(count) + " finite number" + (count > 1 ? "s" : "");
+  const Json list = count == 1 ? Json::array({value}) : value;
+  if (!list.is_array() || list.size() != count) throw Error(what, where, "write them as a list");
+  std::vector<double> read;
+  for (const Json& one : list) {
+    if (!one.is_number()) throw Error(what, where, "write numbers");
+    read.push_back(one.get<double>());
+  }
+  return read;
+}
+
+glm::dquat unit(const glm::dquat& q, const std::string& where) {
+  const double length = glm::length(q);
+  if (!(length > 1e-9) || !std::isfinite(length)) throw Error("the rotation is not a quaternion that can be made unit", where, "give w, x, y, z, not all zero");
+  // What was written as unit is kept to the bit.
+  return std::abs(length - 1) < 1e-15 ? q : q / length;
+}
+
+glm::dquat rotation_of(const Json& value, const std::string& where) {
+  if (value.is_object() && value.contains("rotation_wxyz")) {
+    const auto q = numbers(value["rotation_wxyz"], 4, "rotation_wxyz", where);
+    return unit(glm::dquat(q[0], q[1], q[2], q[3]), where);
+  }
+  if (value.is_object() && value.contains("axis") && value.contains("degrees")) {
+    const auto axis = numbers(value["axis"], 3, "axis", where);
+    const double degrees = numbers(value["degrees"], 1, "degrees", where)[0];
+    const glm::dvec3 direction(axis[0], axis[1], axis[2]);
+    const double length = glm::length(direction);
+    if (!(length > 1e-9) || !std::isfinite(length)) throw Error("the axis has no direction", where, "give three numbers, not all zero");
+    return glm::angleAxis(degrees * std::numbers::pi / 180, direction / length);
+  }
+  throw Error("the bone has no rotation", where, "write {\"rotation_wxyz\": [4]} or {\"axis\": [3], \"degrees\": d}");
+}
+}  // namespace
+
+Pose parse_pose(const std::string& text, const std::string& where, const Armature& armature) {
+  try {
+    const Json json = Json::parse(text);
+    if (!json.is_object() || !json.contains("bones") || !json["bones"].is_object())
+      throw Error("there is no table of bones", where, "give {\"bones\": {name: {\"axis\": [3], \"degrees\": d}}}");
+    Pose pose = rest_pose(armature);
+    for (const auto& [name, value] : json["bones"].items()) {
+      const std::string here = where + ", bone " + name.substr(0, 60);
+      const auto bone = armature.find(name);
+      if (!bone) throw Error("the rig has no such bone", here, "use the rig's names (limber info RIG lists them)");
+      pose.rotation[*bone] = rotation_of(value, here);
+    }
+    if (json.contains("root_translation")) {
+      const auto t = numbers(json["root_translation"], 3, "root_translation", where);
+      pose.root_translation = {t[0], t[1], t[2]};
+    }
+    return pose;
+  } catch (const Json::exception& error) {
+    throw Error("this is not valid JSON (" + std::string(error.what()).substr(0, 160) + ")", where, "correct the file");
+  }
+}
+
+Pose read_pose(const Path& path, const Armature& armature) {
+  return parse_pose(read_file(path, kMostBytes), path.string(), armature);
+}
+
+void write_pose(const Pose& pose, const Armature& armature, const Path& path) {
+  nlohmann::ordered_json bones = nlohmann::ordered_json::object();
+  for (size_t i = 0; i < armature.bones.size(); ++i) {
+    const glm::dquat& q = pose.rotation[i];
+    if (q != glm::dquat(1, 0, 0, 0)) bones[armature.bones[i].name]["rotation_wxyz"] = {q.w, q.x, q.y, q.z};
+  }
+  nlohmann::ordered_json json;
+  json["bones"] = bones;
+  const glm::dvec3& t = pose.root_translation;
+  if (t != glm::dvec3(0)) json["root_translation"] = {t.x, t.y, t.z};
+  write_file_atomically(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace limber

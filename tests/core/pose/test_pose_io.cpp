@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/pose/pose_io.h"
+
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "core/base/error.h"
+#include "tests/support/scratch.h"
+
+using namespace limber;
+
+namespace {
+Armature two_bones() {
+  return {{{"upper", -1, {0, 0, 0}, {0, 0, 10}}, {"lower", 0, {0, 0, 10}, {0, 3, 20}}}};
+}
+}  // namespace
+
+TEST_CASE("pose: what is written reads back equal, bit for bit") {
+  const test::Scratch scratch;
+  const Armature rig = two_bones();
+  Pose pose = rest_pose(rig);
+  pose.rotation[1] = glm::angleAxis(1.234567, glm::normalize(glm::dvec3(1, -2, 0.3)));
+  pose.root_translation = {0.1, -1.0 / 3, 1e-7};
+  write_pose(pose, rig, scratch / "pose.json");
+  const Pose read = read_pose(scratch / "pose.json", rig);
+  CHECK(read == pose);
+}
+
+TEST_CASE("pose: an axis and degrees turn as the right hand does") {
+  const Armature rig = two_bones();
+  const Pose pose = parse_pose(R"({"bones": {"lower": {"axis": [0, 0, 2], "degrees": 90}}})", "test", rig);
+  const glm::dvec3 turned = pose.rotation[1] * glm::dvec3(1, 0, 0);
+  CHECK(glm::length(turned - glm::dvec3(0, 1, 0)) < 1e-15);
+  CHECK(pose.rotation[0] == glm::dquat(1, 0, 0, 0));
+}
+
+TEST_CASE("pose: unknown bones, zero axes and numbers that are none are refused") {
+  const Armature rig = two_bones();
+  auto refused = [&](const char* text) { CHECK_THROWS_AS(parse_pose(text, "test", rig), Error); };
+  refused("");
+  refused("{}");
+  refused(R"({"bones": {"elbow": {"axis": [0, 0, 1], "degrees": 1}}})");
+  refused(R"({"bones": {"lower": {"axis": [0, 0, 0], "degrees": 1}}})");
+  refused(R"({"bones": {"lower": {"axis": [0, 0, 1]}}})");
+  refused(R"({"bones": {"lower": {"axis": [0, 0, "1"], "degrees": 1}}})");
+  refused(R"({"bones": {"lower": {"rotation_wxyz": [0, 0, 0, 0]}}})");
+  refused(R"({"bones": {"lower": {"rotation_wxyz": [1, 0, 0]}}})");
+  refused(R"({"bones": {"lower": {"rotation_wxyz": [1, 0, 0, 1e999]}}})");
+  refused(R"({"bones": {}, "root_translation": [1, 2]})");
+}
