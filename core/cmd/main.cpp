@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", LIMBER_VERSION);
   cmd::add_info(app);
+  cmd::add_skin_points(app);
 
   try {
     app.parse(argc, argv);

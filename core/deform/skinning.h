@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The one blend kernel. Takes (bone, weight) spans of any length, double precision.
-//   linear blend      p + sum w (M p - p), so that rest is exact
-//   dual quaternion   unit dual quaternions, sign aligned to the *running sum in influence order* (Blender's rule)
-//                     [Kavan et al. 2008]; scale is blended linearly, before the dual quaternion
+// The one blend kernel: where a point goes that follows several bones. Spans of (bone, weight) of any length, double
+// precision, lengths in the unit of the points.
+//   linear blend      p + sum w (M p - p), so that rest is exact: bones that do not move leave p as it is, bit for bit
+//   dual quaternion   the unit dual quaternions of the bones are added, each with the sign that agrees with the
+//                     *running sum in influence order* (Blender's rule, which differs from aligning to the first or to
+//                     the heaviest bone where rotations are more than 180 degrees apart), and the sum is normalized
+//                     [Kavan, Collins, Zara & O'Sullivan 2008, Geometric skinning with approximate dual quaternion blending]
+// Dual quaternions hold no scale. A bone that stretches is split into a stretch along its own rest axes, then a rigid
+// motion; the stretches are blended linearly and applied first.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,23 +26,29 @@ struct BoneWeight {
   double weight;
 };
 
-// A bone's skinning transform, ready for both blends. `scale` is the stretch that precedes the rigid part
-// (world = rigid * scale); the identity for every pose that Limber makes itself.
+// A bone's skinning transform, ready for both blends.
 struct SkinTransform {
-  RigidTransform rigid;
-  glm::dmat3 linear{1};          // of the whole transform
-  glm::dvec3 offset{0};
-  glm::dquat real{1, 0, 0, 0};   // unit dual quaternion of the rigid part
-  glm::dquat dual{0, 0, 0, 0};
-  glm::dmat3 scale{1};
-  bool has_scale = false;
+  std::array<double, 12> displacement{};          // of p: columns of M - 1, then the translation
+  std::array<double, 8> dual_quaternion{1};       // unit; real then dual part, each w x y z
+  std::array<double, 12> stretch{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};  // before the rigid part: columns, then translation
+  bool has_stretch = false;
 };
 
+SkinTransform skin_transform(const RigidTransform& posed_from_rest);
 std::vector<SkinTransform> skin_transforms(const std::vector<RigidTransform>& posed_from_rest);
-SkinTransform skin_transform(const glm::dmat4& posed_from_rest);  // may scale and shear
 
-// Weights need not sum to one (they are divided by their sum); no influence leaves the point at rest.
-glm::dvec3 blend_point(Blend blend, const std::vector<SkinTransform>& bones, std::span<const BoneWeight> influences,
+// From a matrix that may scale and shear. `world_from_bone` is the bone's matrix at rest: a stretch is taken along its
+// axes, and the bone's own y (head to tail) keeps its direction. Both affine, world_from_bone invertible.
+SkinTransform skin_transform(const glm::dmat4& posed_from_rest, const glm::dmat4& world_from_bone);
+
+// Weights need not sum to one (they are divided by their sum); a sum of zero leaves the point at rest.
+glm::dvec3 blend_point(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
                        const glm::dvec3& rest_point);
+
+// Many points, each with its own span: point i follows influences[offsets[i]] up to influences[offsets[i + 1]].
+//   rest_points  #P     offsets  #P + 1     posed_points  #P, written; may be rest_points itself
+void blend_points(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
+                  std::span<const std::int64_t> offsets, std::span<const glm::dvec3> rest_points,
+                  std::span<glm::dvec3> posed_points);
 
 }  // namespace limber
