@@ -58,6 +58,10 @@ GreyVolume read_grey_volume(const Path& path, Progress& progress = no_progress()
 VolumeSummary summarize_volume(const Path& path);
 bool is_volume_path(const Path& path);  // by name, or a folder that holds DICOM
 
+// Throws Error when no volume can be written under this name (unknown extension, missing folder). Commands ask first,
+// before they compute.
+void check_writable(const Path& path);
+
 // Format by extension; voxels carry the tissues' file values in `type.voxel_type` (widened when they do not fit).
 // Names and colours go along where the format can hold them (.seg.nrrd; other NRRD as key/value pairs).
 void write_volume(const LabelVolume& volume, const Path& path, const TissueTable& tissues = {}, const FileType& type = {});
