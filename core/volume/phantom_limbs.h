@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The parts that the phantoms are put together from. Each adds its flesh, bones, muscles, tendons, vessels and rig bones
+// to an Anatomy, in a local frame that may be mirrored and turned. Sizes are those of an adult of 1.75 m.
+#pragma once
+
+#include <string>
+
+#include "core/rig/bvh.h"
+#include "core/volume/phantom_anatomy.h"
+
+namespace limber::phantom {
+
+struct LimbPlan {
+  Frame root;            // shoulder or hip centre; x to the side (away from the trunk), y to the back, z up the limb
+  std::string prefix{};    // of rig bone names: "Left", "Right" or ""
+  int flesh_parent = -1;
+  int rig_parent = -1;
+  double bend_degrees = 0;        // of elbow or knee at rest
+  double thinnest_radius = 0.5;   // mm, for vessels, nerves and tendons, so that none is thinner than a voxel
+};
+
+// From the humerus to the finger tips. The forearm is half pronated: the palm faces the thigh.
+void add_arm(Anatomy& anatomy, const LimbPlan& plan);
+// From the femur to the toes.
+void add_leg(Anatomy& anatomy, const LimbPlan& plan);
+// Pelvis, spine, rib cage, organs, neck and head; returns where the limbs join.
+struct TrunkJoints {
+  int hips_flesh, chest_flesh, hips_bone, chest_bone;
+};
+TrunkJoints add_trunk(Anatomy& anatomy, double thinnest_radius);
+
+// A motion of the rig's own hierarchy, in BVH axes (Y up) and mm.
+struct Turn {
+  std::string bone;
+  glm::dvec3 axis;  // world (LPS) at rest
+  double degrees;
+};
+struct Frame60 {
+  std::vector<Turn> turns;
+  glm::dvec3 root_offset{0};  // LPS, mm
+};
+Motion make_motion(const Armature& armature, const std::vector<Frame60>& frames, double frame_time);
+
+}  // namespace limber::phantom
