@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/rig/bender_armature.h"
+#include "core/rig/bvh.h"
 
 namespace limber {
 
@@ -206,6 +207,10 @@ ArmatureFile read_armature_file(const Path& path) {
   const std::string text = read_file(path, kMostBytes);
   if (extension == ".json") return {parse_armature_json(text, path.string()), "Limber JSON", {}};
   if (extension == ".vtk") return {parse_bender_vtk(text, path.string()), "Bender VTK", {}};
+  if (extension == ".bvh") {
+    const Motion motion = parse_bvh(text, path.string());
+    return {armature_of(motion), "BVH", motion.warnings};
+  }
   throw Error("this is no kind of rig", path.string(), "use .json, .vtk, .arm, .bvh, .gltf or .glb");
 }
 
@@ -214,6 +219,7 @@ void write_armature(const Armature& armature, const Path& path) {
   const std::string extension = extension_of(path);
   if (extension == ".json") return write_file_atomically(path, armature_json_text(armature));
   if (extension == ".vtk") return write_file_atomically(path, bender_vtk_text(armature));
+  if (extension == ".bvh") return write_bvh(motion_of(armature), path);
   throw Error("rigs are not written in this format", path.string(), "use .json, .vtk or .bvh");
 }
 

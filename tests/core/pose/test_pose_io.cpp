@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
-#include "tests/support/scratch.h"
+#include "tests/support/program.h"
 
 using namespace limber;
 
@@ -17,7 +17,7 @@ Armature two_bones() {
 }  // namespace
 
 TEST_CASE("pose: what is written reads back equal, bit for bit") {
-  const test::Scratch scratch;
+  const test::TemporaryFolder scratch;
   const Armature rig = two_bones();
   Pose pose = rest_pose(rig);
   pose.rotation[1] = glm::angleAxis(1.234567, glm::normalize(glm::dvec3(1, -2, 0.3)));

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
-#include "tests/support/scratch.h"
+#include "tests/support/program.h"
 #include "tests/support/shared_data.h"
 
 using namespace limber;
@@ -21,7 +21,7 @@ Armature arm_with_limits() {
 }  // namespace
 
 TEST_CASE("armature: what is written as JSON reads back equal, limits and roll included") {
-  const test::Scratch scratch;
+  const test::TemporaryFolder scratch;
   write_armature(arm_with_limits(), scratch / "first.json");
   const Armature read = read_armature(scratch / "first.json");
   write_armature(read, scratch / "second.json");
@@ -41,7 +41,7 @@ TEST_CASE("armature: what is written as JSON reads back equal, limits and roll i
 }
 
 TEST_CASE("armature: a Bender .vtk keeps names, parents and places") {
-  const test::Scratch scratch;
+  const test::TemporaryFolder scratch;
   write_armature(arm_with_limits(), scratch / "arm.vtk");
   const Armature read = read_armature(scratch / "arm.vtk"), arm = arm_with_limits();
   REQUIRE(read.bones.size() == arm.bones.size());
