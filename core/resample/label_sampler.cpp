@@ -1,63 +1,140 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/resample/label_sampler.h"
 
+#include <algorithm>
 #include <array>
-#include <cmath>
+#include <limits>
 
 namespace limber {
 
 namespace {
-// The labels of the eight voxels around a point with their trilinear shares; the nearest voxel's label comes first, so
-// that it wins a tie.
-struct Shares {
-  std::array<Label, 8> label;
-  std::array<double, 8> share;
-  int count = 0;
+// Share of the neighbourhood's mean that is taken off each membership. At 0.15 to 0.2 volumes are kept best, at 0 the
+// Dice of large tissues is highest; 0.1 keeps nearly all of both. Any value below 4/3 leaves voxel centres exact.
+constexpr double kSharpening = 0.1;
 
-  void add(Label l, double s) {
-    for (int i = 0; i < count; ++i)
-      if (label[i] == l) {
-        share[i] += s;
-        return;
-      }
-    label[count] = l;
-    share[count++] = s;
+// Rounds down; std::floor is a call where the processor's own instruction may not be assumed.
+int round_down(double value) {
+  const int whole = static_cast<int>(value);
+  return whole - (value < whole);
+}
+
+double hermite(double f) { return f * f * (3 - 2 * f); }
+}  // namespace
+
+// The eight voxels around a point. Bit 0, 1, 2 of a corner's number: upper in x, y, z.
+struct LabelSampler::Neighbours {
+  std::array<Label, 8> label;
+  glm::dvec3 fraction;  // of the point between lower and upper voxels, [0, 1)
+  int nearest;          // corner of the voxel whose cell holds the point
+
+  bool uniform() const {
+    bool same = true;
+    for (int k = 1; k < 8; ++k) same &= label[k] == label[0];
+    return same;
   }
-  Label largest() const {
+
+  // Largest membership among the labels that `allowed` lets through; 0 when there is none.
+  template <class Allowed>
+  Label largest_membership(const Allowed& allowed) const {
+    const double x[] = {1 - hermite(fraction.x), hermite(fraction.x)};
+    const double y[] = {1 - hermite(fraction.y), hermite(fraction.y)};
+    const double z[] = {1 - hermite(fraction.z), hermite(fraction.z)};
+    std::array<Label, 8> found;
+    std::array<double, 8> membership;
+    int count = 0;
+    // The nearest voxel's label comes first, so that it wins a tie.
+    for (int k = 0; k < 8; ++k) {
+      const int corner = k ^ nearest;
+      if (!allowed(label[corner])) continue;
+      const double share = x[corner & 1] * y[corner >> 1 & 1] * z[corner >> 2] - kSharpening / 8;
+      int place = 0;
+      while (place < count && found[place] != label[corner]) ++place;
+      if (place == count) {
+        found[count] = label[corner];
+        membership[count++] = 0;
+      }
+      membership[place] += share;
+    }
     int best = 0;
     for (int i = 1; i < count; ++i)
-      if (share[i] > share[best]) best = i;
-    return count ? label[best] : Label{0};
+      if (membership[i] > membership[best]) best = i;
+    return count ? found[best] : Label{0};
   }
 };
 
-template <class Allowed>
-Label largest_share(const LabelVolume& volume, const glm::dvec3& point, const Allowed& allowed) {
-  const glm::dvec3 low = glm::floor(point), f = point - low;
-  const glm::ivec3 v(low), near(f.x >= 0.5, f.y >= 0.5, f.z >= 0.5);
-  Shares shares;
-  for (int k = 0; k < 8; ++k) {
-    const glm::ivec3 corner = near ^ glm::ivec3(k & 1, k >> 1 & 1, k >> 2);
-    const Label label = volume.at_or_air(v + corner);
-    if (label && allowed(label))
-      shares.add(label, (corner.x ? f.x : 1 - f.x) * (corner.y ? f.y : 1 - f.y) * (corner.z ? f.z : 1 - f.z));
-  }
-  return shares.largest();
-}
-}  // namespace
+LabelSampler::LabelSampler(const LabelVolume& volume)
+    : volume_(&volume), row_(volume.grid.size.x), slice_(std::int64_t{volume.grid.size.x} * volume.grid.size.y) {}
 
-LabelSampler::LabelSampler(const LabelVolume& volume) : volume_(&volume) {}
+// False when the point is so far outside the grid (or not a number) that all eight are air.
+bool LabelSampler::neighbours(const glm::dvec3& point, Neighbours& out) const {
+  const glm::ivec3 size = volume_->grid.size;
+  const bool near_grid = point.x >= -1 && point.y >= -1 && point.z >= -1 && point.x < size.x && point.y < size.y &&
+                         point.z < size.z;
+  if (!near_grid) return false;
+  const glm::ivec3 low(round_down(point.x), round_down(point.y), round_down(point.z));
+  out.fraction = point - glm::dvec3(low);
+  out.nearest = (out.fraction.x >= 0.5) | (out.fraction.y >= 0.5) << 1 | (out.fraction.z >= 0.5) << 2;
+
+  const bool inside = low.x >= 0 && low.y >= 0 && low.z >= 0 && low.x + 1 < size.x && low.y + 1 < size.y &&
+                      low.z + 1 < size.z;
+  if (inside) {
+    const Label* at = volume_->voxels.data() + volume_->grid.index(low);
+    const Label* above = at + slice_;
+    out.label = {at[0], at[1], at[row_], at[row_ + 1], above[0], above[1], above[row_], above[row_ + 1]};
+  } else {
+    for (int k = 0; k < 8; ++k) out.label[k] = volume_->at_or_air(low + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
+  }
+  return true;
+}
 
 Label LabelSampler::nearest(const glm::dvec3& point) const {
-  return volume_->at_or_air(glm::ivec3(glm::floor(point + 0.5)));
+  const glm::dvec3 shifted = point + 0.5;
+  const glm::ivec3 size = volume_->grid.size;
+  const bool inside = shifted.x >= 0 && shifted.y >= 0 && shifted.z >= 0 && shifted.x < size.x && shifted.y < size.y &&
+                      shifted.z < size.z;
+  return inside ? volume_->at(glm::ivec3(shifted)) : Label{0};
 }
 
 Label LabelSampler::tissue(const glm::dvec3& point) const {
-  return nearest(point) ? largest_share(*volume_, point, [](Label) { return true; }) : Label{0};
+  Neighbours around;
+  if (!neighbours(point, around)) return 0;
+  const Label nearest = around.label[around.nearest];
+  if (nearest == 0 || around.uniform()) return nearest;
+  return around.largest_membership([](Label label) { return label != 0; });
 }
 
 Label LabelSampler::tissue(const glm::dvec3& point, const LabelSet& allowed) const {
-  return largest_share(*volume_, point, [&](Label label) { return allowed[label] != 0; });
+  Neighbours around;
+  if (!neighbours(point, around)) return 0;
+  return around.largest_membership([&](Label label) { return label != 0 && allowed[label] != 0; });
+}
+
+Label LabelSampler::nearest_of(const glm::dvec3& point, const LabelSet& allowed, int reach) const {
+  const glm::ivec3 size = volume_->grid.size;
+  const glm::dvec3 held = glm::clamp(point, glm::dvec3(-1), glm::dvec3(size));
+  const glm::ivec3 centre(round_down(held.x + 0.5), round_down(held.y + 0.5), round_down(held.z + 0.5));
+  Label best = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  // Shell by shell; a voxel of shell s is at least s - 0.5 away.
+  for (int shell = 0; shell <= reach; ++shell) {
+    if (best && (shell - 0.5) * (shell - 0.5) > nearest) break;
+    for (int z = -shell; z <= shell; ++z)
+      for (int y = -shell; y <= shell; ++y) {
+        const bool face = std::abs(z) == shell || std::abs(y) == shell;
+        for (int x = -shell; x <= shell; x += face || shell == 0 ? 1 : 2 * shell) {
+          const glm::ivec3 v = centre + glm::ivec3(x, y, z);
+          const Label label = volume_->at_or_air(v);
+          if (!label || !allowed[label]) continue;
+          const glm::dvec3 away = glm::dvec3(v) - held;
+          const double squared = glm::dot(away, away);
+          if (squared < nearest) {
+            nearest = squared;
+            best = label;
+          }
+        }
+      }
+  }
+  return best;
 }
 
 }  // namespace limber
