@@ -15,6 +15,7 @@ namespace limber::cmd {
 
 void add_info(CLI::App& app);
 void add_skin_points(CLI::App& app);
+void add_weights(CLI::App& app);
 
 // One line on stderr: "limber: warning: ...".
 void warn(const std::string& line);

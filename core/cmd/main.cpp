@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", LIMBER_VERSION);
   cmd::add_info(app);
   cmd::add_skin_points(app);
+  cmd::add_weights(app);
 
   try {
     app.parse(argc, argv);

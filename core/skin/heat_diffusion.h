@@ -30,5 +30,9 @@ struct WeightsReport {
 SkinWeights diffuse_heat(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
                          const HeatDiffusion& settings = {}, Progress& progress = no_progress(),
                          WeightsReport* report = nullptr);
+// The same with bones that are split already.
+SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                         const Armature& armature, const BoneParts& parts, const HeatDiffusion& settings = {},
+                         Progress& progress = no_progress(), WeightsReport* report = nullptr);
 
 }  // namespace limber

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Weights from and to files.
-//   W.nrrd   unsigned short, sizes 8 N: bone0-3 then weight0-3 per tissue voxel in brick order, keys `limber_bones`
-//            (names), `limber_size`, `limber_tissue_sha256` (of the tissue masks): a mismatch with the volume is refused
-//   folder   Bender's weight_NN.mha, one float volume a bone in the rig's order
-//   .mha     Bender's hard skin map: one bone number (from 1, in the rig's order; 0 air) per voxel
+//   W.nrrd   unsigned short, sizes 8 N: bone0-3 then weight0-3 per tissue voxel in brick order; keys `limber_bones` (a JSON
+//            list of names), `limber_size` (x y z of the grid) and `limber_tissue_sha256` (of the brick masks), so that
+//            weights of another volume are refused. Written raw: 10 MB for the paper's arm, read in a few ms.
+//   folder   Bender's weight_00.mha, weight_01.mha ..., one float volume a bone in the rig's order
+//   .mha     Bender's hard skin map: per voxel 2 + the bone's place in the rig (1: Bender knew no bone; 0: air)
+// Bender's files need not sum to one: on reading they are normalized and rounded to 1/65535, and tissue they leave out
+// goes to the rig bone nearest to it, which is said in `warnings`.
 #pragma once
 
 #include "core/base/file.h"
@@ -17,10 +20,15 @@ struct WeightsFile {
   std::vector<std::string> warnings;
 };
 
-// Throws Error when the file does not belong to this tissue or names a bone the rig lacks.
+// Throws Error when the file is damaged, does not belong to this tissue or names a bone that the rig lacks.
 WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature);
 void write_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue, const Path& path);
+// The folder is made if need be.
 void write_bender_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
                           const Path& folder);
+
+// The bytes of a W.nrrd; `where` names the file in messages.
+SkinWeights parse_weights(const std::string& bytes, const std::string& where, const LabelVolume& volume,
+                          const TissueVoxels& tissue, const Armature& armature);
 
 }  // namespace limber

@@ -1,0 +1,483 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/rig/bone_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+namespace limber {
+
+namespace {
+
+// Passes above this share of the lower summit are wiggles along one bone. On a whole arm whose true bones are known,
+// 0.9 puts 0.4 % of bone voxels into a basin of another bone, 0.7 puts 2.4 %. Splitting one bone too often costs
+// nothing: its pieces find the same rig bone.
+constexpr double kMergeRatio = 0.9;
+constexpr double kWiggleVoxels = 0.3;  // what rounding to voxels makes of a smooth ridge
+constexpr std::int64_t kMostDistances = 16'000'000;  // basins x rig bones: 64 MB
+
+// The bone voxels and which of their 26 neighbours are bone of the same connected tissue.
+struct BoneGraph {
+  std::vector<std::int64_t> place;  // in the tissue list
+  std::vector<glm::ivec3> voxel;
+  std::vector<std::array<std::int32_t, 26>> neighbour;  // place in this list, kNotBone or kOutside
+  std::int64_t size() const { return std::ssize(place); }
+};
+constexpr std::int32_t kNotBone = -1, kOutside = -2;
+
+std::array<glm::ivec3, 26> offsets_26() {
+  std::array<glm::ivec3, 26> offsets;
+  int count = 0;
+  for (int z = -1; z <= 1; ++z)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x)
+        if (x || y || z) offsets[count++] = {x, y, z};
+  return offsets;
+}
+const std::array<glm::ivec3, 26> kOffsets = offsets_26();
+
+// Which pairs of bone labels are different bones that merely touch. Two labels of plain bone are ("Right humerus",
+// "Right ulna"), unless one is wrapped in the other, as marrow is in its shell: then more than half of its faces that
+// do not lie against itself lie against bone.
+class LabelWalls {
+ public:
+  LabelWalls(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds)
+      : plain_(kinds.size(), 0) {
+    int plain_labels = 0;
+    for (size_t label = 0; label < kinds.size(); ++label) plain_labels += plain_[label] = kinds[label] == TissueKind::Bone;
+    if (plain_labels < 2) {
+      std::fill(plain_.begin(), plain_.end(), 0);
+      return;
+    }
+    std::vector<std::int64_t> faces(kinds.size()), bone_faces(kinds.size());
+    tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
+      const Label label = volume.at(v);
+      if (!plain_[label]) return;
+      for (int axis = 0; axis < 3; ++axis)
+        for (int side = -1; side <= 1; side += 2) {
+          glm::ivec3 w = v;
+          w[axis] += side;
+          const Label other = volume.at_or_air(w);
+          if (other == label) continue;
+          ++faces[label];
+          bone_faces[label] += is_bone(kinds[other]);
+        }
+    });
+    for (size_t label = 0; label < kinds.size(); ++label)
+      if (2 * bone_faces[label] > faces[label]) plain_[label] = 0;
+  }
+  bool between(Label a, Label b) const { return a != b && plain_[a] && plain_[b]; }
+
+ private:
+  std::vector<std::uint8_t> plain_;  // by label: a bone of its own
+};
+
+BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds) {
+  BoneGraph graph;
+  std::vector<std::int32_t> of_place(tissue.size(), kNotBone);
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    if (!is_bone(kinds[volume.at(v)])) return;
+    of_place[place] = static_cast<std::int32_t>(graph.place.size());
+    graph.place.push_back(place);
+    graph.voxel.push_back(v);
+  });
+
+  const LabelWalls walls(volume, tissue, kinds);
+  graph.neighbour.resize(graph.size());
+  for (std::int64_t i = 0; i < graph.size(); ++i)
+    for (int k = 0; k < 26; ++k) {
+      const glm::ivec3 w = graph.voxel[i] + kOffsets[k];
+      std::int32_t& n = graph.neighbour[i][k];
+      if (!volume.grid.contains(w)) {
+        n = kOutside;
+        continue;
+      }
+      const Label label = volume.at(w);
+      n = is_bone(kinds[label]) && !walls.between(volume.at(graph.voxel[i]), label) ? of_place[tissue.index_of(w)] : kNotBone;
+    }
+  return graph;
+}
+
+// Distance in mm of every bone voxel to the nearest voxel that is not its bone, by spreading the offset to that voxel.
+// Beyond the grid the bone goes on.
+std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing) {
+  std::vector<float> depth(graph.size(), std::numeric_limits<float>::max());
+  std::vector<glm::ivec3> offset(graph.size(), glm::ivec3(0));
+  using Entry = std::pair<float, std::int32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+  auto offer = [&](std::int32_t i, const glm::ivec3& to_border) {
+    const float distance = static_cast<float>(glm::length(glm::dvec3(to_border) * spacing));
+    if (distance >= depth[i]) return;
+    depth[i] = distance;
+    offset[i] = to_border;
+    front.push({distance, i});
+  };
+  for (std::int32_t i = 0; i < graph.size(); ++i)
+    for (int k = 0; k < 26; ++k)
+      if (graph.neighbour[i][k] == kNotBone) offer(i, kOffsets[k]);
+  while (!front.empty()) {
+    const auto [distance, i] = front.top();
+    front.pop();
+    if (distance > depth[i]) continue;
+    for (int k = 0; k < 26; ++k)
+      if (graph.neighbour[i][k] >= 0) offer(graph.neighbour[i][k], offset[i] - kOffsets[k]);
+  }
+  for (float& d : depth)
+    if (d == std::numeric_limits<float>::max()) d = 0;
+  return depth;
+}
+
+// Flooding from the deepest voxel outwards: each basin is a summit of `height` and what slopes up to it. Where two
+// basins meet, the lower one is a mere wiggle of the higher when the pass between them is nearly as high as its
+// summit; then they are one.
+std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>& height, double merge_ratio, double wiggle) {
+  std::vector<std::int32_t> order(graph.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return height[a] > height[b] || (height[a] == height[b] && a < b); });
+
+  std::vector<std::int32_t> basin(graph.size(), -1);
+  std::vector<std::int32_t> parent;
+  std::vector<float> summit;
+  auto root = [&](std::int32_t b) {
+    while (parent[b] != b) b = parent[b] = parent[parent[b]];
+    return b;
+  };
+  for (std::int32_t i : order) {
+    std::int32_t best = -1;
+    float best_height = -1;
+    for (std::int32_t n : graph.neighbour[i])
+      if (n >= 0 && basin[n] >= 0 && height[n] > best_height) best = n, best_height = height[n];
+    if (best < 0) {
+      basin[i] = static_cast<std::int32_t>(parent.size());
+      parent.push_back(basin[i]);
+      summit.push_back(height[i]);
+      continue;
+    }
+    basin[i] = root(basin[best]);
+    for (std::int32_t n : graph.neighbour[i]) {
+      if (n < 0 || basin[n] < 0) continue;
+      std::int32_t a = root(basin[i]), b = root(basin[n]);
+      if (a == b) continue;
+      if (summit[b] > summit[a] || (summit[b] == summit[a] && b < a)) std::swap(a, b);
+      const float pass = std::min(height[i], height[n]);
+      if (pass >= merge_ratio * summit[b] || summit[b] - pass <= wiggle) parent[b] = a;
+    }
+  }
+  std::vector<std::int32_t> number(parent.size(), -1);
+  std::int32_t count = 0;
+  for (std::int32_t& b : basin) {
+    b = root(b);
+    if (number[b] < 0) number[b] = count++;
+    b = number[b];
+  }
+  return basin;
+}
+
+// How far a set of voxels lies from each rig bone.
+class Hugging {
+ public:
+  Hugging(const Armature& armature, const Grid& grid) : world_from_voxel_(world_from_voxel(grid)) {
+    for (const Bone& bone : armature.bones) {
+      // Two bones share the point where they meet; the tenth cut off at either end decides by direction there.
+      const glm::dvec3 along = bone.tail - bone.head;
+      Bone segment;
+      segment.head = bone.head + 0.1 * along;
+      segment.tail = bone.tail - 0.1 * along;
+      segments_.push_back(std::move(segment));
+    }
+  }
+  int bone_count() const { return static_cast<int>(segments_.size()); }
+  double distance(int bone, const glm::ivec3& voxel) const {
+    return distance_to_bone(segments_[bone], world_from_voxel_ * glm::dvec3(voxel));
+  }
+  glm::dvec3 world(const glm::dvec3& voxel) const { return world_from_voxel_ * voxel; }
+
+ private:
+  AffineTransform world_from_voxel_;
+  std::vector<Bone> segments_;
+};
+
+std::vector<std::vector<std::int32_t>> members_of(const std::vector<std::int32_t>& basin) {
+  std::vector<std::vector<std::int32_t>> members;
+  for (size_t i = 0; i < basin.size(); ++i) {
+    if (basin[i] >= std::ssize(members)) members.resize(basin[i] + 1);
+    members[basin[i]].push_back(static_cast<std::int32_t>(i));
+  }
+  return members;
+}
+
+// A basin that holds most of the length of several rig bones is several bones grown together (or drawn as one tube):
+// there each voxel goes with the nearest of those.
+void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armature, const Grid& grid, const TissueVoxels& tissue,
+                                 const Hugging& hugging,
+                                 std::vector<std::int32_t>& basin) {
+  constexpr double kMostOfItsLength = 0.5;
+  const AffineTransform from_world = voxel_from_world(grid);
+  std::map<std::int32_t, std::vector<int>> bones_inside;
+  for (int b = 0; b < hugging.bone_count(); ++b) {
+    const glm::dvec3 head = from_world * armature.bones[b].head, tail = from_world * armature.bones[b].tail;
+    constexpr int kMostSteps = 4096;  // a segment may be far longer than the volume
+    const int steps = static_cast<int>(std::clamp(2 * glm::length(tail - head), 8.0, double(kMostSteps)));
+    std::map<std::int32_t, int> inside;
+    for (int k = 0; k <= steps; ++k) {
+      const glm::dvec3 at = glm::mix(head, tail, double(k) / steps);
+      if (!(glm::all(glm::greaterThan(at, glm::dvec3(-0.5))) && glm::all(glm::lessThan(at, glm::dvec3(grid.size) - 0.5)))) continue;
+      const std::int64_t place = tissue.index_of(glm::ivec3(glm::floor(at + 0.5)));
+      const auto found = std::lower_bound(graph.place.begin(), graph.place.end(), place);
+      if (found != graph.place.end() && *found == place) ++inside[basin[found - graph.place.begin()]];
+    }
+    for (auto [which, count] : inside)
+      if (count >= kMostOfItsLength * (steps + 1)) bones_inside[which].push_back(b);
+  }
+
+  std::int32_t next = basin.empty() ? 0 : *std::max_element(basin.begin(), basin.end()) + 1;
+  std::map<std::int32_t, std::int32_t> first_of;  // basin to the first of its cuts
+  for (const auto& [which, bones] : bones_inside)
+    if (bones.size() >= 2) first_of[which] = std::exchange(next, next + static_cast<std::int32_t>(bones.size()));
+  if (first_of.empty()) return;
+  for (std::int64_t i = 0; i < graph.size(); ++i) {
+    const auto cut = first_of.find(basin[i]);
+    if (cut == first_of.end()) continue;
+    const std::vector<int>& bones = bones_inside[cut->first];
+    int best = 0;
+    double nearest = std::numeric_limits<double>::max();
+    for (size_t k = 0; k < bones.size(); ++k)
+      if (const double d = hugging.distance(bones[k], graph.voxel[i]); d < nearest) nearest = d, best = static_cast<int>(k);
+    basin[i] = cut->second + best;
+  }
+}
+
+// Basins joined to the pieces that move as one, each with its rig bone. Two touching basins join, broadest contact
+// first, unless the rig objects: that following one bone together would take the smaller one much further from its
+// bone than it would be alone.
+class Pieces {
+ public:
+  Pieces(const BoneGraph& graph, const std::vector<float>& depth, const Hugging& hugging, const std::vector<std::int32_t>& basin)
+      : bones_(hugging.bone_count()) {
+    const auto members = members_of(basin);
+    cluster_.resize(members.size());
+    for (size_t p = 0; p < members.size(); ++p) {
+      Cluster& cluster = cluster_[p];
+      cluster.parent = static_cast<std::int32_t>(p);
+      cluster.voxels = std::ssize(members[p]);
+      for (std::int32_t i : members[p]) cluster.summit = std::max(cluster.summit, depth[i]);
+      if (members[p].empty()) continue;
+      // 256 voxels spread evenly tell a mean distance to a few percent.
+      const size_t stride = std::max<size_t>(1, members[p].size() / 256);
+      const size_t samples = (members[p].size() + stride - 1) / stride;
+      cluster.distance.resize(bones_);
+      for (int b = 0; b < bones_; ++b) {
+        double sum = 0;
+        for (size_t k = 0; k < members[p].size(); k += stride) sum += hugging.distance(b, graph.voxel[members[p][k]]);
+        cluster.distance[b] = static_cast<float>(sum / samples);
+      }
+    }
+    for (std::int32_t i = 0; i < graph.size(); ++i)
+      for (std::int32_t n : graph.neighbour[i]) {
+        if (n <= i || basin[n] == basin[i]) continue;
+        const float pass = std::min(depth[i], depth[n]);
+        touch(basin[i], basin[n], pass);
+        touch(basin[n], basin[i], pass);
+      }
+  }
+
+  void join() {
+    using Entry = std::tuple<float, std::int32_t, std::int32_t>;
+    std::priority_queue<Entry> queue;
+    auto offer = [&](std::int32_t a, std::int32_t b, float pass) {
+      const float strength = pass / std::min(cluster_[a].summit, cluster_[b].summit);
+      if (strength >= kWeakestContact) queue.push({strength, std::max(a, b), std::min(a, b)});
+    };
+    for (std::int32_t a = 0; a < std::ssize(cluster_); ++a)
+      for (auto [b, pass] : cluster_[a].contact)
+        if (a < b) offer(a, b, pass);
+    while (!queue.empty()) {
+      const auto [strength, x, y] = queue.top();
+      queue.pop();
+      if (cluster_[x].parent != x || cluster_[y].parent != y || !agree(x, y)) continue;
+      const bool x_larger = cluster_[x].contact.size() >= cluster_[y].contact.size();
+      const std::int32_t a = x_larger ? x : y, b = x_larger ? y : x;
+      absorb(a, b);
+      for (auto [n, pass] : cluster_[a].contact) offer(a, n, pass);
+    }
+  }
+
+  std::int32_t root(std::int32_t p) const {
+    while (cluster_[p].parent != p) p = cluster_[p].parent;
+    return p;
+  }
+  int bone(std::int32_t p) const { return best(cluster_[root(p)]); }
+
+ private:
+  // A pass this much shallower than the summit is a joint, not a waist.
+  static constexpr float kWeakestContact = 0.35f;
+
+  struct Cluster {
+    std::int32_t parent = 0;
+    std::int64_t voxels = 0;
+    float summit = 0;
+    std::vector<float> distance;              // mean, mm, by rig bone
+    std::map<std::int32_t, float> contact;    // by cluster: depth of the deepest pass
+  };
+
+  void touch(std::int32_t a, std::int32_t b, float pass) {
+    float& deepest = cluster_[a].contact[b];
+    deepest = std::max(deepest, pass);
+  }
+  static int best(const Cluster& c) {
+    return static_cast<int>(std::min_element(c.distance.begin(), c.distance.end()) - c.distance.begin());
+  }
+  std::vector<float> joined_distance(const Cluster& a, const Cluster& b) const {
+    std::vector<float> joined(bones_);
+    const double share = double(b.voxels) / (a.voxels + b.voxels);
+    for (int k = 0; k < bones_; ++k) joined[k] = static_cast<float>(a.distance[k] + share * (b.distance[k] - a.distance[k]));
+    return joined;
+  }
+  bool agree(std::int32_t x, std::int32_t y) const {
+    const Cluster &a = cluster_[x], &b = cluster_[y];
+    const int of_a = best(a), of_b = best(b);
+    if (of_a == of_b) return true;
+    const std::vector<float> joined = joined_distance(a, b);
+    const double together = *std::min_element(joined.begin(), joined.end()) * (a.voxels + b.voxels);
+    const double apart = a.distance[of_a] * a.voxels + b.distance[of_b] * b.voxels;
+    const Cluster& smaller = a.voxels < b.voxels ? a : b;
+    const double own = smaller.distance[a.voxels < b.voxels ? of_a : of_b];
+    // A quarter of its distance a piece may be further off without belonging elsewhere: so the ball of a joint goes with
+    // its shaft, and a finger bone does not with its neighbour.
+    return together - apart <= 0.25 * own * smaller.voxels;
+  }
+  void absorb(std::int32_t a, std::int32_t b) {
+    cluster_[a].distance = joined_distance(cluster_[a], cluster_[b]);
+    cluster_[a].voxels += cluster_[b].voxels;
+    cluster_[a].summit = std::max(cluster_[a].summit, cluster_[b].summit);
+    cluster_[b].parent = a;
+    for (auto [n, pass] : cluster_[b].contact) {
+      cluster_[n].contact.erase(b);
+      if (n == a) continue;
+      touch(a, n, pass);
+      touch(n, a, pass);
+    }
+    cluster_[a].contact.erase(b);
+    cluster_[b] = Cluster();
+    cluster_[b].parent = a;
+  }
+
+  int bones_;
+  std::vector<Cluster> cluster_;
+};
+
+// Basins of fewer than `fewest` voxels join the neighbouring basin they share most faces with.
+void join_specks(const BoneGraph& graph, std::int64_t fewest, std::vector<std::int32_t>& basin) {
+  std::vector<std::int64_t> count;
+  for (std::int32_t b : basin) {
+    if (b >= std::ssize(count)) count.resize(b + 1);
+    ++count[b];
+  }
+  std::map<std::int32_t, std::map<std::int32_t, int>> around;
+  for (std::int64_t i = 0; i < graph.size(); ++i) {
+    if (count[basin[i]] >= fewest) continue;
+    for (std::int32_t n : graph.neighbour[i])
+      if (n >= 0 && basin[n] != basin[i]) ++around[basin[i]][basin[n]];
+  }
+  std::vector<std::int32_t> into(count.size());
+  std::iota(into.begin(), into.end(), 0);
+  auto end_of = [&](std::int32_t b) {
+    while (into[b] != b) b = into[b] = into[into[b]];
+    return b;
+  };
+  for (const auto& [speck, neighbours] : around) {
+    const auto most = std::max_element(neighbours.begin(), neighbours.end(), [](auto& a, auto& b) { return a.second < b.second; });
+    into[end_of(speck)] = end_of(most->first);
+  }
+  std::vector<std::int32_t> number(count.size(), -1);
+  std::int32_t next = 0;
+  for (std::int32_t& b : basin) {
+    b = end_of(b);
+    if (number[b] < 0) number[b] = next++;
+    b = number[b];
+  }
+}
+
+// The touching pieces of one rig bone are one part; what touches none of its bone's other pieces and is small (under a
+// hundredth of its largest) belongs to that largest one.
+void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vector<std::int32_t>& basin, const Pieces& pieces,
+                  BoneParts& result) {
+  const std::int32_t basins = *std::max_element(basin.begin(), basin.end()) + 1;
+  std::vector<std::int32_t> joined(basins);
+  std::vector<int> bone(basins);
+  for (std::int32_t p = 0; p < basins; ++p) joined[p] = pieces.root(p), bone[p] = pieces.bone(p);
+  auto root = [&](std::int32_t p) {
+    while (joined[p] != p) p = joined[p] = joined[joined[p]];
+    return p;
+  };
+  for (std::int64_t i = 0; i < graph.size(); ++i)
+    for (std::int32_t n : graph.neighbour[i])
+      if (n >= 0 && basin[n] != basin[i] && bone[basin[n]] == bone[basin[i]]) joined[root(basin[n])] = root(basin[i]);
+
+  std::vector<std::int64_t> voxels(basins);
+  for (std::int32_t b : basin) ++voxels[root(b)];
+  std::map<int, std::int32_t> largest;
+  for (std::int32_t p = 0; p < basins; ++p)
+    if (root(p) == p && voxels[p] > 0)
+      if (auto [at, is_new] = largest.insert({bone[p], p}); !is_new && voxels[p] > voxels[at->second]) at->second = p;
+  constexpr int kMostParts = 60'000;  // part numbers have 16 bits
+  std::vector<int> number(basins, -1);
+  auto number_of = [&](std::int32_t p) {
+    const std::int32_t home = largest[bone[p]];
+    if (100 * voxels[p] < voxels[home] || std::ssize(result.parts) >= kMostParts) p = home;
+    if (number[p] < 0) {
+      number[p] = static_cast<int>(result.parts.size());
+      result.parts.push_back({bone[p], 0, glm::dvec3(0)});
+    }
+    return number[p];
+  };
+  for (std::int64_t i = 0; i < graph.size(); ++i) {
+    const int part = number_of(root(basin[i]));
+    result.part_of[graph.place[i]] = static_cast<std::uint16_t>(1 + part);
+    result.parts[part].voxel_count += 1;
+    result.parts[part].centre += glm::dvec3(graph.voxel[i]);
+  }
+  for (auto& part : result.parts) part.centre = hugging.world(part.centre / double(part.voxel_count));
+}
+}  // namespace
+
+BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                      const Armature& armature, Progress& progress) {
+  BoneParts result;
+  result.part_of.assign(tissue.size(), 0);
+  progress.update("bones", 0);
+  const std::vector<TissueKind> kinds = tissues.kinds();
+  const BoneGraph graph = gather_bone(volume, tissue, kinds);
+  if (graph.size() == 0) return result;
+  progress.update("bones", 0.4);
+
+  // Marrow raises the ground: two cores are two summits however thin the shells between them.
+  const std::vector<float> depth = bone_depth(graph, volume.grid.spacing);
+  std::vector<float> height = depth;
+  for (std::int64_t i = 0; i < graph.size(); ++i)
+    if (kinds[volume.at(graph.voxel[i])] == TissueKind::Marrow) height[i] *= 2;
+  progress.update("bones", 0.6);
+
+  const double voxel = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
+  std::vector<std::int32_t> basin = flood(graph, height, kMergeRatio, kWiggleVoxels * voxel);
+  const Hugging hugging(armature, volume.grid);
+  cut_where_several_bones_run(graph, armature, volume.grid, tissue, hugging, basin);
+  for (std::int64_t fewest = 8; ; fewest *= 2) {
+    join_specks(graph, fewest, basin);
+    const std::int64_t basins = *std::max_element(basin.begin(), basin.end()) + 1;
+    if (basins * hugging.bone_count() <= kMostDistances || fewest > graph.size()) break;
+  }
+  progress.update("bones", 0.8);
+
+  Pieces pieces(graph, depth, hugging, basin);
+  pieces.join();
+  gather_parts(graph, hugging, basin, pieces, result);
+  progress.update("bones", 1);
+  return result;
+}
+}  // namespace limber

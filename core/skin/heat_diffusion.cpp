@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/skin/heat_diffusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "core/base/parallel.h"
+#include "core/skin/best_four.h"
+#include "core/skin/soft_body.h"
+
+namespace limber {
+
+namespace {
+// A bone is solved for where the coarse solution gives it more than this. At 300 mm from the joint such a weight moves
+// a point by 0.1 mm under a turn of 60 degrees.
+constexpr float kNegligible = 3e-4f;
+constexpr double kCoarseResidual = 1e-4;
+constexpr double kLaneCost = 0.25;  // of one more right side, over that of a region solved for one
+
+// Temperatures on the coarse body: by bone, the cells where it matters.
+struct CoarseTemperatures {
+  struct Entry {
+    std::int32_t cell;
+    float value;
+  };
+  std::vector<std::vector<Entry>> by_bone;
+};
+
+void fill_sources(const std::vector<HeldFace>& held, const std::vector<int>& lane_of_bone, int lanes, std::vector<float>& b) {
+  for (const HeldFace& face : held)
+    if (const int lane = lane_of_bone[face.bone]; lane >= 0) b[std::int64_t{face.cell} * lanes + lane] += face.conductance;
+}
+
+// The cells that heat from some held voxel reaches.
+std::vector<bool> reached_cells(const CellGraph& graph, const std::vector<HeldFace>& held) {
+  std::vector<bool> reached(graph.size(), false);
+  std::vector<std::int32_t> open;
+  auto reach = [&](std::int32_t cell) {
+    if (reached[cell]) return;
+    reached[cell] = true;
+    open.push_back(cell);
+  };
+  for (const HeldFace& face : held) reach(face.cell);
+  while (!open.empty()) {
+    const std::int32_t cell = open.back();
+    open.pop_back();
+    for (std::int32_t k = graph.first[cell]; k < graph.first[cell + 1]; ++k) reach(graph.neighbour[k]);
+  }
+  return reached;
+}
+
+CoarseTemperatures solve_coarse(const SoftBody::Coarse& coarse, const std::vector<bool>& reached, int bone_count) {
+  // What no heat reaches stays at zero: a loss of its own keeps the system solvable.
+  CellGraph graph = coarse.graph;
+  for (std::int64_t i = 0; i < graph.size(); ++i)
+    if (!reached[i]) graph.diagonal[i] += 1;
+  const std::int64_t size = graph.size();
+  const Multigrid multigrid(std::move(graph));
+
+  std::vector<bool> holds(bone_count, false);
+  for (const HeldFace& face : coarse.held) holds[face.bone] = true;
+  CoarseTemperatures temperatures;
+  temperatures.by_bone.resize(bone_count);
+  std::vector<int> lane_of_bone(bone_count, -1), block;
+  for (int bone = 0; bone <= bone_count; ++bone) {
+    if (bone < bone_count && holds[bone]) {
+      lane_of_bone[bone] = static_cast<int>(block.size());
+      block.push_back(bone);
+    }
+    if (block.empty() || (bone < bone_count && std::ssize(block) < Multigrid::kMostLanes)) continue;
+    const int lanes = static_cast<int>(block.size());
+    std::vector<float> b(size * lanes, 0.0f), x(size * lanes, 0.0f);
+    fill_sources(coarse.held, lane_of_bone, lanes, b);
+    multigrid.solve(b, x, lanes, kCoarseResidual, 100);
+    for (int lane = 0; lane < lanes; ++lane) {
+      for (std::int64_t c = 0; c < size; ++c)
+        if (x[c * lanes + lane] > kNegligible)
+          temperatures.by_bone[block[lane]].push_back({static_cast<std::int32_t>(c), x[c * lanes + lane]});
+      lane_of_bone[block[lane]] = -1;
+    }
+    block.clear();
+  }
+  return temperatures;
+}
+
+// Bones that are solved together, and the bricks in which any of them matters.
+struct Block {
+  std::vector<int> bones;
+  std::vector<std::int32_t> bricks;
+};
+
+// Largest bone first; it takes along the bones that lie in its bricks anyway.
+std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures, const std::vector<std::int32_t>& brick_of_cell) {
+  const int bone_count = static_cast<int>(temperatures.by_bone.size());
+  std::vector<std::vector<std::int32_t>> bricks(bone_count);
+  std::vector<int> waiting;
+  for (int bone = 0; bone < bone_count; ++bone) {
+    for (const auto& entry : temperatures.by_bone[bone]) bricks[bone].push_back(brick_of_cell[entry.cell]);
+    std::sort(bricks[bone].begin(), bricks[bone].end());
+    bricks[bone].erase(std::unique(bricks[bone].begin(), bricks[bone].end()), bricks[bone].end());
+    if (!bricks[bone].empty()) waiting.push_back(bone);
+  }
+  std::stable_sort(waiting.begin(), waiting.end(), [&](int a, int b) { return bricks[a].size() > bricks[b].size(); });
+
+  std::vector<Block> blocks;
+  while (!waiting.empty()) {
+    Block block{{waiting.front()}, bricks[waiting.front()]};
+    waiting.erase(waiting.begin());
+    while (std::ssize(block.bones) < Multigrid::kMostLanes) {
+      // The bone that saves most by sharing the region instead of having one of its own.
+      double best_gain = 0;
+      size_t best = waiting.size();
+      std::vector<std::int32_t> joined;
+      for (size_t k = 0; k < waiting.size(); ++k) {
+        const auto& own = bricks[waiting[k]];
+        std::vector<std::int32_t> both;
+        std::set_union(block.bricks.begin(), block.bricks.end(), own.begin(), own.end(), std::back_inserter(both));
+        const double lanes = std::ssize(block.bones);
+        const double apart = block.bricks.size() * (1 + kLaneCost * lanes) + own.size() * (1 + kLaneCost);
+        const double together = both.size() * (1 + kLaneCost * (lanes + 1));
+        if (apart - together > best_gain) {
+          best_gain = apart - together;
+          best = k;
+          joined = std::move(both);
+        }
+      }
+      if (best == waiting.size()) break;
+      block.bones.push_back(waiting[best]);
+      block.bricks = std::move(joined);
+      waiting.erase(waiting.begin() + best);
+    }
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
+// A piece of soft tissue that touches no bone (it lies apart in the air) follows the rig bone nearest to its centre.
+void cover_unreached(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const Armature& armature,
+                     const SoftBody::Coarse& coarse, const std::vector<bool>& reached, BestFour& best, WeightsReport& report) {
+  struct Island {
+    std::int64_t voxels = 0;
+    glm::dvec3 sum{0};
+    Label label = 0;  // of its first voxel
+    int bone = 0;
+  };
+  std::vector<Island> islands;
+  std::vector<std::int32_t> island_of(coarse.graph.size(), -1), open;
+  for (std::int32_t seed = 0; seed < coarse.graph.size(); ++seed) {
+    if (reached[seed] || island_of[seed] >= 0) continue;
+    const auto number = static_cast<std::int32_t>(islands.size());
+    islands.emplace_back();
+    island_of[seed] = number;
+    open.push_back(seed);
+    while (!open.empty()) {
+      const std::int32_t cell = open.back();
+      open.pop_back();
+      for (std::int32_t k = coarse.graph.first[cell]; k < coarse.graph.first[cell + 1]; ++k)
+        if (const std::int32_t next = coarse.graph.neighbour[k]; island_of[next] < 0) {
+          island_of[next] = number;
+          open.push_back(next);
+        }
+    }
+  }
+  if (islands.empty()) return;
+
+  auto island_at = [&](std::int64_t place) { return coarse.cell_of_place[place] < 0 ? -1 : island_of[coarse.cell_of_place[place]]; };
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    const std::int32_t number = island_at(place);
+    if (number < 0) return;
+    Island& island = islands[number];
+    if (island.voxels++ == 0) island.label = volume.at(v);
+    island.sum += glm::dvec3(v);
+  });
+  const AffineTransform from_voxel = world_from_voxel(volume.grid);
+  for (Island& island : islands) {
+    const glm::dvec3 centre = from_voxel * (island.sum / double(island.voxels));
+    double nearest = std::numeric_limits<double>::max();
+    for (size_t b = 0; b < armature.bones.size(); ++b)
+      if (const double d = distance_to_bone(armature.bones[b], centre); d < nearest) nearest = d, island.bone = static_cast<int>(b);
+  }
+  for (std::int64_t place = 0; place < tissue.size(); ++place)
+    if (const std::int32_t number = island_at(place); number >= 0) best.hold(place, islands[number].bone);
+
+  std::stable_sort(islands.begin(), islands.end(), [](const Island& a, const Island& b) { return a.voxels > b.voxels; });
+  constexpr size_t kMostLines = 8;
+  for (size_t k = 0; k < std::min(islands.size(), kMostLines); ++k) {
+    const Island& island = islands[k];
+    const glm::dvec3 centre = from_voxel * (island.sum / double(island.voxels));
+    const Tissue* label = tissues.find(island.label);
+    char text[256];
+    std::snprintf(text, sizeof text, "no bone reaches %lld voxels of label %.15g near (%.0f, %.0f, %.0f): given to %.80s",
+                  static_cast<long long>(island.voxels), label ? label->file_value : double(island.label), centre.x, centre.y,
+                  centre.z, armature.bones[island.bone].name.c_str());
+    report.warnings.push_back(text);
+  }
+  if (islands.size() > kMostLines)
+    report.warnings.push_back("no bone reaches " + std::to_string(islands.size() - kMostLines) + " smaller pieces either: each given to the nearest bone");
+}
+
+}  // namespace
+
+SkinWeights diffuse_heat(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
+                         const HeatDiffusion& settings, Progress& progress, WeightsReport* report) {
+  const TissueVoxels tissue(volume);
+  const BoneParts parts = split_bones(volume, tissue, tissues, armature, progress);
+  return diffuse_heat(volume, tissue, tissues, armature, parts, settings, progress, report);
+}
+
+SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                         const Armature& armature, const BoneParts& parts, const HeatDiffusion& settings,
+                         Progress& progress, WeightsReport* report) {
+  WeightsReport ignored;
+  WeightsReport& said = report ? *report : ignored;
+  progress.update("weights", 0);
+  const int bone_count = static_cast<int>(armature.bones.size());
+  const std::vector<std::uint16_t> held_by = bone_holding(volume, tissue, parts, armature);
+  const SoftBody body(volume, tissue, tissues, held_by);
+  const SoftBody::Coarse coarse = body.coarse();
+  const std::vector<bool> reached = reached_cells(coarse.graph, coarse.held);
+  const CoarseTemperatures temperatures = solve_coarse(coarse, reached, bone_count);
+  progress.update("weights", 0.2);
+
+  BestFour best(tissue.size());
+  std::vector<int> lane_of_bone(bone_count, -1);
+  const std::vector<Block> blocks = blocks_of_bones(temperatures, coarse.brick);
+  std::vector<float> guess(coarse.graph.size() * Multigrid::kMostLanes, 0.0f);
+  for (size_t k = 0; k < blocks.size(); ++k) {
+    const Block& block = blocks[k];
+    const int lanes = static_cast<int>(block.bones.size());
+    std::fill(guess.begin(), guess.end(), 0.0f);
+    for (int lane = 0; lane < lanes; ++lane) {
+      lane_of_bone[block.bones[lane]] = lane;
+      for (const auto& entry : temperatures.by_bone[block.bones[lane]]) guess[std::int64_t{entry.cell} * lanes + lane] = entry.value;
+    }
+    SoftBody::Region region = body.region(block.bricks);
+    const std::int64_t size = region.graph.size();
+    std::vector<float> b(size * lanes, 0.0f), x(size * lanes);
+    fill_sources(region.held, lane_of_bone, lanes, b);
+    for (std::int64_t i = 0; i < size; ++i) {
+      const std::int32_t cell = coarse.cell_of_place[region.place[i]];
+      if (!reached[cell]) region.graph.diagonal[i] += 1;
+      for (int lane = 0; lane < lanes; ++lane) x[i * lanes + lane] = guess[std::int64_t{cell} * lanes + lane];
+    }
+    const Multigrid multigrid(std::move(region.graph));
+    const SolveReport solved = multigrid.solve(b, x, lanes, settings.residual, settings.maximum_iterations, progress);
+    if (progress.cancelled()) throw Cancelled();
+    if (solved.residual > settings.residual) {
+      char text[64];
+      std::snprintf(text, sizeof text, "%.1e after %d iterations", solved.residual, solved.iterations);
+      throw Error("the heat solve stopped at a residual of " + std::string(text), armature.bones[block.bones[0]].name,
+                  "check that the volume's spacing is right, or use --method geodesic");
+    }
+    said.residual = std::max(said.residual, solved.residual);
+    said.iterations = std::max(said.iterations, solved.iterations);
+    for (int lane = 0; lane < lanes; ++lane) {
+      best.offer(region.place, x, lanes, lane, block.bones[lane]);
+      lane_of_bone[block.bones[lane]] = -1;
+    }
+    progress.update("weights", 0.2 + 0.75 * double(k + 1) / blocks.size());
+  }
+  for (std::int64_t place = 0; place < tissue.size(); ++place)
+    if (held_by[place] != kSoft) best.hold(place, held_by[place]);
+  cover_unreached(volume, tissue, tissues, armature, coarse, reached, best, said);
+  std::vector<std::string> names;
+  for (const Bone& bone : armature.bones) names.push_back(bone.name);
+  return best.weights(std::move(names), tissue);
+}
+
+}  // namespace limber

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/skin/multigrid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+constexpr std::int64_t kGrain = 4096;       // cells a block of a parallel loop
+constexpr std::int64_t kCoarsestSize = 64;  // solved directly
+constexpr int kMostLevels = 12;
+// The way between centres doubles.
+constexpr float kCoarseConductance = 0.5f;
+
+int colour_of(const glm::i16vec3& p) { return (p.x + p.y + p.z) & 1; }
+
+// Axes along which cells are so close that heat evens out fast; halving the cells there first keeps the others in step.
+glm::i16vec3 coarsened_axes(const glm::dvec3& spacing) {
+  const double closest = std::min({spacing.x, spacing.y, spacing.z});
+  return {spacing.x < 1.5 * closest, spacing.y < 1.5 * closest, spacing.z < 1.5 * closest};
+}
+
+// Numbers the cells of the next level: connected sets of cells within one block, 2 x 2 x 2 where cells are cubes.
+std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse) {
+  const glm::i16vec3 halved = coarsened_axes(fine.spacing);
+  coarse.spacing = fine.spacing * glm::dvec3(halved + glm::i16vec3(1));
+  std::vector<std::int32_t> parent(fine.size(), -1);
+  std::vector<glm::i16vec3> position;
+  std::array<std::int32_t, 8> open;
+  for (std::int32_t seed = 0; seed < fine.size(); ++seed) {
+    if (parent[seed] >= 0) continue;
+    const glm::i16vec3 block = fine.position[seed] >> halved;
+    const auto aggregate_number = static_cast<std::int32_t>(position.size());
+    position.push_back(block);
+    parent[seed] = aggregate_number;
+    int open_count = 0;
+    open[open_count++] = seed;
+    while (open_count > 0) {
+      const std::int32_t i = open[--open_count];
+      for (std::int32_t k = fine.first[i]; k < fine.first[i + 1]; ++k) {
+        const std::int32_t j = fine.neighbour[k];
+        if (parent[j] >= 0 || (fine.position[j] >> halved) != block) continue;
+        parent[j] = aggregate_number;
+        open[open_count++] = j;
+      }
+    }
+  }
+
+  // Colour 0 first, else in the order met, which keeps neighbours close in memory.
+  std::vector<std::int32_t> number(position.size());
+  std::int32_t next = 0;
+  for (int colour = 0; colour < 2; ++colour) {
+    for (size_t a = 0; a < position.size(); ++a)
+      if (colour_of(position[a]) == colour) {
+        number[a] = next++;
+        coarse.position.push_back(position[a]);
+      }
+    if (colour == 0) coarse.red_count = next;
+  }
+  for (std::int32_t& p : parent) p = number[p];
+  return parent;
+}
+
+CellGraph coarsen(const CellGraph& fine, std::vector<std::int32_t>& parent) {
+  CellGraph coarse;
+  parent = aggregate(fine, coarse);
+  const std::int64_t size = coarse.size();
+
+  std::vector<std::int32_t> child_first(size + 1, 0), child(fine.size());
+  for (std::int32_t p : parent) ++child_first[p + 1];
+  for (std::int64_t c = 0; c < size; ++c) child_first[c + 1] += child_first[c];
+  {
+    std::vector<std::int32_t> place(child_first.begin(), child_first.end() - 1);
+    for (std::int32_t i = 0; i < fine.size(); ++i) child[place[parent[i]]++] = i;
+  }
+
+  const glm::i16vec3 halved = coarsened_axes(fine.spacing);
+  auto across = [&](const glm::i16vec3& step) {
+    const int axis = step.x != 0 ? 0 : step.y != 0 ? 1 : 2;
+    return halved[axis] ? kCoarseConductance : 1.0f;
+  };
+  coarse.first.assign(size + 1, 0);
+  coarse.diagonal.assign(size, 0);
+  coarse.neighbour.reserve(6 * size);
+  coarse.conductance.reserve(6 * size);
+  for (std::int32_t c = 0; c < size; ++c) {
+    const size_t start = coarse.neighbour.size();
+    double linked = 0, lost = 0;
+    for (std::int32_t m = child_first[c]; m < child_first[c + 1]; ++m) {
+      const std::int32_t i = child[m];
+      double own = fine.diagonal[i];
+      for (std::int32_t k = fine.first[i]; k < fine.first[i + 1]; ++k) {
+        own -= fine.conductance[k];
+        const std::int32_t d = parent[fine.neighbour[k]];
+        if (d == c) continue;
+        size_t at = start;
+        while (at < coarse.neighbour.size() && coarse.neighbour[at] != d) ++at;
+        if (at == coarse.neighbour.size()) {
+          coarse.neighbour.push_back(d);
+          coarse.conductance.push_back(0);
+        }
+        const float g = fine.conductance[k] * across(coarse.position[c] - coarse.position[d]);
+        coarse.conductance[at] += g;
+        linked += g;
+      }
+      lost += std::max(own, 0.0);
+    }
+    coarse.diagonal[c] = static_cast<float>(linked + kCoarseConductance * lost);
+    coarse.first[c + 1] = static_cast<std::int32_t>(coarse.neighbour.size());
+  }
+  return coarse;
+}
+}  // namespace
+
+Multigrid::Multigrid(CellGraph finest) {
+  levels_.push_back({std::move(finest), {}});
+  while (levels_.back().graph.size() > kCoarsestSize && std::ssize(levels_) < kMostLevels) {
+    Level next;
+    next.graph = coarsen(levels_.back().graph, levels_.back().parent);
+    if (next.graph.size() == levels_.back().graph.size()) {
+      levels_.back().parent.clear();
+      break;
+    }
+    levels_.push_back(std::move(next));
+  }
+  const CellGraph& graph = levels_.back().graph;
+  if (graph.size() > 8 * kCoarsestSize) return;  // many small pieces: sweeps do it
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(graph.size(), graph.size());
+  for (std::int64_t i = 0; i < graph.size(); ++i) {
+    dense(i, i) += graph.diagonal[i];
+    for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k) dense(i, graph.neighbour[k]) -= graph.conductance[k];
+  }
+  const Eigen::MatrixXd inverse = dense.ldlt().solve(Eigen::MatrixXd::Identity(graph.size(), graph.size()));
+  if (inverse.allFinite()) coarsest_inverse_.assign(inverse.data(), inverse.data() + inverse.size());
+}
+
+template <int Lanes>
+class Multigrid::Solver {
+ public:
+  using Sums = std::array<double, Lanes>;
+
+  explicit Solver(const Multigrid& grid) : grid_(grid), at_(grid.levels_.size()) {
+    for (size_t l = 0; l < at_.size(); ++l) {
+      at_[l].x.resize(grid.levels_[l].graph.size() * Lanes);
+      if (l > 0) at_[l].b.resize(at_[l].x.size());
+    }
+  }
+
+  SolveReport solve(const std::vector<float>& b, std::vector<float>& x, double residual, int most_iterations,
+                    const Progress& progress) {
+    const CellGraph& graph = grid_.finest();
+    std::vector<float> r(b.size()), p(b.size()), q(b.size());
+    const Sums bb = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
+      for (int l = 0; l < Lanes; ++l) sums[l] += double(b[i * Lanes + l]) * b[i * Lanes + l];
+    });
+    Sums rr = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
+      float acc[Lanes];
+      gather(graph, x.data(), i, acc);
+      for (int l = 0; l < Lanes; ++l) {
+        const float value = b[i * Lanes + l] + acc[l] - graph.diagonal[i] * x[i * Lanes + l];
+        r[i * Lanes + l] = value;
+        sums[l] += double(value) * value;
+      }
+    });
+
+    SolveReport report;
+    std::array<bool, Lanes> open;
+    auto check = [&] {
+      bool any = false;
+      report.residual = 0;
+      for (int l = 0; l < Lanes; ++l) {
+        const double relative = bb[l] > 0 ? std::sqrt(rr[l] / bb[l]) : 0;
+        report.residual = std::max(report.residual, relative);
+        open[l] = relative > residual;
+        any |= open[l];
+      }
+      return any;
+    };
+    Sums rz_before{};
+    while (check() && report.iterations < most_iterations && !progress.cancelled()) {
+      std::vector<float>& z = at_[0].x;
+      cycle(0, r);
+      const Sums rz = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
+        for (int l = 0; l < Lanes; ++l) sums[l] += double(r[i * Lanes + l]) * z[i * Lanes + l];
+      });
+      float beta[Lanes], alpha[Lanes];
+      for (int l = 0; l < Lanes; ++l)
+        beta[l] = open[l] && report.iterations > 0 && rz_before[l] > 0 ? static_cast<float>(rz[l] / rz_before[l]) : 0;
+      for_cells(graph.size(), [&](std::int64_t i) {
+        for (int l = 0; l < Lanes; ++l) p[i * Lanes + l] = z[i * Lanes + l] + beta[l] * p[i * Lanes + l];
+      });
+      const Sums pq = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
+        float acc[Lanes];
+        gather(graph, p.data(), i, acc);
+        for (int l = 0; l < Lanes; ++l) {
+          const float value = graph.diagonal[i] * p[i * Lanes + l] - acc[l];
+          q[i * Lanes + l] = value;
+          sums[l] += double(value) * p[i * Lanes + l];
+        }
+      });
+      for (int l = 0; l < Lanes; ++l) alpha[l] = open[l] && pq[l] > 0 ? static_cast<float>(rz[l] / pq[l]) : 0;
+      rr = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
+        for (int l = 0; l < Lanes; ++l) {
+          x[i * Lanes + l] += alpha[l] * p[i * Lanes + l];
+          const float value = r[i * Lanes + l] -= alpha[l] * q[i * Lanes + l];
+          sums[l] += double(value) * value;
+        }
+      });
+      rz_before = rz;
+      ++report.iterations;
+    }
+    return report;
+  }
+
+ private:
+  struct Vectors {
+    std::vector<float> x, b;
+  };
+
+  template <class Body>
+  static void for_cells(std::int64_t begin, std::int64_t end, const Body& body) {
+    parallel_for(end - begin, kGrain, [&](std::int64_t first, std::int64_t last) {
+      for (std::int64_t i = begin + first; i < begin + last; ++i) body(i);
+    });
+  }
+  template <class Body>
+  static void for_cells(std::int64_t count, const Body& body) {
+    for_cells(0, count, body);
+  }
+  template <class Body>
+  static Sums sum_over(std::int64_t count, const Body& body) {
+    std::vector<Sums> part((count + kGrain - 1) / kGrain, Sums{});
+    parallel_for(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      Sums sums{};
+      for (std::int64_t i = begin; i < end; ++i) body(i, sums);
+      part[begin / kGrain] = sums;
+    });
+    Sums total{};
+    for (const Sums& sums : part)
+      for (int l = 0; l < Lanes; ++l) total[l] += sums[l];
+    return total;
+  }
+
+  // acc = sum over neighbours of conductance x
+  static void gather(const CellGraph& graph, const float* x, std::int64_t i, float (&acc)[Lanes]) {
+    for (int l = 0; l < Lanes; ++l) acc[l] = 0;
+    for (std::int32_t k = graph.first[i], end = graph.first[i + 1]; k < end; ++k) {
+      const float c = graph.conductance[k];
+      const float* from = x + std::int64_t{graph.neighbour[k]} * Lanes;
+      for (int l = 0; l < Lanes; ++l) acc[l] += c * from[l];
+    }
+  }
+
+  void relax(const CellGraph& graph, std::int64_t begin, std::int64_t end, const std::vector<float>& b, std::vector<float>& x) {
+    for_cells(begin, end, [&](std::int64_t i) {
+      float acc[Lanes];
+      gather(graph, x.data(), i, acc);
+      const float scale = 1 / graph.diagonal[i];
+      for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] = (b[i * Lanes + l] + acc[l]) * scale;
+    });
+  }
+
+  // x = M^-1 b on a level, where M is symmetric: one visit of the coarser levels between two mirrored half sweeps.
+  void cycle(size_t level, const std::vector<float>& b) {
+    const Level& here = grid_.levels_[level];
+    const CellGraph& graph = here.graph;
+    std::vector<float>& x = at_[level].x;
+    if (here.parent.empty()) return solve_coarsest(graph, b, x);
+
+    // From x = 0 the first half sweep needs no neighbours.
+    for_cells(graph.red_count, [&](std::int64_t i) {
+      for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] = b[i * Lanes + l] / graph.diagonal[i];
+    });
+    relax(graph, graph.red_count, graph.size(), b, x);
+    visit_coarser(level, b);
+    if (level > 0) {
+      relax(graph, graph.red_count, graph.size(), b, x);
+      relax(graph, 0, graph.red_count, b, x);
+      relax(graph, graph.red_count, graph.size(), b, x);
+      visit_coarser(level, b);
+    }
+    relax(graph, graph.red_count, graph.size(), b, x);
+    relax(graph, 0, graph.red_count, b, x);
+  }
+
+  // After a half sweep over the black cells only the red ones have a residual.
+  void visit_coarser(size_t level, const std::vector<float>& b) {
+    const Level& here = grid_.levels_[level];
+    std::vector<float>& x = at_[level].x;
+    std::vector<float>& coarse_b = at_[level + 1].b;
+    std::fill(coarse_b.begin(), coarse_b.end(), 0.0f);
+    for (std::int64_t i = 0; i < here.graph.red_count; ++i) {
+      float acc[Lanes];
+      gather(here.graph, x.data(), i, acc);
+      float* to = &coarse_b[std::int64_t{here.parent[i]} * Lanes];
+      for (int l = 0; l < Lanes; ++l) to[l] += b[i * Lanes + l] + acc[l] - here.graph.diagonal[i] * x[i * Lanes + l];
+    }
+    cycle(level + 1, coarse_b);
+    const std::vector<float>& correction = at_[level + 1].x;
+    for_cells(here.graph.size(), [&](std::int64_t i) {
+      for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] += correction[std::int64_t{here.parent[i]} * Lanes + l];
+    });
+  }
+
+  void solve_coarsest(const CellGraph& graph, const std::vector<float>& b, std::vector<float>& x) {
+    if (grid_.coarsest_inverse_.empty()) {
+      std::fill(x.begin(), x.end(), 0.0f);
+      for (int sweep = 0; sweep < 8; ++sweep) {
+        relax(graph, 0, graph.red_count, b, x);
+        relax(graph, graph.red_count, graph.size(), b, x);
+      }
+      for (int sweep = 0; sweep < 8; ++sweep) {
+        relax(graph, graph.red_count, graph.size(), b, x);
+        relax(graph, 0, graph.red_count, b, x);
+      }
+      return;
+    }
+    const std::int64_t n = graph.size();
+    for (std::int64_t i = 0; i < n; ++i) {
+      double acc[Lanes] = {};
+      for (std::int64_t j = 0; j < n; ++j)
+        for (int l = 0; l < Lanes; ++l) acc[l] += grid_.coarsest_inverse_[i * n + j] * b[j * Lanes + l];
+      for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] = static_cast<float>(acc[l]);
+    }
+  }
+
+  const Multigrid& grid_;
+  std::vector<Vectors> at_;
+};
+
+SolveReport Multigrid::solve(const std::vector<float>& b, std::vector<float>& x, int lanes, double residual,
+                             int most_iterations, const Progress& progress) const {
+  switch (lanes) {
+    case 1: return Solver<1>(*this).solve(b, x, residual, most_iterations, progress);
+    case 2: return Solver<2>(*this).solve(b, x, residual, most_iterations, progress);
+    case 3: return Solver<3>(*this).solve(b, x, residual, most_iterations, progress);
+    case 4: return Solver<4>(*this).solve(b, x, residual, most_iterations, progress);
+    case 5: return Solver<5>(*this).solve(b, x, residual, most_iterations, progress);
+    case 6: return Solver<6>(*this).solve(b, x, residual, most_iterations, progress);
+    case 7: return Solver<7>(*this).solve(b, x, residual, most_iterations, progress);
+    default: return Solver<8>(*this).solve(b, x, residual, most_iterations, progress);
+  }
+}
+
+}  // namespace limber

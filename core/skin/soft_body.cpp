@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/skin/soft_body.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber {
+
+float conductivity(TissueKind kind) {
+  // W/m/K of living tissue at 37 C over muscle's 0.49.
+  switch (kind) {
+    case TissueKind::Skin: return 0.76f;
+    case TissueKind::Fat: return 0.43f;
+    case TissueKind::Connective: return 0.80f;
+    case TissueKind::Nail: return 0.50f;
+    case TissueKind::Brain: return 1.10f;
+    case TissueKind::Blood: return 1.06f;
+    default: return 1.0f;  // muscle, tendon, cartilage, nerve, vessel, organs: 0.46 to 0.52
+  }
+}
+
+std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
+                                        const Armature& armature) {
+  std::vector<std::uint16_t> held_by(tissue.size(), kSoft);
+  std::vector<bool> has_part(armature.bones.size(), false);
+  for (const auto& part : parts.parts) has_part[part.bone] = true;
+  for (std::int64_t i = 0; i < tissue.size(); ++i)
+    if (parts.part_of[i]) held_by[i] = static_cast<std::uint16_t>(parts.parts[parts.part_of[i] - 1].bone);
+
+  const AffineTransform from_voxel = world_from_voxel(volume.grid), from_world = voxel_from_world(volume.grid);
+  const double voxel = std::max({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
+  std::vector<float> nearest(tissue.size(), -1);  // filled only where axes without a part run
+  for (size_t b = 0; b < armature.bones.size(); ++b) {
+    if (has_part[b]) continue;
+    const Bone& bone = armature.bones[b];
+    // As thick as a slender bone, so that the result does not depend on the spacing, but at least a voxel's diagonal.
+    const double radius = std::max(0.87 * voxel, std::min(0.06 * glm::length(bone.tail - bone.head), 8.0));
+    glm::dvec3 lowest(1e300), highest(-1e300);
+    for (const glm::dvec3& end : {bone.head, bone.tail})
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 at = from_world * (end + radius * glm::dvec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+        lowest = glm::min(lowest, at);
+        highest = glm::max(highest, at);
+      }
+    const glm::ivec3 begin(glm::clamp(glm::floor(lowest), glm::dvec3(0), glm::dvec3(volume.grid.size)));
+    const glm::ivec3 end(glm::clamp(glm::ceil(highest) + 1.0, glm::dvec3(0), glm::dvec3(volume.grid.size)));
+    for (int z = begin.z; z < end.z; ++z)
+      for (int y = begin.y; y < end.y; ++y)
+        for (int x = begin.x; x < end.x; ++x) {
+          const std::int64_t place = tissue.index_of({x, y, z});
+          if (place < 0 || parts.part_of[place]) continue;
+          const auto d = static_cast<float>(distance_to_bone(bone, from_voxel * glm::dvec3(x, y, z)));
+          if (d > radius || (nearest[place] >= 0 && nearest[place] <= d)) continue;
+          nearest[place] = d;
+          held_by[place] = static_cast<std::uint16_t>(b);
+        }
+  }
+  return held_by;
+}
+
+SoftBody::SoftBody(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                   const std::vector<std::uint16_t>& held_by)
+    : volume_(volume), tissue_(tissue), held_by_(held_by), conductivity_(1 << 16, 1.0f) {
+  for (const Tissue& t : tissues.tissues) conductivity_[t.label] = conductivity(t.kind);
+  const glm::dvec3 s = volume.grid.spacing;
+  const glm::dvec3 area_over_distance(s.y * s.z / s.x, s.x * s.z / s.y, s.x * s.y / s.z);
+  const double largest = std::max({area_over_distance.x, area_over_distance.y, area_over_distance.z});
+  for (int axis = 0; axis < 3; ++axis) face_[axis] = static_cast<float>(area_over_distance[axis] / largest);
+}
+
+// A brick and one layer around it: places in the tissue list, -1 for air.
+struct SoftBody::Window {
+  static constexpr int kStep[3] = {1, 10, 100};
+  std::array<std::int32_t, 1000> place;
+  std::array<Label, 1000> label;
+
+  static int at(const glm::ivec3& v) { return (v.x + 1) + 10 * (v.y + 1) + 100 * (v.z + 1); }  // v from the corner
+
+  void look(const SoftBody& body, std::int64_t brick) {
+    const auto& here = body.tissue_.bricks()[brick];
+    place.fill(-1);
+    label.fill(0);
+    body.tissue_.for_each(brick, brick + 1, [&](std::int64_t p, const glm::ivec3& v) {
+      place[at(v - here.corner)] = static_cast<std::int32_t>(p);
+      label[at(v - here.corner)] = body.volume_.at(v);
+    });
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = -1; side <= 8; side += 9)
+        for (int a = 0; a < 8; ++a)
+          for (int b = 0; b < 8; ++b) {
+            glm::ivec3 v;
+            v[axis] = side;
+            v[(axis + 1) % 3] = a;
+            v[(axis + 2) % 3] = b;
+            const glm::ivec3 w = here.corner + v;
+            if (!body.volume_.grid.contains(w)) continue;
+            const Label l = body.volume_.at(w);
+            if (l == 0) continue;
+            label[at(v)] = l;
+            place[at(v)] = static_cast<std::int32_t>(body.tissue_.index_of(w));
+          }
+  }
+};
+
+// Between two soft voxels.
+float SoftBody::face(std::int64_t axis, Label a, Label b) const {
+  const float ka = conductivity_[a], kb = conductivity_[b];
+  return face_[axis] * (ka == kb ? ka : 2 * ka * kb / (ka + kb));
+}
+
+SoftBody::Region SoftBody::region(const std::vector<std::int32_t>& bricks) const {
+  Region region;
+  CellGraph& graph = region.graph;
+  graph.spacing = volume_.grid.spacing;
+  std::vector<std::int32_t> cell_of(tissue_.size(), -1);
+  for (int colour = 0; colour < 2; ++colour) {
+    for (std::int32_t brick : bricks)
+      tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+        if (held_by_[place] != kSoft || ((v.x + v.y + v.z) & 1) != colour) return;
+        cell_of[place] = static_cast<std::int32_t>(region.place.size());
+        region.place.push_back(place);
+        graph.position.push_back(glm::i16vec3(v));
+      });
+    if (colour == 0) graph.red_count = static_cast<std::int32_t>(region.place.size());
+  }
+
+  // Faces are found brick by brick, but a cell's list must lie at its number: count first.
+  const std::int64_t size = graph.size();
+  std::vector<std::array<std::int32_t, 6>> neighbour(size);
+  std::vector<std::array<float, 6>> conductance(size);
+  graph.diagonal.assign(size, 0);
+  graph.first.assign(size + 1, 0);
+  Window window;
+  for (std::int32_t brick : bricks) {
+    window.look(*this, brick);
+    const glm::ivec3 corner = tissue_.bricks()[brick].corner;
+    tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+      const std::int32_t cell = cell_of[place];
+      if (cell < 0) return;
+      const int here = Window::at(v - corner);
+      int count = 0;
+      for (int direction = 0; direction < 6; ++direction) {
+        const int axis = direction >> 1, there = here + (direction & 1 ? Window::kStep[axis] : -Window::kStep[axis]);
+        const std::int32_t other = window.place[there];
+        if (other < 0) continue;
+        const std::uint16_t holder = held_by_[other];
+        if (holder != kSoft) {
+          const float g = 2 * face_[axis] * conductivity_[window.label[here]];
+          graph.diagonal[cell] += g;
+          region.held.push_back({cell, holder, g});
+          continue;
+        }
+        const float g = face(axis, window.label[here], window.label[there]);
+        graph.diagonal[cell] += g;
+        if (cell_of[other] < 0) continue;
+        neighbour[cell][count] = cell_of[other];
+        conductance[cell][count++] = g;
+      }
+      graph.first[cell + 1] = count;
+    });
+  }
+  for (std::int64_t i = 0; i < size; ++i) graph.first[i + 1] += graph.first[i];
+  graph.neighbour.resize(graph.first[size]);
+  graph.conductance.resize(graph.first[size]);
+  for (std::int64_t i = 0; i < size; ++i)
+    for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k) {
+      graph.neighbour[k] = neighbour[i][k - graph.first[i]];
+      graph.conductance[k] = conductance[i][k - graph.first[i]];
+    }
+  return region;
+}
+
+SoftBody::Coarse SoftBody::coarse() const {
+  Coarse coarse;
+  coarse.cell_of_place.assign(tissue_.size(), -1);
+  std::vector<std::int32_t>& cell_of = coarse.cell_of_place;
+  std::vector<glm::i16vec3> position;
+  const std::int64_t bricks = std::ssize(tissue_.bricks());
+
+  // Connected soft voxels of one octant are one cell.
+  Window window;
+  std::array<glm::ivec3, 64> open;
+  for (std::int64_t brick = 0; brick < bricks; ++brick) {
+    const glm::ivec3 corner = tissue_.bricks()[brick].corner;
+    window.look(*this, brick);
+    tissue_.for_each(brick, brick + 1, [&](std::int64_t seed, const glm::ivec3& seed_voxel) {
+      if (held_by_[seed] != kSoft || cell_of[seed] >= 0) return;
+      const auto cell = static_cast<std::int32_t>(position.size());
+      const glm::ivec3 octant = seed_voxel >> 2;
+      position.push_back(glm::i16vec3(octant));
+      coarse.brick.push_back(static_cast<std::int32_t>(brick));
+      cell_of[seed] = cell;
+      int open_count = 0;
+      open[open_count++] = seed_voxel;
+      while (open_count > 0) {
+        const glm::ivec3 v = open[--open_count];
+        for (int direction = 0; direction < 6; ++direction) {
+          glm::ivec3 w = v;
+          w[direction >> 1] += direction & 1 ? 1 : -1;
+          if ((w >> 2) != octant) continue;
+          const std::int32_t place = window.place[Window::at(w - corner)];
+          if (place < 0 || held_by_[place] != kSoft || cell_of[place] >= 0) continue;
+          cell_of[place] = cell;
+          open[open_count++] = w;
+        }
+      }
+    });
+  }
+
+  // Colour 0 first.
+  const auto size = std::ssize(position);
+  CellGraph& graph = coarse.graph;
+  graph.spacing = 4.0 * volume_.grid.spacing;
+  std::vector<std::int32_t> number(size);
+  std::vector<std::int32_t> brick_of(size);
+  for (int colour = 0; colour < 2; ++colour) {
+    for (std::int64_t c = 0; c < size; ++c)
+      if (((position[c].x + position[c].y + position[c].z) & 1) == colour) {
+        number[c] = static_cast<std::int32_t>(graph.position.size());
+        brick_of[number[c]] = coarse.brick[c];
+        graph.position.push_back(position[c]);
+      }
+    if (colour == 0) graph.red_count = static_cast<std::int32_t>(graph.position.size());
+  }
+  coarse.brick = std::move(brick_of);
+  for (std::int32_t& c : cell_of)
+    if (c >= 0) c = number[c];
+
+  // Faces between cells add up; the way between centres is four times as long.
+  struct Link {
+    std::int32_t from, to;
+    float conductance;
+  };
+  std::vector<Link> links;
+  graph.diagonal.assign(size, 0);
+  for (std::int64_t brick = 0; brick < bricks; ++brick) {
+    const glm::ivec3 corner = tissue_.bricks()[brick].corner;
+    window.look(*this, brick);
+    const size_t start = links.size();
+    tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+      const std::int32_t cell = cell_of[place];
+      if (cell < 0) return;
+      const int here = Window::at(v - corner);
+      for (int direction = 0; direction < 6; ++direction) {
+        const int axis = direction >> 1, there = here + (direction & 1 ? Window::kStep[axis] : -Window::kStep[axis]);
+        const std::int32_t other = window.place[there];
+        if (other < 0 || cell_of[other] == cell) continue;
+        if (held_by_[other] != kSoft) {
+          const float g = 0.5f * face_[axis] * conductivity_[window.label[here]];
+          graph.diagonal[cell] += g;
+          coarse.held.push_back({cell, held_by_[other], g});
+        } else {
+          const float g = 0.25f * face(axis, window.label[here], window.label[there]);
+          graph.diagonal[cell] += g;
+          links.push_back({cell, cell_of[other], g});
+        }
+      }
+    });
+    // One entry a pair.
+    std::stable_sort(links.begin() + start, links.end(), [](const Link& a, const Link& b) { return a.from != b.from ? a.from < b.from : a.to < b.to; });
+    size_t kept = start;
+    for (size_t i = start; i < links.size(); ++i) {
+      if (kept > start && links[kept - 1].from == links[i].from && links[kept - 1].to == links[i].to)
+        links[kept - 1].conductance += links[i].conductance;
+      else
+        links[kept++] = links[i];
+    }
+    links.resize(kept);
+  }
+  graph.first.assign(size + 1, 0);
+  for (const Link& link : links) ++graph.first[link.from + 1];
+  for (std::int64_t i = 0; i < size; ++i) graph.first[i + 1] += graph.first[i];
+  std::vector<std::int32_t> at(graph.first.begin(), graph.first.end() - 1);
+  graph.neighbour.resize(links.size());
+  graph.conductance.resize(links.size());
+  for (const Link& link : links) {
+    graph.neighbour[at[link.from]] = link.to;
+    graph.conductance[at[link.from]++] = link.conductance;
+  }
+  return coarse;
+}
+
+}  // namespace limber

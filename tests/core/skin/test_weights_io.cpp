@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/skin/weights_io.h"
+
+#include <cstring>
+#include <fstream>
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "core/skin/heat_diffusion.h"
+#include "tests/core/skin/small_body.h"
+
+using namespace limber;
+using namespace limber::test;
+
+namespace {
+struct Folder {
+  Path path = std::filesystem::temp_directory_path() / ("limber-weights-" + std::to_string(::getpid()));
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() { std::filesystem::remove_all(path); }
+};
+struct Made {
+  SmallBody body = two_bone_bar(6, 16, 4);
+  TissueVoxels tissue{body.volume};
+  SkinWeights weights = diffuse_heat(body.volume, body.tissues, body.armature);
+};
+std::string bytes_of(const Made& made, const Path& folder) {
+  write_weights(made.weights, made.body.volume, made.tissue, folder / "w.nrrd");
+  return read_file(folder / "w.nrrd");
+}
+}  // namespace
+
+TEST_CASE("weights io: what is written is read, also when the rig lists its bones in another order") {
+  const Folder folder;
+  const Made made;
+  write_weights(made.weights, made.body.volume, made.tissue, folder.path / "w.nrrd");
+  CHECK(read_weights(folder.path / "w.nrrd", made.body.volume, made.tissue, made.body.armature).weights == made.weights);
+
+  Armature turned = made.body.armature;
+  std::swap(turned.bones[0], turned.bones[1]);
+  const SkinWeights other = read_weights(folder.path / "w.nrrd", made.body.volume, made.tissue, turned).weights;
+  CHECK(other.bones() == std::vector<std::string>{"Lower", "Upper"});
+  CHECK(other.chunk(0)[0].of(1) == made.weights.chunk(0)[0].of(0));
+}
+
+TEST_CASE("weights io: damaged weights and weights of another volume or rig are refused") {
+  const Folder folder;
+  const Made made;
+  const std::string whole = bytes_of(made, folder.path);
+  auto parse = [&](const std::string& bytes) { return parse_weights(bytes, "w.nrrd", made.body.volume, made.tissue, made.body.armature); };
+  CHECK(parse(whole) == made.weights);
+  CHECK_THROWS_AS(parse(whole.substr(0, whole.size() - 1)), Error);
+  CHECK_THROWS_AS(parse(whole + "x"), Error);
+  CHECK_THROWS_AS(parse(whole.substr(0, 60)), Error);
+  CHECK_THROWS_AS(parse(""), Error);
+
+  std::string sum = whole, bone = whole;
+  sum[sum.size() - 8] ^= 1;        // the last voxel's largest weight
+  bone[bone.size() - 16 + 1] = 9;  // its bone
+  CHECK_THROWS_WITH_AS(parse(sum), doctest::Contains("sum to"), Error);
+  CHECK_THROWS_WITH_AS(parse(bone), doctest::Contains("belongs to bone"), Error);
+
+  LabelVolume less = made.body.volume;
+  less.at({2, 2, 2}) = 0;
+  CHECK_THROWS_WITH_AS(parse_weights(whole, "w.nrrd", less, TissueVoxels(less), made.body.armature), doctest::Contains("another volume"), Error);
+  Armature renamed = made.body.armature;
+  renamed.bones[1].name = "Tail";
+  CHECK_THROWS_WITH_AS(parse_weights(whole, "w.nrrd", made.body.volume, made.tissue, renamed), doctest::Contains("Lower"), Error);
+}
