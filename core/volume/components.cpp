@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/volume/components.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+using Run = Components::Run;
+
+std::vector<Run> runs_of_slice(const LabelVolume& volume, int z, std::int64_t* runs_in_row) {
+  std::vector<Run> runs;
+  const glm::ivec3 size = volume.grid.size;
+  for (int y = 0; y < size.y; ++y) {
+    const Label* row = &volume.voxels[volume.grid.index({0, y, z})];
+    const std::size_t before = runs.size();
+    for (int x = 0; x < size.x;) {
+      const int begin = x;
+      const Label label = row[x];
+      while (x < size.x && row[x] == label) ++x;
+      if (label != 0) runs.push_back({begin, x, label, 0});
+    }
+    runs_in_row[y] = static_cast<std::int64_t>(runs.size() - before);
+  }
+  return runs;
+}
+
+std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t run) {
+  while (parent[run] != run) run = parent[run] = parent[parent[run]];
+  return run;
+}
+
+// The earlier root wins, so that a component's root is its first run.
+void join(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
+  a = root_of(parent, a);
+  b = root_of(parent, b);
+  if (a != b) parent[std::max(a, b)] = std::min(a, b);
+}
+}  // namespace
+
+Components connected_components(const LabelVolume& volume) {
+  const glm::ivec3 size = volume.grid.size;
+  const std::int64_t rows = std::int64_t{size.y} * size.z;
+  Components result;
+  result.first_run.assign(rows + 1, 0);
+  std::vector<std::vector<Run>> of_slice(size.z);
+  parallel_for(size.z, 4, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t z = begin; z < end; ++z)
+      of_slice[z] = runs_of_slice(volume, static_cast<int>(z), &result.first_run[1 + z * size.y]);
+  });
+  std::partial_sum(result.first_run.begin(), result.first_run.end(), result.first_run.begin());
+  if (result.first_run.back() > INT32_MAX)
+    throw Error("the volume is too intricate to find its connected pieces", std::to_string(result.first_run.back()) + " runs",
+                "use a coarser spacing");
+  result.runs.reserve(result.first_run.back());
+  for (auto& runs : of_slice) {
+    result.runs.insert(result.runs.end(), runs.begin(), runs.end());
+    std::vector<Run>().swap(runs);
+  }
+
+  std::vector<std::int32_t> parent(result.runs.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto join_rows = [&](std::int64_t row, std::int64_t other) {
+    std::int64_t a = result.first_run[row], b = result.first_run[other];
+    const std::int64_t a_end = result.first_run[row + 1], b_end = result.first_run[other + 1];
+    const auto join_touching = [&](std::int64_t i, std::int64_t k) {
+      const Run &first = result.runs[i], &second = result.runs[k];
+      // Runs that only meet at a corner touch too, hence <=.
+      if (first.label == second.label && first.begin <= second.end && second.begin <= first.end)
+        join(parent, static_cast<std::int32_t>(i), static_cast<std::int32_t>(k));
+    };
+    while (a < a_end && b < b_end) {
+      join_touching(a, b);
+      const std::int32_t a_stops = result.runs[a].end, b_stops = result.runs[b].end;
+      // Of two that stop together each may still meet the other's follower at a corner.
+      if (a_stops == b_stops && a + 1 < a_end) join_touching(a + 1, b);
+      if (a_stops < b_stops)
+        ++a;
+      else
+        ++b;
+    }
+  };
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y) {
+      const std::int64_t row = y + std::int64_t{size.y} * z;
+      if (y > 0) join_rows(row, row - 1);
+      if (z > 0)
+        for (int k = -1; k <= 1; ++k)
+          if (y + k >= 0 && y + k < size.y) join_rows(row, row - size.y + k);
+    }
+
+  for (std::size_t i = 0; i < result.runs.size(); ++i) {
+    const std::int32_t root = root_of(parent, static_cast<std::int32_t>(i));
+    if (root == static_cast<std::int32_t>(i)) {
+      result.runs[i].component = static_cast<std::int32_t>(result.voxels.size());
+      result.voxels.push_back(0);
+    } else {
+      result.runs[i].component = result.runs[root].component;
+    }
+    result.voxels[result.runs[i].component] += result.runs[i].end - result.runs[i].begin;
+  }
+  return result;
+}
+
+}  // namespace limber

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/volume/phantom.h"
+
+#include <algorithm>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+using namespace limber;
+
+namespace {
+// Number of tissue voxels other than skin and nail that touch air, by faces, edges or corners.
+std::int64_t leaks(const Phantom& phantom) {
+  const auto kinds = phantom.tissues.kinds();
+  const LabelVolume& volume = phantom.volume;
+  const glm::ivec3 size = volume.grid.size;
+  std::int64_t count = 0;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
+        const Label label = volume.at({x, y, z});
+        if (label == 0 || kinds[label] == TissueKind::Skin || kinds[label] == TissueKind::Nail) continue;
+        bool air = false;
+        for (int k = -1; k <= 1; ++k)
+          for (int j = -1; j <= 1; ++j)
+            for (int i = -1; i <= 1; ++i) air |= volume.at_or_air({x + i, y + j, z + k}) == 0;
+        count += air;
+      }
+  return count;
+}
+
+std::set<std::string> names_present(const Phantom& phantom) {
+  std::set<std::string> names;
+  for (const Tissue& tissue : phantom.tissues.tissues) names.insert(tissue.name);
+  return names;
+}
+}  // namespace
+
+TEST_CASE("the arm phantom is closed by skin at every spacing") {
+  for (double spacing : {1.5, 2.0, 3.0, 4.0, 7.0, 10.0}) {
+    CAPTURE(spacing);
+    CHECK(leaks(make_arm_phantom(spacing)) == 0);
+  }
+}
+
+TEST_CASE("the arm phantom has the same tissues and volume at 2, 3 and 4 mm") {
+  const Phantom fine = make_arm_phantom(2), middle = make_arm_phantom(3), coarse = make_arm_phantom(4);
+  CHECK(names_present(fine) == names_present(middle));
+  CHECK(names_present(fine) == names_present(coarse));
+  const auto litres = [](const Phantom& phantom) {
+    const auto& voxels = phantom.volume.voxels;
+    return (std::ssize(voxels) - std::count(voxels.begin(), voxels.end(), Label{0})) * phantom.volume.grid.voxel_volume() / 1e6;
+  };
+  CHECK(litres(middle) == doctest::Approx(litres(fine)).epsilon(0.01));
+  CHECK(litres(coarse) == doctest::Approx(litres(fine)).epsilon(0.01));
+}
+
+TEST_CASE("marrow of the phantoms lies inside bone") {
+  const Phantom phantom = make_arm_phantom(2);
+  const auto kinds = phantom.tissues.kinds();
+  const LabelVolume& volume = phantom.volume;
+  std::int64_t exposed = 0, marrow = 0;
+  const glm::ivec3 size = volume.grid.size;
+  for (int z = 1; z + 1 < size.z; ++z)
+    for (int y = 1; y + 1 < size.y; ++y)
+      for (int x = 1; x + 1 < size.x; ++x) {
+        if (kinds[volume.at({x, y, z})] != TissueKind::Marrow) continue;
+        ++marrow;
+        for (const glm::ivec3& step : {glm::ivec3(1, 0, 0), {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})
+          exposed += !is_bone(kinds[volume.at(glm::ivec3(x, y, z) + step)]);
+      }
+  CHECK(marrow > 1000);
+  CHECK(exposed == 0);
+}
+
+TEST_CASE("phantoms do not depend on the number of threads") {
+  LabelVolume one;
+  {
+    const ThreadCount limit(1);
+    one = make_arm_phantom(4).volume;
+  }
+  const ThreadCount limit(3);
+  const Phantom phantom = make_arm_phantom(4);
+  CHECK(phantom.volume.grid == one.grid);
+  CHECK(phantom.volume.voxels == one.voxels);
+}
+
+TEST_CASE("a phantom's rig is sound and every bone end lies in its tissue") {
+  const Phantom phantom = make_arm_phantom(2);
+  CHECK_NOTHROW(check_armature(phantom.armature, "phantom"));
+  const auto voxel = voxel_from_world(phantom.volume.grid);
+  for (const Bone& bone : phantom.armature.bones) {
+    CAPTURE(bone.name);
+    CHECK(phantom.volume.at_or_air(glm::ivec3(glm::round(voxel * bone.head))) != 0);
+    CHECK(phantom.volume.at_or_air(glm::ivec3(glm::round(voxel * (0.1 * bone.head + 0.9 * bone.tail)))) != 0);
+  }
+}
+
+TEST_CASE("a phantom at a spacing that makes no sense is refused") {
+  CHECK_THROWS_AS(make_arm_phantom(0), Error);
+  CHECK_THROWS_AS(make_arm_phantom(-1), Error);
+  CHECK_THROWS_AS(make_arm_phantom(std::numeric_limits<double>::quiet_NaN()), Error);
+  CHECK_THROWS_AS(make_arm_phantom(11), Error);
+}
