@@ -39,9 +39,10 @@ struct DeformReport {
   std::vector<std::int64_t> overlap_by_label;  // [65536], rest voxels that lost their place, by label
   struct BoneResidual {
     std::string name;
-    double rigid_residual_mm = 0;         // largest distance of a painted bone voxel's map from the best rigid motion
+    double rigid_residual_mm = 0;         // largest distance of a bone voxel from where the bone's motion takes its rest point
+    std::int64_t voxels = 0;              // posed bone tissue voxels of this rig bone
   };
-  std::vector<BoneResidual> bones;
+  std::vector<BoneResidual> bones;        // those with bone tissue
   double seconds_deform = 0, seconds_rasterize = 0;
 };
 

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/depth.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kBrick = TissueVoxels::kBrick;
+constexpr int kBrickVoxels = kBrick * kBrick * kBrick;
+
+// One run of tissue along a line, with air (height zero) just before and just after it. Replaces every height f[i] by the
+// least of f[j] + (i - j)^2 spacing^2.
+class LowerEnvelope {
+ public:
+  void apply(float* f, int count, double squared_spacing) {
+    place_.clear();
+    height_.clear();
+    from_.clear();
+    push(-1, 0, squared_spacing);
+    for (int i = 0; i < count; ++i)
+      if (f[i] < std::numeric_limits<float>::max()) push(i, f[i], squared_spacing);
+    push(count, 0, squared_spacing);
+    size_t k = 0;
+    for (int i = 0; i < count; ++i) {
+      while (k + 1 < place_.size() && from_[k + 1] <= i) ++k;
+      f[i] = static_cast<float>(height_[k] + squared_spacing * (i - place_[k]) * (i - place_[k]));
+    }
+  }
+
+ private:
+  // A parabola at `place`, right of all others; those it lies below everywhere from their own start on go.
+  void push(int place, double height, double squared_spacing) {
+    double from = -std::numeric_limits<double>::infinity();
+    while (!place_.empty()) {
+      const int last = place_.back();
+      from = (height - height_.back()) / (2 * squared_spacing * (place - last)) + 0.5 * (place + last);
+      if (from > from_.back()) break;
+      place_.pop_back();
+      height_.pop_back();
+      from_.pop_back();
+    }
+    place_.push_back(place);
+    height_.push_back(height);
+    from_.push_back(from);
+  }
+
+  std::vector<int> place_;
+  std::vector<double> height_, from_;
+};
+
+}  // namespace
+
+TissueDepth::TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing)
+    : tissue_(&tissue), depth_(tissue.bricks().size() * kBrickVoxels) {
+  for (size_t b = 0; b < tissue.bricks().size(); ++b)
+    for (int i = 0; i < kBrickVoxels; ++i)
+      depth_[b * kBrickVoxels + i] = tissue.bricks()[b].mask[i >> 6] >> (i & 63) & 1 ? std::numeric_limits<float>::max() : 0;
+  for (int axis = 0; axis < 3; ++axis) pass(axis, spacing[axis]);
+  for (float& d : depth_) d = std::sqrt(d);
+}
+
+// Columns of bricks along the axis, cut where a brick has no tissue; 64 lines in each.
+void TissueDepth::pass(int axis, double spacing) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const glm::ivec3 bricks = tissue_->brick_grid();
+  const int strides[] = {1, kBrick, kBrick * kBrick};
+  parallel_for(std::int64_t{bricks[u]} * bricks[v], 4, [&](std::int64_t begin, std::int64_t end) {
+    LowerEnvelope envelope;
+    std::vector<int> column;
+    std::vector<float> line;
+    auto lines = [&] {
+      line.resize(column.size() * kBrick);
+      for (int l = 0; l < kBrick * kBrick && !column.empty(); ++l) {
+        const int place = (l % kBrick) * strides[u] + (l / kBrick) * strides[v];
+        for (size_t i = 0; i < line.size(); ++i)
+          line[i] = depth_[std::int64_t{column[i / kBrick]} * kBrickVoxels + place + int(i % kBrick) * strides[axis]];
+        for (size_t i = 0; i < line.size();) {
+          size_t stop = i;
+          while (stop < line.size() && line[stop] > 0) ++stop;
+          if (stop > i) envelope.apply(&line[i], static_cast<int>(stop - i), spacing * spacing);
+          i = stop + 1;
+        }
+        for (size_t i = 0; i < line.size(); ++i)
+          depth_[std::int64_t{column[i / kBrick]} * kBrickVoxels + place + int(i % kBrick) * strides[axis]] = line[i];
+      }
+      column.clear();
+    };
+    for (auto c = begin; c < end; ++c) {
+      glm::ivec3 at(0);
+      at[u] = static_cast<int>(c % bricks[u]);
+      at[v] = static_cast<int>(c / bricks[u]);
+      for (; at[axis] < bricks[axis]; ++at[axis]) {
+        const int brick = tissue_->brick_at(at * kBrick);
+        if (brick >= 0)
+          column.push_back(brick);
+        else
+          lines();
+      }
+      lines();
+    }
+  });
+}
+
+float TissueDepth::at_voxel(const glm::ivec3& voxel) const {
+  if (voxel.x < 0 || voxel.y < 0 || voxel.z < 0 || glm::any(glm::greaterThanEqual(voxel, tissue_->grid_size()))) return 0;
+  const int brick = tissue_->brick_at(voxel);
+  if (brick < 0) return 0;
+  return depth_[std::int64_t{brick} * kBrickVoxels + (voxel.x & 7) + 8 * (voxel.y & 7) + 64 * (voxel.z & 7)];
+}
+
+double TissueDepth::operator()(const glm::dvec3& rest) const {
+  const glm::dvec3 low = glm::floor(rest), f = rest - low;
+  const glm::ivec3 v(low);
+  double depth = 0;
+  for (int k = 0; k < 8; ++k) {
+    const glm::ivec3 corner(k & 1, k >> 1 & 1, k >> 2);
+    const double share = (corner.x ? f.x : 1 - f.x) * (corner.y ? f.y : 1 - f.y) * (corner.z ? f.z : 1 - f.z);
+    if (share > 0) depth += share * at_voxel(v + corner);
+  }
+  return depth;
+}
+
+}  // namespace limber

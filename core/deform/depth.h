@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How deep a rest point lies below air: exact Euclidean distance from every tissue voxel's centre to the nearest air voxel's
+// (everything outside the grid is air), interpolated between centres, so that it is continuous. It decides folds: of two
+// places of the body that come to lie in one voxel the deeper stays, and the cut runs where both are equally deep.
+//
+// One pass per axis, lower envelopes of parabolas [Felzenszwalb & Huttenlocher 2012], over tissue bricks only: air has
+// distance zero, so every run of tissue along a line is a problem of its own, and the cost is linear in tissue.
+#pragma once
+
+#include <vector>
+
+#include "core/volume/tissue_voxels.h"
+
+namespace limber {
+
+class TissueDepth {
+ public:
+  // Keeps a reference to `tissue`.    spacing  mm
+  TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing);
+
+  float at_voxel(const glm::ivec3& voxel) const;     // mm, 0 in air and outside
+  double operator()(const glm::dvec3& rest) const;   // mm, trilinear; voxel coordinates
+
+ private:
+  void pass(int axis, double spacing);
+
+  const TissueVoxels* tissue_;
+  std::vector<float> depth_;  // 512 per tissue brick; squared while the passes run
+};
+
+}  // namespace limber

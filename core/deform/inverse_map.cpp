@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/inverse_map.h"
+
+#include <cmath>
+#include <map>
+
+namespace limber {
+
+namespace {
+
+glm::ivec3 voxel_of(std::uint32_t cell, const glm::ivec3& size) {
+  return {int(cell % size.x), int(cell / size.x % size.y), int(cell / size.x / size.y)};
+}
+
+bool are_neighbours(const glm::ivec3& a, const glm::ivec3& b) {
+  return glm::all(glm::lessThanEqual(glm::abs(a - b), glm::ivec3(1)));
+}
+
+// Writes claims into a map by the rules of the head page.
+class Claims {
+ public:
+  Claims(InverseMap& map, const LabelVolume& volume, const std::vector<int>& priority, const TissueDepth* depth)
+      : map_(map), volume_(volume), priority_(priority), depth_(depth) {}
+
+  void claim(std::uint32_t cell, const glm::ivec3& rest_voxel, const CellClaim& claim) {
+    const std::int64_t at = map_.index(claim.voxel);
+    const std::uint32_t holder = map_.cell[at];
+    bool wins = true;
+    if (holder != InverseMap::kNoCell) {
+      wins = is_better(cell, claim, at);
+      if (!are_neighbours(rest_voxel, voxel_of(holder, volume_.grid.size))) {
+        map_.flags[at] |= InverseMap::kOverlap;
+        map_.lost.push_back(volume_.voxels[wins ? holder : cell]);
+      }
+    }
+    if (!wins) return;
+    map_.cell[at] = cell;
+    map_.rest[at] = claim.rest;
+    map_.posed_per_rest[at] = static_cast<float>(claim.posed_per_rest);
+    map_.flags[at] = (map_.flags[at] & ~InverseMap::kInverted) | (claim.posed_per_rest < 0 ? InverseMap::kInverted : 0);
+  }
+
+ private:
+  bool is_better(std::uint32_t cell, const CellClaim& claim, std::int64_t at) const {
+    const bool inverted = claim.posed_per_rest < 0, holder_inverted = map_.flags[at] & InverseMap::kInverted;
+    if (inverted != holder_inverted) return holder_inverted;
+    const std::uint32_t holder = map_.cell[at];
+    const int mine = priority_[volume_.voxels[cell]], theirs = priority_[volume_.voxels[holder]];
+    if (mine != theirs) return mine > theirs;
+    if (depth_) {
+      const double my_depth = (*depth_)(glm::vec3(claim.rest)), their_depth = (*depth_)(map_.rest[at]);
+      if (my_depth != their_depth) return my_depth > their_depth;
+    }
+    return cell < holder;
+  }
+
+  InverseMap& map_;
+  const LabelVolume& volume_;
+  const std::vector<int>& priority_;
+  const TissueDepth* depth_;
+};
+
+VoxelRange voxels_of(const PosedLattice::FixedBox& box) { return {(box.low + (kFixedOne - 1)) >> 16, box.high >> 16}; }
+
+}  // namespace
+
+void InverseMap::reset(const VoxelRange& new_range) {
+  range = new_range;
+  const glm::ivec3 size = range.high - range.low + 1;
+  const size_t voxels = size_t(size.x) * size.y * size.z;
+  rest.resize(voxels);
+  posed_per_rest.resize(voxels);
+  cell.assign(voxels, kNoCell);
+  bone.assign(voxels, kNoBone);
+  flags.assign(voxels, 0);
+  lost.clear();
+}
+
+void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::vector<std::int64_t>& bricks,
+                     const std::vector<int>& priority, const TissueDepth* depth) {
+  const TissueVoxels& tissue = lattice.tissue();
+  const Grid& grid = lattice.volume().grid;
+  Claims claims(map, lattice.volume(), priority, depth);
+  PosedLattice::Corners room;
+  for (std::int64_t brick : bricks) {
+    const VoxelRange reach = intersect(voxels_of(lattice.bounds(brick)), map.range);
+    if (reach.empty()) continue;
+    const PosedLattice::Corners& corners = lattice.corners(brick, room);
+    const glm::ivec3 first = tissue.bricks()[brick].corner;
+    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+      const glm::ivec3 v = voxel - first;
+      std::array<FixedPoint, 8> corner;
+      for (int i = 0; i < 8; ++i) corner[i] = corners[PosedLattice::place(v.x + (i & 1), v.y + (i >> 1 & 1), v.z + (i >> 2))];
+      const VoxelRange range = intersect(voxels_in_box(corner), reach);
+      if (range.empty()) return;
+      const auto cell = static_cast<std::uint32_t>(grid.index(voxel));
+      PosedCell(corner, voxel).rasterize(range, [&](const CellClaim& claim) { claims.claim(cell, voxel, claim); });
+    });
+  }
+}
+
+RigidBones::RigidBones(const PosedLattice& lattice, const SkinWeights& weights, const LabelSet& is_bone,
+                       const std::vector<RigidTransform>& posed_from_rest)
+    : lattice_(&lattice), weights_(&weights), is_bone_(&is_bone) {
+  const Grid& grid = lattice.volume().grid;
+  const AffineTransform world = world_from_voxel(grid), voxel = voxel_from_world(grid);
+  auto shift = [&](const RigidTransform& move) {
+    const glm::dmat3 turn = glm::mat3_cast(move.rotation) - glm::dmat3(1);
+    return AffineTransform{voxel.linear * turn * world.linear, voxel.linear * (turn * world.offset + move.translation)};
+  };
+  for (const RigidTransform& posed : posed_from_rest) {
+    posed_shift_.push_back(shift(posed));
+    rest_shift_.push_back(shift(inverse(posed)));
+  }
+  find_pieces();
+}
+
+void RigidBones::find_pieces() {
+  const TissueVoxels& tissue = lattice_->tissue();
+  const LabelVolume& volume = lattice_->volume();
+  for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
+    std::map<int, VoxelRange> ranges;
+    const std::int64_t first = tissue.bricks()[brick].first;
+    tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+      if (!(*is_bone_)[volume.at(v)]) return;
+      const int bone = weights_->chunk(brick)[place - first].bone[0];
+      auto [range, is_new] = ranges.try_emplace(bone, VoxelRange{v, v});
+      range->second = {glm::min(range->second.low, v), glm::max(range->second.high, v)};
+    });
+    for (const auto& [bone, range] : ranges) {
+      const VoxelRange reach{range.low - 1, range.high + 1};
+      const auto [low, high] = posed_box(bone, range);
+      const auto [lowest, highest] = posed_box(bone, reach);
+      pieces_.push_back({bone, reach, {glm::ivec3(glm::floor(lowest)), glm::ivec3(glm::ceil(highest))},
+                         {glm::ivec3(glm::ceil(low)), glm::ivec3(glm::floor(high))}});
+    }
+  }
+}
+
+// Of the corners of the voxels.
+std::pair<glm::dvec3, glm::dvec3> RigidBones::posed_box(int bone, const VoxelRange& voxels) const {
+  glm::dvec3 low(INFINITY), high(-INFINITY);
+  for (int i = 0; i < 8; ++i) {
+    const glm::dvec3 rest(i & 1 ? voxels.high.x + 0.5 : voxels.low.x - 0.5, i & 2 ? voxels.high.y + 0.5 : voxels.low.y - 0.5,
+                          i & 4 ? voxels.high.z + 0.5 : voxels.low.z - 0.5);
+    const glm::dvec3 posed = lattice_->output().from_rest(rest + posed_shift_[bone] * rest);
+    low = glm::min(low, posed);
+    high = glm::max(high, posed);
+  }
+  return {low, high};
+}
+
+glm::dvec3 RigidBones::rest_point(int bone, const glm::dvec3& posed) const {
+  const glm::dvec3 at = lattice_->output().to_rest(posed);
+  return at + rest_shift_[bone] * at;
+}
+
+double RigidBones::residual(int bone, const glm::dvec3& rest, const glm::dvec3& posed) const {
+  const glm::dvec3 off = rest + posed_shift_[bone] * rest - lattice_->output().to_rest(posed);
+  return glm::length(off * lattice_->volume().grid.spacing);
+}
+
+int RigidBones::owner(const glm::ivec3& voxel) const {
+  if (!lattice_->volume().grid.contains(voxel) || !(*is_bone_)[lattice_->volume().at(voxel)]) return -1;
+  const TissueVoxels& tissue = lattice_->tissue();
+  const int brick = tissue.brick_at(voxel);
+  return weights_->chunk(brick)[tissue.index_of(voxel) - tissue.bricks()[brick].first].bone[0];
+}
+
+bool RigidBones::has(int bone, const glm::dvec3& rest, const LabelSampler& sampler, bool nearest) const {
+  const glm::ivec3 voxel(glm::floor(rest + 0.5));
+  const Label label = nearest ? sampler.nearest(rest) : sampler.tissue(rest);
+  if (!(*is_bone_)[label]) return false;
+  if (const int own = owner(voxel); own >= 0) return own == bone;
+
+  // Bone by its membership, though the nearest voxel is not: the nearest bone voxel around decides.
+  double least = INFINITY;
+  int found = -1;
+  for (int k = -1; k <= 1; ++k)
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i) {
+        const glm::ivec3 v = voxel + glm::ivec3(i, j, k);
+        const glm::dvec3 off = (glm::dvec3(v) - rest) * lattice_->volume().grid.spacing;
+        const double squared_distance = glm::dot(off, off);
+        if (squared_distance >= least) continue;
+        if (const int own = owner(v); own >= 0) {
+          least = squared_distance;
+          found = own;
+        }
+      }
+  return found == bone;
+}
+
+void RigidBones::paint(InverseMap& map, const std::vector<std::int64_t>& pieces, const LabelSampler& sampler, bool nearest,
+                       const TissueDepth* depth) const {
+  for (std::int64_t piece : pieces) {
+    const int bone = pieces_[piece].bone;
+    const VoxelRange range = intersect(pieces_[piece].posed, map.range);
+    const glm::dvec3 low = glm::dvec3(pieces_[piece].rest.low) - 0.5, high = glm::dvec3(pieces_[piece].rest.high) + 0.5;
+    for (int z = range.low.z; z <= range.high.z; ++z)
+      for (int y = range.low.y; y <= range.high.y; ++y)
+        for (int x = range.low.x; x <= range.high.x; ++x) {
+          const glm::dvec3 rest = rest_point(bone, {x, y, z});
+          if (glm::any(glm::lessThan(rest, low)) || glm::any(glm::greaterThan(rest, high))) continue;
+          const std::int64_t at = map.index({x, y, z});
+          const int holder = map.bone[at];
+          if (holder == bone || !has(bone, rest, sampler, nearest)) continue;
+          if (holder != InverseMap::kNoBone) {
+            map.flags[at] |= InverseMap::kBoneOverlap;
+            const double mine = depth ? (*depth)(rest) : 0, theirs = depth ? (*depth)(map.rest[at]) : 0;
+            if (mine < theirs || (mine == theirs && bone > holder)) continue;
+          }
+          map.bone[at] = static_cast<std::uint16_t>(bone);
+          map.rest[at] = rest;
+          map.posed_per_rest[at] = 1;
+        }
+  }
+}
+
+}  // namespace limber

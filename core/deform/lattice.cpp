@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kFurthest = 32000;                    // output voxels from the base; fixed point holds 32 768
+constexpr std::int64_t kKeptBytes = std::int64_t{48} << 20;  // all corners of a limb, not those of a body
+constexpr int kHalo = TissueVoxels::kBrick + 2;        // a brick and one voxel around it
+constexpr int kHaloCount = kHalo * kHalo * kHalo;
+
+// Per bone, the weights of a brick's voxels and of those around it, summed over the eight voxels around each corner.
+class CornerWeights {
+ public:
+  CornerWeights(const TissueVoxels& tissue, const SkinWeights& weights, std::int64_t brick)
+      : slot_of_(weights.bones().size(), -1) {
+    const glm::ivec3 corner = tissue.bricks()[brick].corner;
+    for (int k = -1; k <= 1; ++k)
+      for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) {
+          const glm::ivec3 step(i, j, k), at = corner + step * TissueVoxels::kBrick;
+          if (at.x < 0 || at.y < 0 || at.z < 0 || glm::any(glm::greaterThanEqual(at, tissue.grid_size()))) continue;
+          const int neighbour = tissue.brick_at(at);
+          if (neighbour >= 0) gather(tissue.bricks()[neighbour], weights.chunk(neighbour), step);
+        }
+    sum_over_corners();
+    order_.resize(bones_.size());
+    for (size_t s = 0; s < order_.size(); ++s) order_[s] = static_cast<int>(s);
+    std::sort(order_.begin(), order_.end(), [&](int a, int b) { return bones_[a] < bones_[b]; });
+  }
+
+  // Influences of corner (i, j, k) in rising bone order; none where no tissue is around it.
+  std::span<const BoneWeight> at(int i, int j, int k) {
+    influences_.clear();
+    const int here = i + kHalo * (j + kHalo * k);
+    for (int s : order_)
+      if (const std::uint32_t sum = sums_[s * kHaloCount + here]) influences_.push_back({bones_[s], double(sum)});
+    return influences_;
+  }
+
+ private:
+  // Voxels 0..7 of the brick itself, the last layer of a brick below, the first of one above.
+  static glm::ivec3 first_of(const glm::ivec3& step) { return glm::ivec3(glm::lessThan(step, glm::ivec3(0))) * 7; }
+  static glm::ivec3 last_of(const glm::ivec3& step) { return 7 - glm::ivec3(glm::greaterThan(step, glm::ivec3(0))) * 7; }
+
+  void gather(const TissueVoxels::Brick& brick, const SkinWeights::Chunk& chunk, const glm::ivec3& step) {
+    const glm::ivec3 first = first_of(step), last = last_of(step);
+    const unsigned columns = (0xffu >> (7 - last.x)) & (0xffu << first.x);
+    int before = 0;  // tissue voxels of earlier slices
+    for (int z = 0; z <= last.z; before += std::popcount(brick.mask[z]), ++z) {
+      if (z < first.z) continue;
+      for (int y = first.y; y <= last.y; ++y) {
+        const unsigned row = brick.mask[z] >> (8 * y) & 0xff;
+        const int place = before + std::popcount(brick.mask[z] & ((std::uint64_t{1} << (8 * y)) - 1));
+        for (unsigned bits = row & columns; bits; bits &= bits - 1) {
+          const int x = std::countr_zero(bits);
+          const glm::ivec3 v = glm::ivec3(x, y, z) + step * TissueVoxels::kBrick + 1;
+          add(chunk[place + std::popcount(row & ((1u << x) - 1))], v.x + kHalo * (v.y + kHalo * v.z));
+        }
+      }
+    }
+  }
+
+  void add(const Influence& influence, int here) {
+    for (int i = 0; i < 4 && influence.weight[i]; ++i) {
+      int& slot = slot_of_[influence.bone[i]];
+      if (slot < 0) {
+        slot = static_cast<int>(bones_.size());
+        bones_.push_back(influence.bone[i]);
+        sums_.resize(sums_.size() + kHaloCount, 0);
+      }
+      sums_[slot * kHaloCount + here] += influence.weight[i];
+    }
+  }
+
+  // Box sums axis by axis, in place. The last column, row and slice come out meaningless and are never read.
+  void sum_over_corners() {
+    for (size_t slot = 0; slot < bones_.size(); ++slot) {
+      std::uint32_t* sum = &sums_[slot * kHaloCount];
+      for (int stride : {1, kHalo, kHalo * kHalo})
+        for (int i = 0; i + stride < kHaloCount; ++i) sum[i] += sum[i + stride];
+    }
+  }
+
+  std::vector<int> slot_of_, bones_, order_;
+  std::vector<std::uint32_t> sums_;
+  std::vector<BoneWeight> influences_;
+};
+
+}  // namespace
+
+VoxelRange intersect(const VoxelRange& a, const VoxelRange& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
+
+PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+                           const std::vector<RigidTransform>& posed_from_rest, Blend blend, const glm::dvec3& ratio,
+                           Progress& progress)
+    : volume_(&volume), tissue_(&tissue), weights_(&weights), world_from_voxel_(world_from_voxel(volume.grid)),
+      voxel_from_world_(voxel_from_world(volume.grid)), bones_(skin_transforms(posed_from_rest)), blend_(blend),
+      output_{ratio} {
+  const std::int64_t count = std::ssize(tissue.bricks());
+  bounds_.resize(count);
+  if (count * std::int64_t{sizeof(Corners)} <= kKeptBytes) kept_.resize(count);
+  if (count == 0) return;
+  choose_base();
+  progress.update("pose", 0);
+  parallel_for(count, 16, [&](std::int64_t begin, std::int64_t end) {
+    if (progress.cancelled()) throw Cancelled();
+    Corners room;
+    for (auto brick = begin; brick < end; ++brick) bounds_[brick] = compute(brick, kept_.empty() ? room : kept_[brick]);
+  });
+  progress.update("pose", 1);
+}
+
+const PosedLattice::Corners& PosedLattice::corners(std::int64_t brick, Corners& room) const {
+  if (!kept_.empty()) return kept_[brick];
+  compute(brick, room);
+  return room;
+}
+
+// Where the first tissue voxel's bone carries it.
+void PosedLattice::choose_base() {
+  glm::ivec3 voxel(0);
+  bool found = false;
+  tissue_->for_each(0, 1, [&](std::int64_t, const glm::ivec3& v) {
+    if (!found) voxel = v;
+    found = true;
+  });
+  const BoneWeight influence{weights_->chunk(0).front().bone[0], 1};
+  const glm::dvec3 world = world_from_voxel_ * glm::dvec3(voxel);
+  const glm::dvec3 moved = blend_point(blend_, bones_, {&influence, 1}, world) - world;
+  const glm::dvec3 at = output_.from_rest(glm::dvec3(voxel) + voxel_from_world_.linear * moved);
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(std::abs(at[axis]) < 1e9))
+      throw Error("the pose carries the tissue too far away", "bone " + weights_->bones()[influence.bone],
+                  "check the root translation");
+  output_.base = glm::ivec3(glm::floor(at + 0.5));
+}
+
+FixedPoint PosedLattice::posed(const glm::ivec3& corner, std::span<const BoneWeight> influences) const {
+  const glm::dvec3 rest = glm::dvec3(corner) - 0.5, world = world_from_voxel_ * rest;
+  const glm::dvec3 moved = blend_point(blend_, bones_, influences, world) - world;
+  const glm::dvec3 at = output_.from_rest(rest + voxel_from_world_.linear * moved);
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(std::abs(at[axis]) < kFurthest))
+      throw Error("the pose tears the tissue too far apart", "bone " + weights_->bones()[influences.front().bone],
+                  "check the pose and the rig, or use a coarser spacing");
+  return FixedPoint(glm::floor(at * double(kFixedOne) + 0.5));
+}
+
+PosedLattice::FixedBox PosedLattice::compute(std::int64_t brick, Corners& corners) const {
+  CornerWeights weights(*tissue_, *weights_, brick);
+  const glm::ivec3 first = tissue_->bricks()[brick].corner;
+  FixedBox box{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)};
+  for (int k = 0; k < kSide; ++k)
+    for (int j = 0; j < kSide; ++j)
+      for (int i = 0; i < kSide; ++i) {
+        const auto influences = weights.at(i, j, k);
+        FixedPoint& corner = corners[place(i, j, k)];
+        corner = FixedPoint(0);
+        if (influences.empty()) continue;
+        corner = posed(first + glm::ivec3(i, j, k), influences);
+        box = {glm::min(box.low, corner), glm::max(box.high, corner)};
+      }
+  return box;
+}
+
+}  // namespace limber

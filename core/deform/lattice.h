@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A volume's tissue as a lattice of cells, posed. Every tissue voxel is a cell, its eight corners are vertices; a vertex
+// follows the mean of the influences of the tissue voxels around it (up to eight), so that cells that share a vertex at
+// rest share it posed, and the posed cells leave no gap.
+//
+// Coordinates. A *rest point* is in voxel coordinates of the volume (voxel centres are whole numbers). A *posed point*
+// is in voxels of the output lattice, relative to a whole-number base near the tissue, stored in fixed point: whole
+// numbers of 1/65536 voxel. So the rasterizer's decisions are exact, and the rest pose, whose corners are halves of
+// whole numbers, is exact too. The output lattice is the volume's own, or one with another spacing that shares its
+// outermost corner.
+//
+// Corners are computed brick by brick, and kept only while all of them are small: a whole body's would be 150 MB. The same
+// corner comes out the same, bit for bit, from every brick that has it: weights are added as whole numbers, bones in
+// rising order.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/deform/skinning.h"
+#include "core/skin/skin_weights.h"
+#include "core/volume/tissue_voxels.h"
+
+namespace limber {
+
+constexpr int kFixedOne = 65536;  // one output voxel
+using FixedPoint = glm::ivec3;    // in 1/65536 output voxel
+
+// Whole voxels low .. high, both in; empty when high < low on an axis.
+struct VoxelRange {
+  glm::ivec3 low{0}, high{-1};
+
+  bool empty() const { return high.x < low.x || high.y < low.y || high.z < low.z; }
+};
+VoxelRange intersect(const VoxelRange& a, const VoxelRange& b);
+
+// Between rest lattice and output lattice: output = (rest + 0.5) * ratio - 0.5 - base.
+struct OutputLattice {
+  glm::dvec3 ratio{1};   // input spacing / output spacing, 1 exactly where they are equal
+  glm::ivec3 base{0};
+
+  glm::dvec3 from_rest(const glm::dvec3& rest) const { return (rest + 0.5) * ratio - 0.5 - glm::dvec3(base); }
+  glm::dvec3 to_rest(const glm::dvec3& output) const { return (output + glm::dvec3(base) + 0.5) / ratio - 0.5; }
+};
+
+class PosedLattice {
+ public:
+  static constexpr int kSide = TissueVoxels::kBrick + 1;
+  // Corner (i, j, k), 0 .. 8 each, is the lowest corner of voxel brick.corner + (i, j, k). Unset where no tissue is near.
+  using Corners = std::array<FixedPoint, kSide * kSide * kSide>;
+  static int place(int i, int j, int k) { return i + kSide * (j + kSide * k); }
+
+  struct FixedBox {
+    FixedPoint low, high;
+  };
+
+  // Keeps references: volume, tissue and weights must outlive the lattice.
+  //   posed_from_rest  #bones of `weights`
+  // throws Error when tissue is carried further than 32 000 output voxels or to a place that is not finite
+  PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+               const std::vector<RigidTransform>& posed_from_rest, Blend blend, const glm::dvec3& ratio,
+               Progress& progress = no_progress());
+
+  const OutputLattice& output() const { return output_; }
+  const LabelVolume& volume() const { return *volume_; }
+  const TissueVoxels& tissue() const { return *tissue_; }
+  const FixedBox& bounds(std::int64_t brick) const { return bounds_[brick]; }  // of the brick's posed corners
+  // The brick's corners; computed into `room` where they are not kept.
+  const Corners& corners(std::int64_t brick, Corners& room) const;
+
+ private:
+  FixedPoint posed(const glm::ivec3& corner, std::span<const BoneWeight> influences) const;
+  FixedBox compute(std::int64_t brick, Corners& corners) const;
+  void choose_base();
+
+  const LabelVolume* volume_;
+  const TissueVoxels* tissue_;
+  const SkinWeights* weights_;
+  AffineTransform world_from_voxel_, voxel_from_world_;
+  std::vector<SkinTransform> bones_;
+  Blend blend_;
+  OutputLattice output_;
+  std::vector<FixedBox> bounds_;
+  std::vector<Corners> kept_;  // by brick, or none
+};
+
+}  // namespace limber

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/rasterize.h"
+
+#include <cmath>
+
+namespace limber {
+
+namespace {
+
+// Corners of the five tets, positively oriented: the middle one first, then those at corners kCutOff. The first row is
+// for cubes whose lowest corner's coordinates add up to an even number.
+constexpr int kTetCorners[2][5][4] = {
+    {{0, 5, 3, 6}, {1, 0, 5, 3}, {2, 3, 6, 0}, {4, 5, 0, 6}, {7, 6, 3, 5}},
+    {{7, 4, 2, 1}, {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}},
+};
+
+// With a slack below a fifth no tet of the cube can be inverted (its edge matrix stays diagonally dominant).
+constexpr double kLargestSlack = 0.1;
+constexpr double kRounding = 1e-9;  // of places in a cube computed in double
+
+glm::dvec3 corner_sign(int corner) { return {corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1}; }
+
+double largest_row_sum(const glm::dmat3& m) {
+  double largest = 0;
+  for (int row = 0; row < 3; ++row)
+    largest = std::max(largest, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+  return largest;
+}
+
+double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+// The trilinear map of a cube by its eight coefficients: index bits say which of x, y, z are multiplied
+// (a Hadamard transform of the corners).
+std::array<glm::dvec3, 8> trilinear_coefficients(const std::array<FixedPoint, 8>& corner) {
+  std::array<glm::dvec3, 8> c;
+  for (int i = 0; i < 8; ++i) c[i] = glm::dvec3(corner[i]) / (8.0 * kFixedOne);
+  for (int bit : {1, 2, 4})
+    for (int i = 0; i < 8; ++i)
+      if (!(i & bit)) {
+        const glm::dvec3 low = c[i], high = c[i | bit];
+        c[i] = high + low;
+        c[i | bit] = high - low;
+      }
+  return c;
+}
+
+}  // namespace
+
+CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<glm::dvec3, 4>& rest, const glm::ivec3& voxel) {
+  const glm::dvec3 from = glm::dvec3(posed[0]) / double(kFixedOne);
+  glm::dmat3 posed_edges, rest_edges;
+  for (int i = 0; i < 3; ++i) {
+    posed_edges[i] = glm::dvec3(posed[i + 1]) / double(kFixedOne) - from;
+    rest_edges[i] = rest[i + 1] - rest[0];
+  }
+  const glm::dvec3 faces[] = {glm::cross(posed_edges[1], posed_edges[2]), glm::cross(posed_edges[2], posed_edges[0]),
+                              glm::cross(posed_edges[0], posed_edges[1])};
+  const double determinant = glm::dot(posed_edges[0], faces[0]);
+  const glm::dvec3 p = glm::dvec3(voxel) - from;
+  const glm::dvec3 share = glm::dvec3(glm::dot(faces[0], p), glm::dot(faces[1], p), glm::dot(faces[2], p)) / determinant;
+  return {voxel, rest[0] + rest_edges * share, determinant / glm::determinant(rest_edges)};
+}
+
+PosedCell::PosedCell(const std::array<FixedPoint, 8>& corner, const glm::ivec3& rest_voxel)
+    : corner_(corner), rest_voxel_(rest_voxel), parity_((rest_voxel.x + rest_voxel.y + rest_voxel.z) & 1) {
+  const auto c = trilinear_coefficients(corner);
+  const glm::dmat3 half_edges(c[1], c[2], c[4]);
+  const glm::dmat3 faces(glm::cross(c[2], c[4]), glm::cross(c[4], c[1]), glm::cross(c[1], c[2]));
+  const double determinant = glm::dot(c[1], faces[0]);
+  if (!(determinant > 1e-6)) return;
+  place_from_posed_ = glm::transpose(faces) * (1 / determinant);
+  middle_ = c[0];
+  const double departure = largest(c[3]) + largest(c[5]) + largest(c[6]) + largest(c[7]);
+  slack_ = largest_row_sum(place_from_posed_) * departure + kRounding;
+  near_affine_ = slack_ < kLargestSlack;
+}
+
+int PosedCell::find_tet(const glm::ivec3& voxel) const {
+  const glm::dvec3 place = place_from_posed_ * (glm::dvec3(voxel) - middle_);
+  const double outermost = largest(place);
+  if (outermost > 1 + slack_) return -1;
+  if (outermost > 1 - slack_) return find_tet_exactly(voxel);
+  int found = 0;
+  for (int t = 1; t < kTets; ++t) {
+    const double beyond = glm::dot(corner_sign(kTetCorners[parity_][t][0]), place) - 1;
+    if (std::abs(beyond) < 3 * slack_) return find_tet_exactly(voxel);
+    if (beyond > 0) found = t;
+  }
+  return found;
+}
+
+int PosedCell::find_tet_exactly(const glm::ivec3& voxel) const {
+  for (int t = 0; t < kTets; ++t)
+    if (TetFaces<__int128>(posed_tet(t)).contains(voxel)) return t;
+  return -1;
+}
+
+std::array<FixedPoint, 4> PosedCell::posed_tet(int t) const {
+  const auto& c = kTetCorners[parity_][t];
+  return {corner_[c[0]], corner_[c[1]], corner_[c[2]], corner_[c[3]]};
+}
+
+CellClaim PosedCell::claim_in(int t, const glm::ivec3& voxel) const {
+  std::array<glm::dvec3, 4> rest;
+  for (int i = 0; i < 4; ++i) rest[i] = glm::dvec3(rest_voxel_) + 0.5 * corner_sign(kTetCorners[parity_][t][i]);
+  return claim_in_tet(posed_tet(t), rest, voxel);
+}
+
+}  // namespace limber

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/output_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+
+namespace limber {
+
+namespace {
+
+// Limbs spread from the sides to the sky need some ten times the room; what needs more is a broken rig or pose.
+constexpr std::int64_t kLargestGrowth = 24;
+constexpr std::int64_t kAlwaysAllowed = std::int64_t{1} << 27;  // voxels
+
+VoxelRange united(const VoxelRange& a, const VoxelRange& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
+}
+
+VoxelRange posed_tissue(const PosedLattice& lattice, const RigidBones& bones) {
+  VoxelRange range;
+  for (std::int64_t brick = 0; brick < std::ssize(lattice.tissue().bricks()); ++brick) {
+    const auto& box = lattice.bounds(brick);
+    // Rounded like the rasterizer: a thin sliver between two centres still gets the nearer one.
+    const VoxelRange voxels{(box.low + (kFixedOne - 1)) >> 16, box.high >> 16};
+    range = united(range, {glm::min(voxels.low, voxels.high), glm::max(voxels.low, voxels.high)});
+  }
+  for (const auto& piece : bones.pieces()) range = united(range, piece.posed_centres);
+  return range;
+}
+
+VoxelRange rest_tissue(const TissueVoxels& tissue) {
+  VoxelRange range;
+  tissue.for_each([&](std::int64_t, const glm::ivec3& v) { range = united(range, {v, v}); });
+  return range;
+}
+
+std::string text(const glm::ivec3& size) {
+  return std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z);
+}
+
+}  // namespace
+
+glm::dvec3 spacing_ratio(const Grid& grid, double spacing) {
+  glm::dvec3 ratio;
+  for (int axis = 0; axis < 3; ++axis) ratio[axis] = grid.spacing[axis] == spacing ? 1.0 : grid.spacing[axis] / spacing;
+  return ratio;
+}
+
+OutputGrid output_grid(const PosedLattice& lattice, const RigidBones& bones) {
+  const Grid& input = lattice.volume().grid;
+  const OutputLattice& output = lattice.output();
+  const VoxelRange whole{glm::ivec3(0), input.size - 1}, tissue = rest_tissue(lattice.tissue());
+  auto in_output = [&](const glm::ivec3& voxels) { return glm::ivec3(glm::ceil(glm::dvec3(voxels) * output.ratio - 1e-9)); };
+
+  OutputGrid result;
+  if (tissue.empty()) {
+    result.range = {glm::ivec3(0), glm::max(in_output(input.size), glm::ivec3(1)) - 1};
+  } else {
+    const VoxelRange posed = posed_tissue(lattice, bones);
+    result.range = {posed.low - in_output(tissue.low - whole.low), posed.high + in_output(whole.high - tissue.high)};
+  }
+  const glm::ivec3 size = result.range.high - result.range.low + 1;
+  const double voxels = double(size.x) * size.y * size.z;
+  if (voxels > double(std::max(kAlwaysAllowed, kLargestGrowth * input.voxel_count())))
+    throw Error("the posed body needs a grid of " + text(size) + " voxels", "input grid of " + text(input.size),
+                "check the pose and the weights, or use a coarser spacing");
+
+  result.grid.size = size;
+  result.grid.spacing = input.spacing / output.ratio;
+  result.grid.direction = input.direction;
+  result.grid.origin = world_from_voxel(input) * output.to_rest(glm::dvec3(result.range.low));
+  return result;
+}
+
+}  // namespace limber

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/resample.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "core/base/parallel.h"
+#include "core/deform/inverse_map.h"
+#include "core/resample/output_grid.h"
+
+namespace limber {
+
+namespace {
+
+constexpr glm::ivec3 kTile{64, 64, 32};  // output voxels: 3 MB of map a thread
+constexpr int kSoftReach = 8;            // voxels: as far as soft tissue is looked for where a joint opens between bones
+
+class Seconds {
+ public:
+  double operator()() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Blend blend_of(const Method& method) {
+  return std::holds_alternative<DualQuaternion>(method) ? Blend::DualQuaternion : Blend::Linear;
+}
+
+// The weights' bones may stand in another order than the rig's.
+std::vector<RigidTransform> bone_motions(const SkinWeights& weights, const Armature& armature, const Pose& pose) {
+  const std::vector<RigidTransform> posed = posed_from_rest(armature, pose);
+  std::vector<RigidTransform> motions;
+  for (const std::string& name : weights.bones()) motions.push_back(posed[require_bone(armature, name)]);
+  return motions;
+}
+
+// Whether two places of the body can come to lie in one voxel: not when every bone moves alike.
+bool can_fold(const std::vector<RigidTransform>& motions) {
+  return std::any_of(motions.begin(), motions.end(), [&](const RigidTransform& m) {
+    return m.rotation != motions[0].rotation || m.translation != motions[0].translation;
+  });
+}
+
+struct LabelSets {
+  LabelSet bone = LabelSet(65536, 0), soft = LabelSet(65536, 1);
+  std::vector<int> priority = std::vector<int>(65536, 0);
+
+  explicit LabelSets(const TissueTable& tissues) {
+    for (const Tissue& tissue : tissues.tissues) {
+      priority[tissue.label] = tissue.priority;
+      if (!is_bone(tissue.kind)) continue;
+      bone[tissue.label] = 1;
+      soft[tissue.label] = 0;
+    }
+  }
+};
+
+// Grey values between voxel centres, linear; the nearest voxel's outside the grid.
+class GreySampler {
+ public:
+  explicit GreySampler(const GreyVolume& grey) : grey_(grey), voxel_from_world_(voxel_from_world(grey.grid)) {}
+
+  float operator()(const glm::dvec3& world) const {
+    const glm::dvec3 last(grey_.grid.size - 1);
+    const glm::dvec3 p = glm::clamp(voxel_from_world_ * world, glm::dvec3(0), last);
+    const glm::ivec3 low = glm::min(glm::ivec3(p), glm::max(grey_.grid.size - 2, glm::ivec3(0)));
+    const glm::dvec3 f = p - glm::dvec3(low);
+    double value = 0;
+    for (int k = 0; k < 8; ++k) {
+      const glm::ivec3 step(k & 1, k >> 1 & 1, k >> 2);
+      const double share = (step.x ? f.x : 1 - f.x) * (step.y ? f.y : 1 - f.y) * (step.z ? f.z : 1 - f.z);
+      if (share > 0) value += share * grey_.voxels[grey_.grid.index(low + step)];
+    }
+    return static_cast<float>(value);
+  }
+  bool covers(const glm::dvec3& world) const {
+    const glm::dvec3 p = voxel_from_world_ * world;
+    return glm::all(glm::greaterThanEqual(p, glm::dvec3(-0.5))) && glm::all(glm::lessThan(p, glm::dvec3(grey_.grid.size) - 0.5));
+  }
+
+ private:
+  const GreyVolume& grey_;
+  AffineTransform voxel_from_world_;
+};
+
+// What one tile saw.
+struct TileCounts {
+  std::int64_t holes = 0, overlap = 0, bone_overlap = 0;
+  std::vector<Label> lost;
+  struct BoneCounts {
+    std::int64_t voxels = 0;
+    double residual_mm = 0;
+  };
+  std::map<int, BoneCounts> bones;
+
+  void add_bone_voxel(int bone, double residual_mm) {
+    BoneCounts& seen = bones[bone];
+    ++seen.voxels;
+    seen.residual_mm = std::max(seen.residual_mm, residual_mm);
+  }
+};
+
+// Everything a tile needs to know, and where it writes.
+class Resampling {
+ public:
+  Resampling(const LabelVolume& volume, const LabelSets& labels, const PosedLattice& lattice, const RigidBones& bones,
+             const TissueDepth* depth, const ResampleSettings& settings, const OutputGrid& output, Posed& posed)
+      : volume_(volume), labels_(labels), lattice_(lattice), bones_(bones), depth_(depth), settings_(settings),
+        output_(output), posed_(posed), sampler_(volume), world_from_rest_(world_from_voxel(volume.grid)) {
+    posed.volume.grid = output.grid;
+    const std::int64_t voxels = output.grid.voxel_count();
+    posed.volume.voxels.resize(voxels);
+    if (settings.displacement) posed.displacement.assign(voxels, glm::vec3(0));
+    if (settings.jacobian) posed.jacobian.assign(voxels, 0);
+    if (settings.grey) start_grey();
+  }
+
+  void run(Progress& progress) {
+    const glm::ivec3 size = output_.range.high - output_.range.low + 1, tiles = (size + kTile - 1) / kTile;
+    const std::int64_t layer = std::int64_t{tiles.x} * tiles.y;
+    for (int z = 0; z < tiles.z; ++z) {
+      progress.update("resample", double(z) / tiles.z);
+      std::vector<TileCounts> counts(layer);
+      parallel_for(layer, 1, [&](std::int64_t begin, std::int64_t end) {
+        for (auto t = begin; t < end && !progress.cancelled(); ++t) {
+          const glm::ivec3 low = output_.range.low + kTile * glm::ivec3(t % tiles.x, t / tiles.x, z);
+          run_tile({low, glm::min(low + kTile - 1, output_.range.high)}, counts[t]);
+        }
+      });
+      for (const TileCounts& tile : counts) add(tile);
+    }
+    progress.update("resample", 1);
+  }
+
+ private:
+  static bool meet(const VoxelRange& a, const VoxelRange& b) { return !intersect(a, b).empty(); }
+
+  void run_tile(const VoxelRange& range, TileCounts& counts) const {
+    std::vector<std::int64_t> bricks, pieces;
+    for (std::int64_t b = 0; b < std::ssize(lattice_.tissue().bricks()); ++b) {
+      const auto& box = lattice_.bounds(b);
+      if (meet({box.low >> 16, (box.high + (kFixedOne - 1)) >> 16}, range)) bricks.push_back(b);
+    }
+    for (std::int64_t p = 0; p < std::ssize(bones_.pieces()); ++p)
+      if (meet(bones_.pieces()[p].posed, range)) pieces.push_back(p);
+    if (bricks.empty() && pieces.empty() && !settings_.grey) return;
+
+    thread_local InverseMap map;
+    map.reset(range);
+    rasterize_cells(map, lattice_, bricks, labels_.priority, depth_);
+    bones_.paint(map, pieces, sampler_, settings_.nearest, depth_);
+    write(map, counts);
+  }
+
+  void write(const InverseMap& map, TileCounts& counts) const {
+    counts.lost = map.lost;
+    std::int64_t i = 0;
+    glm::ivec3 v;
+    for (v.z = map.range.low.z; v.z <= map.range.high.z; ++v.z)
+      for (v.y = map.range.low.y; v.y <= map.range.high.y; ++v.y)
+        for (v.x = map.range.low.x; v.x <= map.range.high.x; ++v.x, ++i) {
+          const std::int64_t at = output_.grid.index(v - output_.range.low);
+          const bool covered = map.cell[i] != InverseMap::kNoCell || map.bone[i] != InverseMap::kNoBone;
+          if (settings_.grey) posed_.grey.voxels[at] = covered ? moved_grey(map.rest[i]) : still_grey(v);
+          if (!covered) continue;
+          const Label label = label_of(map, i);
+          posed_.volume.voxels[at] = label;
+          write_fields(map, i, v, at);
+          count(map, i, v, label, counts);
+        }
+  }
+
+  Label label_of(const InverseMap& map, std::int64_t i) const {
+    const glm::dvec3 rest = map.rest[i];
+    if (map.bone[i] != InverseMap::kNoBone) {
+      const Label label = settings_.nearest ? sampler_.nearest(rest) : sampler_.tissue(rest, labels_.bone);
+      return labels_.bone[label] ? label : sampler_.nearest_of(rest, labels_.bone, 1);
+    }
+    const Label own = volume_.voxels[map.cell[i]];
+    Label label = settings_.nearest ? own : sampler_.tissue(rest);
+    if (label == 0) label = own;  // a rest point on the tissue's outer border
+    if (!labels_.bone[label]) return label;
+    Label soft = settings_.nearest ? Label{0} : sampler_.tissue(rest, labels_.soft);
+    if (soft == 0) soft = sampler_.nearest_of(rest, labels_.soft, kSoftReach);
+    return soft ? soft : label;
+  }
+
+  void write_fields(const InverseMap& map, std::int64_t i, const glm::ivec3& v, std::int64_t at) const {
+    const OutputLattice& lattice = lattice_.output();
+    if (settings_.displacement)
+      posed_.displacement[at] = world_from_rest_.linear * (lattice.to_rest(glm::dvec3(v)) - glm::dvec3(map.rest[i]));
+    if (settings_.jacobian)
+      posed_.jacobian[at] = map.bone[i] != InverseMap::kNoBone
+                                ? 1.0f
+                                : static_cast<float>(map.posed_per_rest[i] / (lattice.ratio.x * lattice.ratio.y * lattice.ratio.z));
+  }
+
+  void count(const InverseMap& map, std::int64_t i, const glm::ivec3& v, Label label, TileCounts& counts) const {
+    counts.holes += label == 0;
+    counts.overlap += (map.flags[i] & InverseMap::kOverlap) != 0;
+    counts.bone_overlap += (map.flags[i] & InverseMap::kBoneOverlap) != 0;
+    if (!labels_.bone[label]) return;
+    const int bone = map.bone[i] != InverseMap::kNoBone ? map.bone[i] : bones_.owner(volume_voxel(map.cell[i]));
+    if (bone >= 0) counts.add_bone_voxel(bone, bones_.residual(bone, map.rest[i], v));
+  }
+
+  glm::ivec3 volume_voxel(std::uint32_t cell) const {
+    const glm::ivec3& size = volume_.grid.size;
+    return {int(cell % size.x), int(cell / size.x % size.y), int(cell / size.x / size.y)};
+  }
+
+  void start_grey() {
+    grey_.emplace(*settings_.grey);
+    const auto& voxels = settings_.grey->voxels;
+    outside_ = voxels.empty() ? 0 : *std::min_element(voxels.begin(), voxels.end());
+    posed_.grey.grid = output_.grid;
+    posed_.grey.type = settings_.grey->type;
+    posed_.grey.voxels.resize(output_.grid.voxel_count());
+  }
+
+  float moved_grey(const glm::dvec3& rest) const { return (*grey_)(world_from_rest_ * rest); }
+
+  // Surroundings that were air and are air again stay; where the body went away there is nothing.
+  float still_grey(const glm::ivec3& v) const {
+    const glm::dvec3 rest = lattice_.output().to_rest(glm::dvec3(v)), world = world_from_rest_ * rest;
+    return sampler_.nearest(rest) == 0 && grey_->covers(world) ? (*grey_)(world) : outside_;
+  }
+
+  void add(const TileCounts& tile) {
+    DeformReport& report = posed_.report;
+    report.new_hole_voxels += tile.holes;
+    report.overlap_voxels += tile.overlap;
+    report.bone_overlap_voxels += tile.bone_overlap;
+    for (Label label : tile.lost) ++report.overlap_by_label[label];
+    for (const auto& [bone, seen] : tile.bones) {
+      report.bones[bone].voxels += seen.voxels;
+      report.bones[bone].rigid_residual_mm = std::max(report.bones[bone].rigid_residual_mm, seen.residual_mm);
+    }
+  }
+
+  const LabelVolume& volume_;
+  const LabelSets& labels_;
+  const PosedLattice& lattice_;
+  const RigidBones& bones_;
+  const TissueDepth* depth_;
+  const ResampleSettings& settings_;
+  const OutputGrid& output_;
+  Posed& posed_;
+  LabelSampler sampler_;
+  AffineTransform world_from_rest_;
+  std::optional<GreySampler> grey_;
+  float outside_ = 0;
+};
+
+// Cells that reach beyond the output grid.
+std::int64_t count_dropped(const PosedLattice& lattice, const VoxelRange& range) {
+  const FixedPoint low = range.low * kFixedOne - kFixedOne / 2, high = range.high * kFixedOne + kFixedOne / 2;
+  std::int64_t dropped = 0;
+  for (std::int64_t b = 0; b < std::ssize(lattice.tissue().bricks()); ++b) {
+    const auto& box = lattice.bounds(b);
+    if (glm::any(glm::lessThan(box.low, low - kFixedOne)) || glm::any(glm::greaterThan(box.high, high + kFixedOne)))
+      dropped += lattice.tissue().bricks()[b].count();
+  }
+  return dropped;
+}
+
+}  // namespace
+
+Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
+               const Pose& pose, const Method& method, const ResampleSettings& settings, Progress& progress) {
+  const Seconds seconds;
+  const TissueVoxels tissue(volume);
+  const LabelSets labels(tissues);
+  const auto motions = bone_motions(weights, armature, pose);
+  const glm::dvec3 ratio = settings.spacing ? spacing_ratio(volume.grid, *settings.spacing) : glm::dvec3(1);
+
+  const PosedLattice lattice(volume, tissue, weights, motions, blend_of(method), ratio, progress);
+  const RigidBones bones(lattice, weights, labels.bone, motions);
+  const OutputGrid output = output_grid(lattice, bones);
+  std::optional<TissueDepth> depth;
+  if (can_fold(motions)) depth.emplace(tissue, volume.grid.spacing);
+
+  Posed posed;
+  DeformReport& report = posed.report;
+  report.tissue_voxels = tissue.size();
+  report.overlap_by_label.assign(65536, 0);
+  for (const std::string& name : weights.bones()) report.bones.push_back({name});
+  report.dropped_voxels = count_dropped(lattice, output.range);
+  report.seconds_deform = seconds();
+
+  const Seconds rasterize_seconds;
+  Resampling(volume, labels, lattice, bones, depth ? &*depth : nullptr, settings, output, posed).run(progress);
+  std::erase_if(report.bones, [](const auto& bone) { return bone.voxels == 0; });
+  report.seconds_rasterize = rasterize_seconds();
+  return posed;
+}
+
+}  // namespace limber
