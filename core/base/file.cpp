@@ -38,12 +38,18 @@ class Sha256 {
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
-// Removes a file when it goes, unless released.
-struct TemporaryFile {
-  Path path;
-  ~TemporaryFile() {
+// A file without a name in `folder`: if the process dies, by whatever signal, nothing is left of it. -1 where the file
+// system cannot do that.
+int open_nameless(const Path& folder) { return ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666); }
+
+// Closes a descriptor and removes a name when it goes.
+struct Temporary {
+  int descriptor = -1;
+  Path name;
+  ~Temporary() {
     std::error_code ignored;
-    if (!path.empty()) fs::remove(path, ignored);
+    if (!name.empty()) fs::remove(name, ignored);
+    if (descriptor >= 0) ::close(descriptor);
   }
 };
 
@@ -77,11 +83,23 @@ void write_atomically(const Path& path, const std::function<void(const Path&)>& 
   if (!fs::is_directory(folder, error)) throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
   if (fs::is_directory(path, error)) throw Error("a folder stands where the file should go", path.string(), "choose another name");
 
-  // The whole name after the first dot is kept behind the mark, because a writer chooses its format by extension.
-  const TemporaryFile temporary{folder / (".limber-" + std::to_string(::getpid()) + "-" + path.filename().string())};
-  write(temporary.path);
-  flush_to_disk(temporary.path);
-  fs::rename(temporary.path, path, error);
+  const Path name = folder / (".limber-" + std::to_string(::getpid()) + "-" + path.filename().string());
+  Temporary temporary{open_nameless(folder), {}};
+  if (temporary.descriptor >= 0) {
+    const std::string nameless = "/proc/self/fd/" + std::to_string(temporary.descriptor);
+    write(nameless);
+    ::fsync(temporary.descriptor);
+    if (::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
+    // A name is taken over only by renaming another.
+    if (errno != EEXIST || ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0)
+      throw Error("the file cannot be written", path.string(), std::strerror(errno));
+    temporary.name = name;
+  } else {
+    temporary.name = name;
+    write(name);
+    flush_to_disk(name);
+  }
+  fs::rename(name, path, error);
   if (error) throw Error("the file cannot be written", path.string(), error.message());
 }
 

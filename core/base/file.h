@@ -14,9 +14,10 @@ using Path = std::filesystem::path;
 // The file's bytes. Throws Error when it cannot be read or is larger than `limit` bytes.
 std::string read_file(const Path& path, std::uint64_t limit = std::uint64_t{1} << 32);
 
-// Writes under a temporary name in the same folder (same extension), flushes, and renames over `path`: whoever looks
-// sees the old file or the new one. When `write` throws, the temporary file is gone and `path` is as before.
-//   write  gets the temporary path and must create that file
+// Writes a file without a name in the same folder (where the file system has none of those: under a temporary name),
+// flushes it, and gives it the name `path` in one step: whoever looks sees the old file or the new one, and a process that
+// is killed leaves nothing behind. When `write` throws, `path` is as before.
+//   write  gets a path to open for writing (with no meaningful extension)
 void write_atomically(const Path& path, const std::function<void(const Path& temporary)>& write);
 void write_file_atomically(const Path& path, const std::string& bytes);
 

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/report/report.h"
+
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+namespace limber {
+
+namespace {
+using Json = nlohmann::ordered_json;
+
+// File values are whole numbers, up to 2^53.
+Json whole(double value) { return static_cast<std::int64_t>(value); }
+
+// `deform` knows which rest voxels lost their place, by label.
+std::int64_t overlap_of(const Report& report, Label label) {
+  return report.deform && !report.deform->overlap_by_label.empty() ? report.deform->overlap_by_label[label] : 0;
+}
+
+Json tissue_rows(const Report& report) {
+  Json rows = Json::array();
+  for (const TissueChange& tissue : report.metrics->tissues) {
+    Json row{{"label", whole(tissue.file_value)},
+             {"name", tissue.name},
+             {"voxels_before", tissue.voxels_before},
+             {"voxels_after", tissue.voxels_after},
+             {"mm3_before", tissue.mm3_before},
+             {"mm3_after", tissue.mm3_after},
+             {"mass_before_g", tissue.mass_before},
+             {"mass_after_g", tissue.mass_after}};
+    // Of a tissue that was not there before there is no change in percent.
+    if (tissue.voxels_before) {
+      row["volume_change_percent"] = tissue.volume_change_percent;
+      row["mass_change_percent"] = tissue.mass_change_percent;
+    }
+    row["components_before"] = tissue.components_before;
+    row["components_after"] = tissue.components_after;
+    if (report.deform) row["overlap_voxels"] = overlap_of(report, tissue.label);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json total(const Report& report) {
+  Json row = Json::object();
+  if (report.metrics) {
+    const VolumeMetrics& metrics = *report.metrics;
+    row["voxels_before"] = metrics.voxels_before;
+    row["voxels_after"] = metrics.voxels_after;
+    row["mm3_before"] = metrics.mm3_before;
+    row["mm3_after"] = metrics.mm3_after;
+    row["mass_before_g"] = metrics.mass_before;
+    row["mass_after_g"] = metrics.mass_after;
+    if (metrics.voxels_before) {
+      row["volume_change_percent"] = metrics.volume_change_percent;
+      row["mass_change_percent"] = metrics.mass_change_percent;
+    }
+    row["trapped_air_voxels"] = metrics.trapped_air_voxels;
+    row["enclosed_air_before"] = metrics.enclosed_air_before;
+    row["enclosed_air_after"] = metrics.enclosed_air_after;
+  }
+  if (report.deform) {
+    row["overlap_voxels"] = report.deform->overlap_voxels;
+    row["new_hole_voxels"] = report.deform->new_hole_voxels;
+    row["dropped_voxels"] = report.deform->dropped_voxels;
+    row["bone_overlap_voxels"] = report.deform->bone_overlap_voxels;
+  }
+  return row;
+}
+
+Json seconds_of(const StageSeconds& seconds) {
+  Json row = Json::object();
+  auto add = [&](const char* stage, const std::optional<double>& value) {
+    if (value) row[stage] = *value;
+  };
+  add("read", seconds.read);
+  add("weights", seconds.weights);
+  add("deform", seconds.deform);
+  add("rasterize", seconds.rasterize);
+  add("report", seconds.report);
+  add("write", seconds.write);
+  add("total", seconds.total);
+  return row;
+}
+
+// One line of a table: text formatted as printf does, without a length to get wrong.
+template <class... Values>
+std::string line(const char* format, Values... values) {
+  const int length = std::snprintf(nullptr, 0, format, values...);
+  std::string text(static_cast<size_t>(length) + 1, '\0');
+  std::snprintf(text.data(), text.size(), format, values...);
+  text.back() = '\n';
+  return text;
+}
+
+std::string components_of(const TissueChange& tissue) {
+  const std::string before = std::to_string(tissue.components_before);
+  if (tissue.components_before == tissue.components_after) return before;
+  return before + " -> " + std::to_string(tissue.components_after);
+}
+
+void print_tissues(std::ostream& out, const VolumeMetrics& metrics) {
+  out << line("%8s  %-28s %12s %12s %10s %12s", "label", "tissue", "voxels", "after", "change %", "components");
+  for (const TissueChange& tissue : metrics.tissues)
+    out << line("%8.0f  %-28.28s %12lld %12lld %+10.2f %12s", tissue.file_value, tissue.name.c_str(),
+                static_cast<long long>(tissue.voxels_before), static_cast<long long>(tissue.voxels_after),
+                tissue.volume_change_percent, components_of(tissue).c_str());
+  out << line("%8s  %-28s %12lld %12lld %+10.2f", "", "all tissue", static_cast<long long>(metrics.voxels_before),
+              static_cast<long long>(metrics.voxels_after), metrics.volume_change_percent);
+}
+}  // namespace
+
+InputFile describe_input(const Path& path) { return {path.string(), sha256_of_file(path)}; }
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts in units of 1024 bytes
+}
+
+std::string to_json(const Report& report) {
+  Json json{{"schema", "limber-report/1"}, {"version", LIMBER_VERSION}};
+  if (!report.method.empty()) json["method"] = report.method;
+  if (!report.settings.empty())
+    for (const auto& [name, value] : report.settings)
+      std::visit([&, &key = name](const auto& v) { json["settings"][key] = v; }, value);
+  if (!report.inputs.empty())
+    for (const InputFile& input : report.inputs) json["inputs"].push_back({{"path", input.path}, {"sha256", input.sha256}});
+  if (Json seconds = seconds_of(report.seconds); !seconds.empty()) json["seconds"] = seconds;
+  json["peak_memory_mb"] = std::round(peak_memory_mb() * 10) / 10;
+  if (report.metrics) json["tissues"] = tissue_rows(report);
+  if (report.metrics || report.deform) json["total"] = total(report);
+  if (report.metrics && report.metrics->has_skin)
+    json["skin"] = {{"surface_share_before", report.metrics->skin_share_before},
+                    {"surface_share_after", report.metrics->skin_share_after}};
+  if (report.deform && !report.deform->bones.empty())
+    for (const auto& bone : report.deform->bones)
+      json["bones"].push_back({{"name", bone.name}, {"rigid_residual_mm", bone.rigid_residual_mm}});
+  if (!report.warnings.empty()) json["warnings"] = report.warnings;
+  // A name that is not UTF-8 must not cost the report.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_report(const Report& report, const Path& path) { write_file_atomically(path, to_json(report)); }
+
+void print_report(std::ostream& out, const Report& report) {
+  if (!report.method.empty()) out << "method " << report.method << "\n";
+  if (report.metrics) {
+    print_tissues(out, *report.metrics);
+    if (report.metrics->has_skin)
+      out << line("\nskin covers %.1f %% of the surface before and %.1f %% after",
+                  100 * report.metrics->skin_share_before, 100 * report.metrics->skin_share_after);
+    out << line("trapped air %lld voxels", static_cast<long long>(report.metrics->trapped_air_voxels));
+  }
+  if (report.deform) {
+    const DeformReport& deform = *report.deform;
+    out << line("dropped %lld, new holes %lld, overlap %lld, bone in bone %lld voxels",
+                static_cast<long long>(deform.dropped_voxels), static_cast<long long>(deform.new_hole_voxels),
+                static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels));
+    double worst = 0;
+    for (const auto& bone : deform.bones) worst = std::max(worst, bone.rigid_residual_mm);
+    if (!deform.bones.empty())
+      out << line("%zu bones are rigid within %.4f mm", deform.bones.size(), worst);
+  }
+  const Json seconds = seconds_of(report.seconds);
+  if (!seconds.empty()) {
+    out << "seconds";
+    for (const auto& [stage, value] : seconds.items()) {
+      const std::string text = line(" %.2f", value.get<double>());
+      out << "  " << stage << text.substr(0, text.size() - 1);
+    }
+    out << "\n";
+  }
+  out << line("peak memory %.0f MB", peak_memory_mb());
+}
+
+}  // namespace limber

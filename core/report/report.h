@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The report that goes with a posed volume (schema limber-report/1): what was asked, from which files, how long each
+// stage took, and what changed. A part that was not measured is left out, never filled with zeros.
+#pragma once
+
+#include <chrono>
+#include <iosfwd>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/file.h"
+#include "core/report/metrics.h"
+#include "core/resample/resample.h"
+
+namespace limber {
+
+using SettingValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>>;
+
+struct InputFile {
+  std::string path;
+  std::string sha256;
+};
+// Throws Error when the file cannot be read. A folder's hash covers all its files.
+InputFile describe_input(const Path& path);
+
+// Wall-clock seconds; a stage that did not run has none.
+struct StageSeconds {
+  std::optional<double> read, weights, deform, rasterize, report, write, total;
+};
+
+struct Report {
+  std::string method;  // "lbs", "dqs"; empty when two volumes were only compared
+  std::map<std::string, SettingValue> settings;
+  std::vector<InputFile> inputs;
+  StageSeconds seconds;
+  std::optional<VolumeMetrics> metrics;
+  std::optional<DeformReport> deform;
+  std::vector<std::string> warnings;
+};
+
+std::string to_json(const Report& report);
+void write_report(const Report& report, const Path& path);
+// The same as a table that reads well in a terminal of 100 columns.
+void print_report(std::ostream& out, const Report& report);
+
+// Largest resident memory of this process so far, MB (10^6 bytes).
+double peak_memory_mb();
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace limber

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/report/report.h"
+
+#include <sstream>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+using namespace limber;
+using nlohmann::json;
+
+namespace {
+LabelVolume box_of(Label label, int edge) {
+  LabelVolume volume{{.size = {20, 20, 20}, .spacing = {2, 2, 2}}, std::vector<Label>(8000)};
+  for (int z = 5; z < 5 + edge; ++z)
+    for (int y = 5; y < 5 + edge; ++y)
+      for (int x = 5; x < 5 + edge; ++x) volume.at({x, y, z}) = label;
+  return volume;
+}
+
+TissueTable table_of(Label label, double file_value, const std::string& name, TissueKind kind = TissueKind::Fat) {
+  TissueTable tissues;
+  tissues.tissues.push_back({.label = label, .file_value = file_value, .name = name, .kind = kind});
+  return tissues;
+}
+}  // namespace
+
+TEST_CASE("report: what was not measured is left out, not filled with zeros") {
+  const json empty = json::parse(to_json(Report{}));
+  CHECK(empty["schema"] == "limber-report/1");
+  CHECK(empty.contains("version"));
+  CHECK(empty["peak_memory_mb"] > 1.0);
+  CHECK(empty.size() == 3);
+
+  Report compared{.metrics = compare(box_of(1, 8), box_of(1, 8), table_of(1, 5, "fat"))};
+  const json some = json::parse(to_json(compared));
+  CHECK_FALSE(some.contains("skin"));
+  CHECK_FALSE(some.contains("method"));
+  CHECK_FALSE(some.contains("seconds"));
+  CHECK_FALSE(some["total"].contains("new_hole_voxels"));
+  CHECK_FALSE(some["tissues"][0].contains("overlap_voxels"));
+
+  compared.metrics = compare(box_of(0, 8), box_of(1, 8), table_of(1, 5, "fat"));
+  CHECK_FALSE(json::parse(to_json(compared))["tissues"][0].contains("volume_change_percent"));
+}
+
+TEST_CASE("report: carries method, settings, inputs, seconds, tissues, totals and bones under the schema's keys") {
+  Report report;
+  report.method = "dqs";
+  report.settings = {{"nearest", false}, {"spacing", 2.0}, {"threads", std::int64_t{4}},
+                     {"flex", std::vector<std::string>{"Forearm=45"}}, {"weights", std::string("heat")}};
+  report.inputs = {{"arm.mha", "00ff"}};
+  report.seconds.read = 0.5;
+  report.seconds.total = 1.5;
+  report.metrics = compare(box_of(3, 10), box_of(3, 5), table_of(3, 143, "skin", TissueKind::Skin));
+  DeformReport deform{.dropped_voxels = 1, .new_hole_voxels = 2, .overlap_voxels = 3, .bone_overlap_voxels = 4};
+  deform.overlap_by_label.assign(65536, 0);
+  deform.overlap_by_label[3] = 3;
+  deform.bones = {{"Forearm", 0.004}};
+  report.deform = deform;
+
+  const json written = json::parse(to_json(report));
+  CHECK(written["method"] == "dqs");
+  CHECK(written["settings"]["nearest"] == false);
+  CHECK(written["settings"]["threads"] == 4);
+  CHECK(written["settings"]["flex"][0] == "Forearm=45");
+  CHECK(written["inputs"][0]["path"] == "arm.mha");
+  CHECK(written["inputs"][0]["sha256"] == "00ff");
+  CHECK(written["seconds"] == json{{"read", 0.5}, {"total", 1.5}});
+  const json& tissue = written["tissues"][0];
+  CHECK(tissue["label"] == 143);
+  CHECK(tissue["name"] == "skin");
+  CHECK(tissue["voxels_before"] == 1000);
+  CHECK(tissue["voxels_after"] == 125);
+  CHECK(tissue["volume_change_percent"] == -87.5);
+  CHECK(tissue["mass_change_percent"] == -87.5);
+  CHECK(tissue["components_before"] == 1);
+  CHECK(tissue["components_after"] == 1);
+  CHECK(tissue["overlap_voxels"] == 3);
+  const json& total = written["total"];
+  CHECK(total["voxels_before"] == 1000);
+  CHECK(total["voxels_after"] == 125);
+  CHECK(total["overlap_voxels"] == 3);
+  CHECK(total["new_hole_voxels"] == 2);
+  CHECK(total["trapped_air_voxels"] == 0);
+  CHECK(total["dropped_voxels"] == 1);
+  CHECK(written["skin"]["surface_share_before"] == 1.0);
+  CHECK(written["bones"][0]["name"] == "Forearm");
+  CHECK(written["bones"][0]["rigid_residual_mm"] == 0.004);
+}
+
+TEST_CASE("report: a name that is not UTF-8 does not cost the report") {
+  Report report{.metrics = compare(box_of(1, 4), box_of(1, 4), table_of(1, 5, "f\xfc\xdf"))};
+  CHECK(json::parse(to_json(report))["tissues"].size() == 1);
+}
+
+TEST_CASE("report: reads as a table") {
+  Report report{.metrics = compare(box_of(1, 10), box_of(1, 9), table_of(1, 5, "fat"))};
+  report.seconds.total = 1.25;
+  std::ostringstream text;
+  print_report(text, report);
+  CHECK(text.str().find("fat") != std::string::npos);
+  CHECK(text.str().find("-27.10") != std::string::npos);
+  CHECK(text.str().find("total 1.25") != std::string::npos);
+}
