@@ -1,17 +1,166 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber info FILE [--json]
+// limber info FILE [--json]: what a file is. Each kind is described once, as JSON; without --json the same is shown as text.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
 #include "core/cmd/command.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/bvh.h"
+#include "core/volume/tissue_table.h"
 #include "core/volume/volume_io.h"
 
 namespace limber::cmd {
 
+namespace {
+using Json = nlohmann::ordered_json;
+
+Json as_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+// Whole numbers without a decimal point.
+Json as_json(double value) {
+  if (value == std::floor(value) && std::abs(value) < 9e15) return static_cast<std::int64_t>(value);
+  return value;
+}
+
+Json describe_volume(const Path& path) {
+  VolumeSummary summary = summarize_volume(path);
+  warn(summary.warnings);
+  const Grid& grid = summary.grid;
+  Json direction = Json::array();
+  for (int row = 0; row < 3; ++row)
+    for (int axis = 0; axis < 3; ++axis) direction.push_back(grid.direction[axis][row]);
+  Json json = {{"kind", "volume"},
+               {"size", {grid.size.x, grid.size.y, grid.size.z}},
+               {"spacing", as_json(grid.spacing)},
+               {"origin", as_json(grid.origin)},
+               {"direction", direction},
+               {"type", summary.type.voxel_type},
+               {"format", summary.type.format},
+               {"compressed", summary.type.compressed}};
+  if (summary.looks_grey) json["grey"] = true;
+  json["minimum"] = as_json(summary.minimum);
+  json["maximum"] = as_json(summary.maximum);
+  if (!summary.is_label) return json;
+  json["labels"] = Json::array();
+  for (const auto& count : summary.labels) {
+    Json label = {{"value", as_json(count.value)}, {"voxels", count.voxels}};
+    if (!count.name.empty()) label["name"] = count.name;
+    json["labels"].push_back(std::move(label));
+  }
+  return json;
+}
+
+Json describe_rig(const Path& path) {
+  const ArmatureFile file = read_armature_file(path);
+  warn(file.warnings);
+  Json bones = Json::array();
+  for (const Bone& bone : file.armature.bones)
+    bones.push_back({{"name", bone.name},
+                     {"parent", bone.parent < 0 ? Json(nullptr) : Json(file.armature.bones[static_cast<std::size_t>(bone.parent)].name)},
+                     {"head", as_json(bone.head)},
+                     {"tail", as_json(bone.tail)}});
+  return {{"kind", "rig"}, {"format", file.format}, {"bones", bones}};
+}
+
+Json describe_motion(const Path& path) {
+  const Motion motion = read_bvh(path);
+  warn(motion.warnings);
+  Json joints = Json::array();
+  for (const BvhJoint& joint : motion.joints)
+    joints.push_back({{"name", joint.name},
+                      {"parent", joint.parent < 0 ? Json(nullptr) : Json(motion.joints[static_cast<std::size_t>(joint.parent)].name)},
+                      {"offset", as_json(joint.offset)},
+                      {"channels", joint.channels.size()}});
+  return {{"kind", "motion"}, {"joints", joints}, {"frames", motion.frame_count}, {"frame_time", motion.frame_time}};
+}
+
+Json describe_tissues(const Path& path) {
+  const TissueTable table = read_tissue_table(path);
+  Json labels = Json::array();
+  for (const Tissue& tissue : table.tissues)
+    labels.push_back({{"value", as_json(tissue.file_value)}, {"name", tissue.name}, {"kind", to_string(tissue.kind)}});
+  return {{"kind", "tissues"}, {"labels", labels}};
+}
+
+Json describe_weights(const Path& path) {
+  const WeightsSummary weights = summarize_weights(path);
+  return {{"kind", "weights"}, {"bones", Json::parse(weights.bones, nullptr, false)}, {"voxels", weights.voxels}};
+}
+
+// A rig, unless the keys are labels.
+Json describe_json(const Path& path) {
+  constexpr std::uint64_t kMostBytes = 256 << 20;
+  const Json json = Json::parse(read_file(path, kMostBytes), nullptr, false);
+  const bool labels = json.is_object() && !json.empty() && std::all_of(json.begin(), json.end(), [](const Json& entry) { return entry.is_string() || entry.is_object(); }) &&
+                      std::all_of(json.items().begin(), json.items().end(), [](const auto& item) {
+                        return !item.key().empty() && item.key().find_first_not_of("-0123456789") == std::string::npos;
+                      });
+  return labels ? describe_tissues(path) : describe_rig(path);
+}
+
+Json describe(const Path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".json") return describe_json(path);
+  if (extension == ".bvh") return describe_motion(path);
+  if (extension == ".vtk" || extension == ".arm") return describe_rig(path);
+  if (extension == ".ctbl" || extension == ".label") return describe_tissues(path);
+  if (extension == ".txt" && !is_volume_path(path)) return describe_tissues(path);
+  if (is_weights_path(path)) return describe_weights(path);
+  return describe_volume(path);
+}
+
+// ---- as text
+
+std::string in_words(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::string text;
+  for (const Json& part : value) text += (text.empty() ? "" : "  ") + part.dump();
+  return text;
+}
+
+void show_list(const std::string& name, const Json& list) {
+  constexpr std::size_t kShown = 200;
+  std::printf("%-11s %zu\n", name.c_str(), list.size());
+  for (std::size_t i = 0; i < std::min(list.size(), kShown); ++i) {
+    std::string line = "           ";
+    for (const auto& [key, value] : list[i].items()) line += " " + (value.is_number() || value.is_string() ? in_words(value) + " " : key + " " + in_words(value) + " ");
+    std::printf("%s\n", line.c_str());
+  }
+  if (list.size() > kShown) std::printf("            and %zu more (--json lists all)\n", list.size() - kShown);
+}
+
+void show(const Json& json) {
+  for (const auto& [key, value] : json.items())
+    if (value.is_array() && !value.empty() && value[0].is_object())
+      show_list(key, value);
+    else
+      std::printf("%-11s %s\n", key.c_str(), in_words(value).c_str());
+}
+}  // namespace
+
 void add_info(CLI::App& app) {
+  struct Options {
+    std::string file;
+    bool json = false;
+  };
   auto* command = app.add_subcommand("info", "what a file is: header, labels, bones, joints");
-  auto file = std::make_shared<std::string>();
-  command->add_option("FILE", *file, "a volume, rig, motion, weights or mesh")->required();
-  command->callback([file] { sha256_of_file(*file); });
+  auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->file, "a volume, a folder with DICOM images, a rig, motion, weights, mesh or label table")->required();
+  command->add_flag("--json", options->json, "as JSON");
+  command->callback([options] {
+    const Json json = describe(options->file);
+    if (options->json)
+      std::printf("%s\n", json.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
+    else
+      show(json);
+  });
 }
 
 }  // namespace limber::cmd

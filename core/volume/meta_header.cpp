@@ -39,10 +39,10 @@ std::vector<Number> numbers_in(const Fields& fields, std::initializer_list<std::
   const std::string* text = field(fields, names);
   if (!text) return otherwise;
   const auto numbers = numbers_of<Number>(*text);
-  if (!numbers || numbers->size() != count)
+  if (!numbers || numbers->size() < count)
     throw Error(std::string(*names.begin()) + " is " + in_quotes(*text), where,
                 "this needs " + std::to_string(count) + " numbers; correct the header");
-  return *numbers;
+  return {numbers->begin(), numbers->begin() + static_cast<std::ptrdiff_t>(count)};  // a plane may carry three
 }
 
 // LOCAL, LIST, a pattern or a name. LIST's names stand in the lines that follow.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/volume/header_text.h"
@@ -15,7 +16,7 @@ constexpr std::size_t kLongestHeader = 16 << 20;  // thousands of segments with 
 
 struct NrrdText {
   std::map<std::string, std::string, std::less<>> fields;  // lower case, spaces removed: "spacedirections"
-  std::map<std::string, std::string, std::less<>> keys;
+  KeyValues keys;
   std::vector<std::string> data_list;
   std::size_t end = 0;        // first byte after the empty line
   bool ended = false;         // an empty line was there
@@ -168,8 +169,9 @@ double millimetres_per(const std::string* units) {
 }
 
 // Names and colours of 3D Slicer's segments. Layers other than 0 live in further volumes of the same file.
-TissueTable segments_of(const std::map<std::string, std::string, std::less<>>& keys, const std::string& where) {
+TissueTable segments_of(const KeyValues& keys, const std::string& where) {
   TissueTable table;
+  std::set<double> seen;
   for (const auto& [key, value] : keys) {
     if (!key.starts_with("Segment") || !key.ends_with("_LabelValue")) continue;
     const std::string prefix = key.substr(0, key.size() - std::string_view("LabelValue").size());
@@ -179,7 +181,7 @@ TissueTable segments_of(const std::map<std::string, std::string, std::less<>>& k
     };
     const auto label = number_of<double>(value);
     if (!label || !std::isfinite(*label)) throw Error("the key " + in_quotes(key) + " is " + in_quotes(value), where, "a label value is a number");
-    if (*label == 0 || table.find_file_value(*label)) continue;
+    if (*label == 0 || !seen.insert(*label).second) continue;
     Tissue tissue;
     tissue.file_value = *label;
     if (const auto* name = get("Name")) tissue.name = *name;
@@ -204,6 +206,7 @@ class NrrdReader {
     read_encoding();
     read_data_place();
     header_.named = segments_of(text_.keys, where_);
+    header_.keys = std::move(text_.keys);
     return std::move(header_);
   }
 
@@ -430,6 +433,8 @@ class NrrdReader {
 bool looks_like_nrrd_header(std::string_view bytes) {
   return bytes.size() >= 8 && bytes.substr(0, 7) == "NRRD000" && bytes[7] >= '1' && bytes[7] <= '5';
 }
+
+KeyValues parse_nrrd_keys(std::string_view bytes, const std::string& where) { return split_header(bytes, where).keys; }
 
 VolumeHeader parse_nrrd_header(std::string_view bytes, const std::string& where) {
   if (!looks_like_nrrd_header(bytes)) throw Error("this is no NRRD file", where, "it should begin with NRRD0001 to NRRD0005");

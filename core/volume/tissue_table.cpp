@@ -74,6 +74,15 @@ const Tissue* TissueTable::find_file_value(double value) const {
   return found != tissues.end() ? &*found : nullptr;
 }
 
+FileValueIndex::FileValueIndex(const TissueTable& table) {
+  for (const Tissue& tissue : table.tissues) by_value_.emplace(tissue.file_value, &tissue);
+}
+
+const Tissue* FileValueIndex::find(double value) const {
+  const auto found = by_value_.find(value);
+  return found != by_value_.end() ? found->second : nullptr;
+}
+
 std::vector<TissueKind> TissueTable::kinds() const {
   std::vector<TissueKind> kinds(65536, TissueKind::Unknown);
   for (const Tissue& tissue : tissues) kinds[tissue.label] = tissue.kind;
@@ -83,8 +92,10 @@ std::vector<TissueKind> TissueTable::kinds() const {
 TissueTable merge_tissue_tables(const TissueTable& in_file, const TissueTable* user) {
   TissueTable merged = in_file;
   bool named = false;
+  static const TissueTable kNone;
+  const FileValueIndex by_value(user ? *user : kNone);
   for (Tissue& tissue : merged.tissues) {
-    const Tissue* from_user = user ? user->find_file_value(tissue.file_value) : nullptr;
+    const Tissue* from_user = by_value.find(tissue.file_value);
     if (from_user) {
       const Label label = tissue.label;
       tissue = *from_user;

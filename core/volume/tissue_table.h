@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -65,6 +66,16 @@ struct TissueTable {
   const Tissue* find_file_value(double value) const;
   // kind per label, 0 .. 65535, Unknown where absent
   std::vector<TissueKind> kinds() const;
+};
+
+// Many look-ups by file value. Lives no longer than the table.
+class FileValueIndex {
+ public:
+  explicit FileValueIndex(const TissueTable& table);
+  const Tissue* find(double value) const;  // nullptr when absent
+
+ private:
+  std::unordered_map<double, const Tissue*> by_value_;
 };
 
 // Colour, density, stiffness and priority that a tissue of this kind starts with.

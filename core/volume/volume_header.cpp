@@ -49,17 +49,15 @@ Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std:
     if (size < 1)
       throw Error("axis " + std::to_string(axis + 1) + " has " + std::to_string(size) + " voxels", where,
                   "every side needs at least one voxel; export the volume again");
-    if (axis >= 3 && size > 1)
-      throw Error("the file holds " + std::to_string(size) + " volumes (" + std::to_string(raw.sizes.size()) + "-D)", where,
-                  "export one 3-D volume");
+    if (axis >= 3)
+      throw Error("the file is " + std::to_string(raw.sizes.size()) + "-D (axis " + std::to_string(axis + 1) + " has " + std::to_string(size) + ")",
+                  where, "export one 3-D volume");
     if (size > kMostVoxels || voxels > kMostVoxels / size)
       throw Error("the size overflows", where, "the header promises more than 10^12 voxels; export the volume again");
     voxels *= size;
-    if (axis < 3) {
-      if (size > std::numeric_limits<std::int32_t>::max())
-        throw Error("axis " + std::to_string(axis + 1) + " has " + std::to_string(size) + " voxels", where, "use a coarser spacing");
-      grid.size[static_cast<int>(axis)] = static_cast<int>(size);
-    }
+    if (size > std::numeric_limits<std::int32_t>::max())
+      throw Error("axis " + std::to_string(axis + 1) + " has " + std::to_string(size) + " voxels", where, "use a coarser spacing");
+    grid.size[static_cast<int>(axis)] = static_cast<int>(size);
   }
   if (raw.sizes.empty()) throw Error("the header names no size", where, "export the volume again");
 
@@ -77,7 +75,9 @@ Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std:
       grid.spacing[axis] *= length;
       grid.direction[axis] /= length;
     }
+    grid.direction[axis] += glm::dvec3(0);  // no -0
   }
+  grid.origin += glm::dvec3(0);
   const double triple = std::abs(glm::determinant(grid.direction));
   if (!(triple > kFlat)) throw Error("the direction cannot be inverted", where, "two axes are parallel; correct the header");
   if (triple < 1 - kRightAngles)

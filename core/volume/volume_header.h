@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,6 +43,8 @@ auto visit_voxel_type(VoxelType type, const Body& body) {
 
 enum class Encoding : std::uint8_t { Raw, Deflate, Bzip2, Ascii, Hex };  // Deflate: gzip or zlib, told apart by content
 
+using KeyValues = std::map<std::string, std::string, std::less<>>;
+
 struct VolumeHeader {
   std::string format;  // as FileType::format
   VoxelType voxel_type = VoxelType::UInt8;
@@ -57,11 +60,12 @@ struct VolumeHeader {
   std::int64_t decoded_skip = 0;  // then bytes, after decoding
   std::optional<std::int64_t> compressed_bytes;  // as the header says, true or not
 
+  KeyValues keys;     // NRRD's `key:=value` lines
   TissueTable named;  // what the header says of file values; labels are not yet given
   std::vector<std::string> warnings;
 };
 
-// Size, spacing and origin as a parser found them, any number of axes; axes beyond the third must have one voxel.
+// Size, spacing and origin as a parser found them, any number of axes.
 struct RawGrid {
   std::vector<std::int64_t> sizes;
   glm::dvec3 spacing{1}, origin{0};

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/volume/dicom.h"
 #include "core/volume/header_text.h"
 #include "core/volume/label_decoder.h"
 #include "core/volume/voxel_source.h"
@@ -83,12 +84,13 @@ Error no_label(LabelDecoder::Problem problem, double value, const Path& path) {
 
 // One tissue per label present, with what the file says of it.
 TissueTable tissues_of(const std::vector<std::pair<Label, double>>& values, const TissueTable& named) {
+  const FileValueIndex by_value(named);
   TissueTable table;
   table.source = named.source;
   for (const auto& [label, value] : values) {
     if (label == 0) continue;
     Tissue tissue;
-    if (const Tissue* known = named.find_file_value(value)) tissue = *known;
+    if (const Tissue* known = by_value.find(value)) tissue = *known;
     tissue.label = label;
     tissue.file_value = value;
     table.tissues.push_back(tissue);
@@ -140,15 +142,20 @@ GreyVolume read_grey_volume(const Path& path, Progress& progress) {
 VolumeSummary summarize_volume(const Path& path) {
   OpenedVolume opened = open_volume(path);
   const VolumeHeader& header = opened.header;
-  VolumeSummary summary{header.grid, type_of(header), true, {}, std::numeric_limits<double>::infinity(),
+  VolumeSummary summary{header.grid, type_of(header), true, false, {}, std::numeric_limits<double>::infinity(),
                         -std::numeric_limits<double>::infinity(), header.warnings};
   LabelDecoder decoder;
   std::vector<Label> labels(kChunkVoxels);
   std::vector<std::int64_t> count_of(65536);
+  std::int64_t tissue_voxels = 0, changes = 0;
   for_chunks(opened, no_progress(), [&](const void* chunk, std::size_t count, std::int64_t) {
     if (summary.is_label &&
         decoder.decode(chunk, count, header.voxel_type, header.slope, header.intercept, labels.data()) == LabelDecoder::Problem::None) {
-      for (std::size_t i = 0; i < count; ++i) ++count_of[labels[i]];
+      for (std::size_t i = 0; i < count; ++i) {
+        ++count_of[labels[i]];
+        tissue_voxels += labels[i] != 0;
+        changes += i > 0 && labels[i] != labels[i - 1];
+      }
     } else {
       summary.is_label = false;
     }
@@ -162,12 +169,15 @@ VolumeSummary summarize_volume(const Path& path) {
     });
   });
   append(summary.warnings, opened.voxels->finish());
+  // A label reaches over several voxels; the grey values of two neighbours are mostly not the same.
+  summary.looks_grey = !summary.is_label || 2 * changes > tissue_voxels;
   if (!summary.is_label) return summary;
 
   bool tissue = false;
+  const FileValueIndex by_value(header.named);
   for (const auto& [label, value] : decoder.values()) {
     if (count_of[label] == 0) continue;
-    const Tissue* known = header.named.find_file_value(value);
+    const Tissue* known = by_value.find(value);
     summary.labels.push_back({value, count_of[label], known ? known->name : ""});
     tissue = tissue || label != 0;
   }
@@ -176,11 +186,22 @@ VolumeSummary summarize_volume(const Path& path) {
   return summary;
 }
 
+bool is_weights_path(const Path& path) { return lower_case(path.extension().string()) == ".nrrd" && read_nrrd_keys(path).contains(kWeightsKey); }
+
+WeightsSummary summarize_weights(const Path& path) {
+  const OpenedVolume opened = open_volume(path, Holding::Weights);
+  const auto bones = opened.header.keys.find(kWeightsKey);
+  if (bones == opened.header.keys.end()) throw Error("the file holds no weights", path.string(), "make them with `limber weights`");
+  return {bones->second, opened.header.grid.size.y};
+}
+
 bool is_volume_path(const Path& path) {
+  if (std::filesystem::is_directory(path)) return is_dicom_folder(path);
   const std::string name = lower_case(path.filename().string());
   for (const char* end : {".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".hdr", ".img", ".img.gz", ".dcm"})
     if (name.ends_with(end)) return true;
-  return false;
+  if (name.ends_with(".raw")) return std::filesystem::exists(Path(path).replace_extension(".txt"));
+  return name.ends_with(".txt") && is_virtual_family(path);
 }
 
 }  // namespace limber

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Label and grey volumes from and to files: NRRD (.nrrd .nhdr .seg.nrrd), MetaImage (.mha .mhd), NIfTI-1/2 (.nii .nii.gz
-// .hdr+.img), a folder with a DICOM series, Virtual Family RAW + .txt. Behind this door stand ITK and niftilib; before
-// they are believed, headers and byte counts are checked here, because ITK 5.2 silently accepts truncated data,
-// negative spacing and data files outside the header's folder.
+// Label and grey volumes from and to files: NRRD (.nrrd .nhdr .seg.nrrd; raw, gzip, bzip2, ascii, hex), MetaImage (.mha
+// .mhd), NIfTI-1 and -2 (.nii .nii.gz, .hdr + .img), DICOM (a folder with one series, or one image; read only) and Virtual
+// Family (.raw + .txt).
+//
+// A file is believed only where it is whole: the header is read by parsers of our own (nrrd_header, meta_header,
+// nifti_header, virtual_family; the libraries that were tried accept truncated data, negative spacing and data files
+// outside the header's folder without a word), and the voxels are inflated through zlib straight into the labels, so that
+// counting the bytes costs no second pass and a volume is held in memory once. Only DICOM goes through a library, GDCM.
+// Refused with one line: missing bytes, damaged compression, spacing or direction that cannot be, more than one volume,
+// colours, what does not fit in memory. Read with a warning: data that are whole despite a wrong header field.
 #pragma once
 
 #include <string>
@@ -41,7 +47,8 @@ struct GreyVolume {
 struct VolumeSummary {
   Grid grid;
   FileType type;
-  bool is_label = true;  // false when values are fractional or more than 65 535 distinct
+  bool is_label = true;     // false when values are fractional or more than 65 535 distinct
+  bool looks_grey = false;  // not a label volume, or one whose neighbouring voxels mostly differ, as in an image
   struct Count {
     double value;
     std::int64_t voxels;
@@ -57,6 +64,14 @@ VolumeFile read_volume(const Path& path, Progress& progress = no_progress());
 GreyVolume read_grey_volume(const Path& path, Progress& progress = no_progress());
 VolumeSummary summarize_volume(const Path& path);
 bool is_volume_path(const Path& path);  // by name, or a folder that holds DICOM
+
+// Weights are kept in NRRD files too (see skin/weights_io): what tells them from volumes is their `limber_bones`.
+bool is_weights_path(const Path& path);
+struct WeightsSummary {
+  std::string bones;  // names, as JSON
+  std::int64_t voxels = 0;
+};
+WeightsSummary summarize_weights(const Path& path);
 
 // Throws Error when no volume can be written under this name (unknown extension, missing folder). Commands ask first,
 // before they compute.

@@ -14,6 +14,8 @@
 
 #include "core/base/error.h"
 #include "core/volume/header_text.h"
+#include "core/volume/nifti_header.h"
+#include "core/volume/virtual_family.h"
 #include "core/volume/volume_header.h"
 #include "core/volume/volume_io.h"
 
@@ -107,7 +109,8 @@ struct Voxels {
   bool compress = true;
   // Fills `to` with `count` voxels from `first` on.
   std::function<void(std::int64_t first, std::size_t count, void* to)> fill;
-  std::vector<std::pair<std::string, std::string>> keys;  // for formats that hold key/value pairs
+  TissueTable tissues;             // for formats that hold names
+  int nifti_version = 1;
 };
 
 void write_voxels(OutputFile& out, const Voxels& voxels) {
@@ -153,6 +156,25 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
+std::vector<std::pair<std::string, std::string>> segment_keys(const TissueTable& tissues, const Grid& grid) {
+  const bool named = std::any_of(tissues.tissues.begin(), tissues.tissues.end(), [](const Tissue& t) { return !t.name.empty(); });
+  if (!named) return {};
+  std::vector<std::pair<std::string, std::string>> keys;
+  int number = 0;
+  for (const Tissue& tissue : tissues.tissues) {
+    const std::string prefix = "Segment" + std::to_string(number++) + "_", value = text_of(tissue.file_value);
+    keys.emplace_back(prefix + "ID", "Segment_" + value);
+    keys.emplace_back(prefix + "Name", tissue.name.empty() ? "label " + value : tissue.name);
+    keys.emplace_back(prefix + "Color", text_of(tissue.colour.r) + " " + text_of(tissue.colour.g) + " " + text_of(tissue.colour.b));
+    keys.emplace_back(prefix + "LabelValue", value);
+    keys.emplace_back(prefix + "Layer", "0");
+    keys.emplace_back(prefix + "Extent", "0 " + std::to_string(grid.size.x - 1) + " 0 " + std::to_string(grid.size.y - 1) + " 0 " + std::to_string(grid.size.z - 1));
+  }
+  keys.emplace_back("Segmentation_SourceRepresentation", "Binary labelmap");
+  keys.emplace_back("Segmentation_ContainedRepresentationNames", "Binary labelmap|");
+  keys.emplace_back("Segmentation_ReferenceImageExtentOffset", "0 0 0");
+  return keys;
+}
 std::string nrrd_header(const Voxels& voxels, const std::string& data_name) {
   const Grid& grid = voxels.grid;
   const AffineTransform world = world_from_voxel(grid);
@@ -165,7 +187,7 @@ std::string nrrd_header(const Voxels& voxels, const std::string& data_name) {
   if (size_of(voxels.type) > 1) text += "endian: little\n";
   text += std::string("encoding: ") + (voxels.compress ? "gzip" : "raw") + "\nspace origin: (" + joined(grid.origin, ",") + ")\n";
   if (!data_name.empty()) text += "data file: " + data_name + "\n";
-  for (const auto& [key, value] : voxels.keys) text += key + ":=" + escaped(value) + "\n";
+  for (const auto& [key, value] : segment_keys(voxels.tissues, grid)) text += key + ":=" + escaped(value) + "\n";
   return text + "\n";
 }
 
@@ -229,6 +251,26 @@ void write_meta(const Voxels& voxels, const Path& path) {
   });
 }
 
+// ---- NIfTI
+
+// Version 1 counts voxels in 16 bits.
+int nifti_version(const Voxels& voxels) {
+  const glm::ivec3 size = voxels.grid.size;
+  return std::max({size.x, size.y, size.z}) > 32767 ? 2 : voxels.nifti_version;
+}
+
+void write_nifti(const Voxels& voxels, const Path& path) {
+  const bool compress = lower_case(path.extension().string()) == ".gz";
+  write_atomically(path, [&](const Path& temporary) {
+    OutputFile out(temporary);
+    if (compress) out.begin_deflate(OutputFile::Wrap::Gzip);
+    write_text(out, make_nifti_header(voxels.grid, voxels.type, voxels.channels, nifti_version(voxels), false));
+    write_voxels(out, voxels);
+    if (compress) out.end_deflate();
+    out.close();
+  });
+}
+
 // ---- Which format
 
 using Writer = void (*)(const Voxels&, const Path&);
@@ -248,6 +290,23 @@ Writer writer_of(const Path& path) {
       write_detached(voxels, to, voxels.compress ? ".zraw" : ".raw", OutputFile::Wrap::Zlib,
                      [&](const std::string& data, std::int64_t bytes) { return meta_header(voxels, data, std::to_string(bytes)); });
     };
+  if (ends(".nii") || ends(".nii.gz")) return write_nifti;
+  if (ends(".hdr"))
+    return [](const Voxels& voxels, const Path& to) {
+      Voxels plain = voxels;
+      plain.compress = false;
+      write_detached(plain, to, ".img", OutputFile::Wrap::Gzip, [&](const std::string&, std::int64_t) {
+        return make_nifti_header(voxels.grid, voxels.type, voxels.channels, nifti_version(voxels), true);
+      });
+    };
+  if (ends(".txt"))
+    return [](const Voxels& voxels, const Path& to) {
+      if (voxels.type != VoxelType::UInt8 && voxels.type != VoxelType::UInt16)
+        throw Error("Virtual Family files hold labels of 8 or 16 bits", to.string(), "write .nrrd, .mha or .nii.gz");
+      Voxels plain = voxels;
+      plain.compress = false;
+      write_detached(plain, to, ".raw", OutputFile::Wrap::Gzip, [&](const std::string&, std::int64_t) { return make_virtual_family(voxels.grid, voxels.tissues); });
+    };
   return nullptr;
 }
 
@@ -255,12 +314,13 @@ std::string format_of(const Path& path) {
   const std::string name = lower_case(path.filename().string());
   if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return "NRRD";
   if (name.ends_with(".mha") || name.ends_with(".mhd")) return "MetaImage";
+  if (name.ends_with(".txt")) return "Virtual Family";
   return "";
 }
 
 Writer checked_writer(const Path& path) {
   const Writer writer = writer_of(path);
-  if (!writer) throw Error("volumes cannot be written under this name", path.string(), "end it in .nrrd, .seg.nrrd, .nhdr, .mha, .mhd, .nii or .nii.gz");
+  if (!writer) throw Error("volumes cannot be written under this name", path.string(), "end it in .nrrd, .seg.nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz, .hdr or .txt (Virtual Family)");
   return writer;
 }
 
@@ -287,25 +347,6 @@ VoxelType type_that_holds(double lowest, double highest, std::optional<VoxelType
   return is_signed ? Int64 : UInt64;
 }
 
-std::vector<std::pair<std::string, std::string>> segment_keys(const TissueTable& tissues, const Grid& grid) {
-  const bool named = std::any_of(tissues.tissues.begin(), tissues.tissues.end(), [](const Tissue& t) { return !t.name.empty(); });
-  if (!named) return {};
-  std::vector<std::pair<std::string, std::string>> keys;
-  int number = 0;
-  for (const Tissue& tissue : tissues.tissues) {
-    const std::string prefix = "Segment" + std::to_string(number++) + "_", value = text_of(tissue.file_value);
-    keys.emplace_back(prefix + "ID", "Segment_" + value);
-    keys.emplace_back(prefix + "Name", tissue.name.empty() ? "label " + value : tissue.name);
-    keys.emplace_back(prefix + "Color", text_of(tissue.colour.r) + " " + text_of(tissue.colour.g) + " " + text_of(tissue.colour.b));
-    keys.emplace_back(prefix + "LabelValue", value);
-    keys.emplace_back(prefix + "Layer", "0");
-    keys.emplace_back(prefix + "Extent", "0 " + std::to_string(grid.size.x - 1) + " 0 " + std::to_string(grid.size.y - 1) + " 0 " + std::to_string(grid.size.z - 1));
-  }
-  keys.emplace_back("Segmentation_SourceRepresentation", "Binary labelmap");
-  keys.emplace_back("Segmentation_ContainedRepresentationNames", "Binary labelmap|");
-  keys.emplace_back("Segmentation_ReferenceImageExtentOffset", "0 0 0");
-  return keys;
-}
 }  // namespace
 
 void check_writable(const Path& path) {
@@ -330,7 +371,7 @@ void write_volume(const LabelVolume& volume, const Path& path, const TissueTable
     }
 
   Voxels voxels{volume.grid, type_that_holds(lowest, highest, voxel_type_from_text(type.voxel_type)), 1,
-                type.compressed || type.format != format_of(path), {}, segment_keys(tissues, volume.grid)};
+                type.compressed || type.format != format_of(path), {}, tissues, type.format == "NIfTI-2" ? 2 : 1};
   visit_voxel_type(voxels.type, [&]<class T>(T) {
     std::vector<T> stored(65536);
     for (std::size_t label = 0; label < stored.size(); ++label)
@@ -356,7 +397,7 @@ void write_grey_volume(const GreyVolume& volume, const Path& path) {
                static_cast<double>(v) < static_cast<double>(std::numeric_limits<T>::max()) + 1;
       });
   });
-  Voxels voxels{volume.grid, keeps ? wanted : VoxelType::Float32, 1, volume.type.compressed || volume.type.format != format_of(path), {}, {}};
+  Voxels voxels{volume.grid, keeps ? wanted : VoxelType::Float32, 1, volume.type.compressed || volume.type.format != format_of(path), {}, {}, volume.type.format == "NIfTI-2" ? 2 : 1};
   visit_voxel_type(voxels.type, [&]<class T>(T) {
     voxels.fill = [&volume](std::int64_t first, std::size_t count, void* to) {
       T* out = static_cast<T*>(to);
@@ -367,7 +408,7 @@ void write_grey_volume(const GreyVolume& volume, const Path& path) {
 }
 
 void write_vector_volume(const Grid& grid, const std::vector<glm::vec3>& vectors, const Path& path) {
-  Voxels voxels{grid, VoxelType::Float32, 3, true, {}, {}};
+  Voxels voxels{grid, VoxelType::Float32, 3, true, {}, {}, 1};
   voxels.fill = [&vectors](std::int64_t first, std::size_t count, void* to) {
     std::memcpy(to, &vectors[static_cast<std::size_t>(first)], count * sizeof(glm::vec3));
   };
@@ -375,7 +416,7 @@ void write_vector_volume(const Grid& grid, const std::vector<glm::vec3>& vectors
 }
 
 void write_scalar_volume(const Grid& grid, const std::vector<float>& values, const Path& path) {
-  Voxels voxels{grid, VoxelType::Float32, 1, true, {}, {}};
+  Voxels voxels{grid, VoxelType::Float32, 1, true, {}, {}, 1};
   voxels.fill = [&values](std::int64_t first, std::size_t count, void* to) {
     std::memcpy(to, &values[static_cast<std::size_t>(first)], count * sizeof(float));
   };

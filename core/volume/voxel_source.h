@@ -29,7 +29,16 @@ struct OpenedVolume {
   std::unique_ptr<VoxelSource> voxels;
 };
 
-// Reads and checks the header, by content and extension, and opens the data. Throws Error.
-OpenedVolume open_volume(const Path& path);
+// The key that marks an NRRD file as weights.
+constexpr const char* kWeightsKey = "limber_bones";
+enum class Holding { Volume, Weights };
+
+// Reads and checks the header, by content and extension, and opens the data. Throws Error, also for weights where a
+// volume is wanted.
+OpenedVolume open_volume(const Path& path, Holding holding = Holding::Volume);
+
+// `key:=value` lines of an NRRD file, without any other check; none for another file.
+KeyValues read_nrrd_keys(const Path& path);
+bool is_virtual_family(const Path& text_path);
 
 }  // namespace limber

@@ -51,8 +51,8 @@ struct Door {
 };
 
 const std::vector<Door> kDoors = {
-    {"ITK", {"itk", "gdcm"}, {"core/volume/volume_io.cpp", "core/volume/dicom.cpp", "tests/"}},
-    {"niftilib", {"nifti", "nifti1", "nifti2"}, {"core/volume/volume_io.cpp"}},
+    {"GDCM", {"gdcm"}, {"core/volume/dicom.cpp"}},
+    {"bzip2", {"bzlib"}, {"core/volume/voxel_stream.cpp"}},
     {"TetGen", {"tetgen"}, {"core/mesh/tetrahedralize.cpp"}},
     {"CHOLMOD", {"cholmod", "suitesparse/"}, {"core/base/cholesky.cpp"}},
     {"TBB", {"tbb/", "oneapi/"}, {"core/base/parallel.cpp"}},

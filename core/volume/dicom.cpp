@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/volume/dicom.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include <gdcmImageReader.h>
+#include <gdcmReader.h>
+#include <gdcmTrace.h>
+
+#include "core/base/error.h"
+#include "core/volume/header_text.h"
+#include "core/volume/voxel_stream.h"
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+constexpr std::size_t kMostFiles = 100000;
+// Positions are decimal text, rounded; gaps may differ by this share of the mean.
+constexpr double kEvenGaps = 0.02;
+// The most one byte of a compressed slice may unpack to.
+constexpr std::int64_t kCodecMost = 4000;
+
+struct Slice {
+  Path path;
+  std::string series;
+  int rows = 0, columns = 0;
+  glm::dvec3 position{0}, along_row{1, 0, 0}, along_column{0, 1, 0};
+  glm::dvec2 spacing{1};  // mm between columns (x), between rows (y)
+  double thickness = 1;
+  double slope = 1, intercept = 0;
+  VoxelType type = VoxelType::Int16;
+  bool has_position = false;
+
+  std::int64_t bytes() const { return std::int64_t{rows} * columns * size_of(type); }
+  glm::dvec3 normal() const { return glm::cross(along_row, along_column); }
+};
+
+// Values of one element, as text or as a 16-bit number.
+class Elements {
+ public:
+  explicit Elements(const gdcm::DataSet& set) : set_(set) {}
+
+  std::string text(std::uint16_t group, std::uint16_t element) const {
+    const gdcm::Tag tag(group, element);
+    if (!set_.FindDataElement(tag)) return {};
+    const gdcm::ByteValue* value = set_.GetDataElement(tag).GetByteValue();
+    if (!value || !value->GetPointer()) return {};
+    std::string text(value->GetPointer(), value->GetLength());
+    while (!text.empty() && (text.back() == '\0' || is_blank(text.back()))) text.pop_back();
+    return text;
+  }
+  std::optional<int> word(std::uint16_t group, std::uint16_t element) const {
+    const gdcm::Tag tag(group, element);
+    if (!set_.FindDataElement(tag)) return std::nullopt;
+    const gdcm::ByteValue* value = set_.GetDataElement(tag).GetByteValue();
+    if (!value || !value->GetPointer() || value->GetLength() < 2) return std::nullopt;
+    std::uint16_t number;
+    std::memcpy(&number, value->GetPointer(), 2);
+    return number;
+  }
+  // Numbers between backslashes; none unless there are `count`.
+  std::vector<double> numbers(std::uint16_t group, std::uint16_t element, std::size_t count) const {
+    std::string all = text(group, element);
+    std::replace(all.begin(), all.end(), '\\', ' ');
+    const auto numbers = numbers_of<double>(all);
+    return numbers && numbers->size() == count ? *numbers : std::vector<double>{};
+  }
+
+ private:
+  const gdcm::DataSet& set_;
+};
+
+std::optional<VoxelType> type_of(int bits, bool is_signed) {
+  if (bits == 8) return is_signed ? VoxelType::Int8 : VoxelType::UInt8;
+  if (bits == 16) return is_signed ? VoxelType::Int16 : VoxelType::UInt16;
+  if (bits == 32) return is_signed ? VoxelType::Int32 : VoxelType::UInt32;
+  return std::nullopt;
+}
+
+Slice read_slice_header(const Path& path) {
+  gdcm::Reader reader;
+  reader.SetFileName(path.c_str());
+  const gdcm::Tag pixels(0x7fe0, 0x0010);
+  if (!reader.ReadUpToTag(pixels)) throw Error("the DICOM header is damaged", path.string(), "export the series again");
+  const Elements elements(reader.GetFile().GetDataSet());
+
+  Slice slice;
+  slice.path = path;
+  slice.series = elements.text(0x0020, 0x000e);
+  slice.rows = elements.word(0x0028, 0x0010).value_or(0);
+  slice.columns = elements.word(0x0028, 0x0011).value_or(0);
+  if (slice.rows < 1 || slice.columns < 1) throw Error("the DICOM file holds no image", path.string(), "keep only image files in the folder");
+  if (elements.word(0x0028, 0x0002).value_or(1) != 1) throw Error("the DICOM image is in colour", path.string(), "export one label or grey value per voxel");
+  if (number_of<int>(elements.text(0x0028, 0x0008)).value_or(1) > 1)
+    throw Error("the DICOM file holds several frames", path.string(), "export it as a series of single images, or as NRRD or NIfTI");
+  const auto type = type_of(elements.word(0x0028, 0x0100).value_or(0), elements.word(0x0028, 0x0103).value_or(0) == 1);
+  if (!type) throw Error("the DICOM image has voxels that are not of 8, 16 or 32 bits", path.string(), "export it with 16 bits");
+  slice.type = *type;
+
+  if (const auto p = elements.numbers(0x0020, 0x0032, 3); !p.empty()) {
+    slice.position = {p[0], p[1], p[2]};
+    slice.has_position = true;
+  }
+  if (const auto o = elements.numbers(0x0020, 0x0037, 6); !o.empty()) {
+    slice.along_row = {o[0], o[1], o[2]};
+    slice.along_column = {o[3], o[4], o[5]};
+  }
+  // DICOM names the distance between rows first.
+  for (const auto& spacing : {elements.numbers(0x0018, 0x1164, 2), elements.numbers(0x0028, 0x0030, 2)})
+    if (!spacing.empty()) slice.spacing = {spacing[1], spacing[0]};
+  for (const auto& thickness : {elements.numbers(0x0018, 0x0050, 1), elements.numbers(0x0018, 0x0088, 1)})
+    if (!thickness.empty() && thickness[0] != 0) slice.thickness = thickness[0];
+  if (const auto slope = elements.numbers(0x0028, 0x1053, 1); !slope.empty() && std::isfinite(slope[0]) && slope[0] != 0) slice.slope = slope[0];
+  if (const auto intercept = elements.numbers(0x0028, 0x1052, 1); !intercept.empty() && std::isfinite(intercept[0])) slice.intercept = intercept[0];
+  return slice;
+}
+
+std::vector<Path> dicom_files(const Path& folder) {
+  std::vector<Path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    std::error_code error;
+    if (!entry.is_regular_file(error) || !is_dicom_file(entry.path())) continue;
+    if (files.size() == kMostFiles) throw Error("the folder holds more than 100 000 DICOM files", folder.string(), "keep one series in it");
+    files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// One series, in order along its normal.
+std::vector<Slice> read_series(const Path& folder) {
+  std::map<std::string, std::vector<Slice>> by_series;
+  for (const Path& file : dicom_files(folder)) {
+    Slice slice = read_slice_header(file);
+    by_series[slice.series].push_back(std::move(slice));
+  }
+  if (by_series.empty()) throw Error("the folder holds no DICOM image", folder.string(), "name a volume file, or a folder with one series");
+  if (by_series.size() > 1) {
+    std::string counts;
+    for (const auto& [uid, slices] : by_series) counts += (counts.empty() ? "" : ", ") + std::to_string(slices.size());
+    throw Error("the folder holds " + std::to_string(by_series.size()) + " DICOM series (" + counts.substr(0, 60) + " images)", folder.string(),
+                "keep one series in it");
+  }
+  std::vector<Slice> slices = std::move(by_series.begin()->second);
+  const glm::dvec3 normal = slices.front().normal();
+  std::stable_sort(slices.begin(), slices.end(), [&](const Slice& a, const Slice& b) { return glm::dot(a.position, normal) < glm::dot(b.position, normal); });
+  return slices;
+}
+
+void check_alike(const std::vector<Slice>& slices, const Path& path) {
+  const Slice& first = slices.front();
+  for (const Slice& slice : slices) {
+    const bool alike = slice.rows == first.rows && slice.columns == first.columns && slice.type == first.type &&
+                       glm::length(slice.along_row - first.along_row) < 1e-3 && glm::length(slice.along_column - first.along_column) < 1e-3 &&
+                       glm::length(slice.spacing - first.spacing) < 1e-3 * glm::length(first.spacing);
+    if (!alike) throw Error("the images of the series differ in size, type, spacing or direction", slice.path.string(), "keep one stack of images in " + path.string());
+    if (slices.size() > 1 && !slice.has_position) throw Error("the DICOM image has no position", slice.path.string(), "export the series again");
+  }
+}
+
+// From the first slice to the next; gaps must be even.
+glm::dvec3 slice_step(const std::vector<Slice>& slices, const Path& path) {
+  const Slice& first = slices.front();
+  const glm::dvec3 normal = glm::normalize(first.normal());
+  if (slices.size() == 1) return normal * first.thickness;
+  const glm::dvec3 step = (slices.back().position - first.position) / static_cast<double>(slices.size() - 1);
+  const double mean = glm::dot(step, normal);
+  for (std::size_t i = 1; i < slices.size(); ++i) {
+    const double gap = glm::dot(slices[i].position - slices[i - 1].position, normal);
+    if (!(std::abs(gap - mean) <= kEvenGaps * mean) || !(mean > 0))
+      throw Error("the slices are not evenly spaced (" + text_of(std::round(gap * 1000) / 1000) + " mm where " + text_of(std::round(mean * 1000) / 1000) +
+                      " mm is the mean)",
+                  slices[i].path.string(), "an image is missing or doubled in " + path.string());
+  }
+  return step;
+}
+
+// A library's own exception becomes an Error here, at its door.
+template <class Body>
+auto behind_door(const Path& path, const Body& body) {
+  try {
+    return body();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error("the DICOM data cannot be read", path.string(), error.what());
+  }
+}
+
+class DicomSource final : public VoxelSource {
+ public:
+  DicomSource(std::vector<Slice> slices, bool scale) : slices_(std::move(slices)), scale_(scale) {}
+
+  void read(void* to, std::size_t bytes) override {
+    auto* out = static_cast<char*>(to);
+    while (bytes > 0) {
+      if (place_ == buffer_.size()) behind_door(slices_.at(next_).path, [&] { decode_next(); });
+      const std::size_t now = std::min(bytes, buffer_.size() - place_);
+      std::memcpy(out, buffer_.data() + place_, now);
+      place_ += now;
+      out += now;
+      bytes -= now;
+    }
+  }
+  std::vector<std::string> finish() override { return {}; }
+
+ private:
+  void decode_next() {
+    const Slice& slice = slices_.at(next_++);
+    const auto damaged = [&] { return Error("the pixels of the DICOM image are missing or damaged", slice.path.string(), "export the series again"); };
+    if (slice.bytes() > PlainFile(slice.path).size() * kCodecMost) throw damaged();
+    gdcm::ImageReader reader;
+    reader.SetFileName(slice.path.c_str());
+    if (!reader.Read()) throw damaged();
+    const gdcm::Image& image = reader.GetImage();
+    if (image.GetNumberOfDimensions() != 2 || static_cast<std::int64_t>(image.GetBufferLength()) != slice.bytes()) throw damaged();
+    buffer_.resize(static_cast<std::size_t>(slice.bytes()));
+    if (!image.GetBuffer(buffer_.data())) throw damaged();
+    if (scale_) to_float(slice);
+    place_ = 0;
+  }
+  // A series whose slices are scaled each in its own way is delivered scaled.
+  void to_float(const Slice& slice) {
+    std::vector<char> scaled(static_cast<std::size_t>(std::int64_t{slice.rows} * slice.columns) * sizeof(float));
+    visit_voxel_type(slice.type, [&]<class T>(T) {
+      for (std::size_t i = 0; i < scaled.size() / sizeof(float); ++i) {
+        T stored;
+        std::memcpy(&stored, buffer_.data() + i * sizeof(T), sizeof(T));
+        const auto value = static_cast<float>(static_cast<double>(stored) * slice.slope + slice.intercept);
+        std::memcpy(scaled.data() + i * sizeof(float), &value, sizeof(float));
+      }
+    });
+    buffer_ = std::move(scaled);
+  }
+
+  std::vector<Slice> slices_;
+  bool scale_;
+  std::vector<char> buffer_;
+  std::size_t place_ = 0, next_ = 0;
+};
+
+OpenedVolume open_slices(std::vector<Slice> slices, const Path& path) {
+  check_alike(slices, path);
+  const Slice& first = slices.front();
+  const bool same_scale = std::all_of(slices.begin(), slices.end(), [&](const Slice& s) { return s.slope == first.slope && s.intercept == first.intercept; });
+  VolumeHeader header;
+  header.format = "DICOM";
+  header.voxel_type = same_scale ? first.type : VoxelType::Float32;
+  if (same_scale) {
+    header.slope = first.slope;
+    header.intercept = first.intercept;
+  }
+  const std::vector<std::int64_t> sizes = {first.columns, first.rows, static_cast<std::int64_t>(slices.size())};
+  for (double spacing : {first.spacing.x, first.spacing.y, first.thickness})
+    if (!(spacing > 0)) throw Error("the spacing is " + text_of(spacing) + " mm", first.path.string(), "spacing must be positive; export the series again");
+  glm::dmat3 columns(first.along_row * first.spacing.x, first.along_column * first.spacing.y, slice_step(slices, path));
+  header.grid = checked_grid(grid_from_columns(sizes, columns, first.position), path.string(), header.warnings);
+  return {header, std::make_unique<DicomSource>(std::move(slices), !same_scale)};
+}
+}  // namespace
+
+bool is_dicom_file(const Path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return false;
+  try {
+    char start[132];
+    return PlainFile(path).read_at(0, start, sizeof start) == sizeof start && std::memcmp(start + 128, "DICM", 4) == 0;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+bool is_dicom_folder(const Path& path) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path, error))
+    if (is_dicom_file(entry.path())) return true;
+  return false;
+}
+
+OpenedVolume open_dicom(const Path& path) {
+  gdcm::Trace::DebugOff();
+  gdcm::Trace::WarningOff();
+  gdcm::Trace::ErrorOff();
+  return behind_door(path, [&] {
+    std::vector<Slice> slices;
+    if (fs::is_directory(path))
+      slices = read_series(path);
+    else
+      slices.push_back(read_slice_header(path));
+    return open_slices(std::move(slices), path);
+  });
+}
+
+}  // namespace limber

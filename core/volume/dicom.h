@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// DICOM images: a folder with one series, or a single file, plain or compressed (JPEG, JPEG 2000, RLE). This is the
+// only door to GDCM, the DICOM library that ITK itself wraps: going to it directly spares each start of the program
+// the loading of ITK. Slices are ordered along their normal and must be evenly spaced.
+#pragma once
+
+#include "core/volume/voxel_source.h"
+
+namespace limber {
+
+// By content: the mark "DICM" after 128 bytes. False for what cannot be opened.
+bool is_dicom_file(const Path& path);
+// True when the folder holds at least one DICOM file.
+bool is_dicom_folder(const Path& path);
+
+// Throws Error for several series of the same rank, missing or unevenly spaced slices, colours, more than one frame.
+OpenedVolume open_dicom(const Path& path);
+
+}  // namespace limber
