@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The program without the editor: subcommands only.
 #include <cstdio>
+#include <exception>
 #include <new>
 
 #include "core/base/error.h"
@@ -27,6 +28,9 @@ int main(int argc, char** argv) {
     return 1;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "limber: there is not enough memory: this request: use a coarser spacing or a smaller volume\n");
+    return 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "limber: a mistake of the program itself: %s: please report it with the command that shows it\n", error.what());
     return 1;
   }
 }
