@@ -9,8 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/cmd/command.h"
-#include "core/rig/armature_io.h"
-#include "core/rig/bvh.h"
+#include "core/cmd/info_rig.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/volume_io.h"
 
@@ -55,30 +54,6 @@ Json describe_volume(const Path& path) {
   return json;
 }
 
-Json describe_rig(const Path& path) {
-  const ArmatureFile file = read_armature_file(path);
-  warn(file.warnings);
-  Json bones = Json::array();
-  for (const Bone& bone : file.armature.bones)
-    bones.push_back({{"name", bone.name},
-                     {"parent", bone.parent < 0 ? Json(nullptr) : Json(file.armature.bones[static_cast<std::size_t>(bone.parent)].name)},
-                     {"head", as_json(bone.head)},
-                     {"tail", as_json(bone.tail)}});
-  return {{"kind", "rig"}, {"format", file.format}, {"bones", bones}};
-}
-
-Json describe_motion(const Path& path) {
-  const Motion motion = read_bvh(path);
-  warn(motion.warnings);
-  Json joints = Json::array();
-  for (const BvhJoint& joint : motion.joints)
-    joints.push_back({{"name", joint.name},
-                      {"parent", joint.parent < 0 ? Json(nullptr) : Json(motion.joints[static_cast<std::size_t>(joint.parent)].name)},
-                      {"offset", as_json(joint.offset)},
-                      {"channels", joint.channels.size()}});
-  return {{"kind", "motion"}, {"joints", joints}, {"frames", motion.frame_count}, {"frame_time", motion.frame_time}};
-}
-
 Json describe_tissues(const Path& path) {
   const TissueTable table = read_tissue_table(path);
   Json labels = Json::array();
@@ -100,15 +75,14 @@ Json describe_json(const Path& path) {
                       std::all_of(json.items().begin(), json.items().end(), [](const auto& item) {
                         return !item.key().empty() && item.key().find_first_not_of("-0123456789") == std::string::npos;
                       });
-  return labels ? describe_tissues(path) : describe_rig(path);
+  return labels ? describe_tissues(path) : Json::parse(describe_rig_or_motion(path));
 }
 
 Json describe(const Path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
   if (extension == ".json") return describe_json(path);
-  if (extension == ".bvh") return describe_motion(path);
-  if (extension == ".vtk" || extension == ".arm") return describe_rig(path);
+  if (is_rig_or_motion(path)) return Json::parse(describe_rig_or_motion(path));
   if (extension == ".ctbl" || extension == ".label") return describe_tissues(path);
   if (extension == ".txt" && !is_volume_path(path)) return describe_tissues(path);
   if (is_weights_path(path)) return describe_weights(path);

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/cmd/command.h"
 #include "core/pose/pose_io.h"
+#include "core/rig/retarget.h"
 
 namespace limber::cmd {
 
@@ -22,6 +23,13 @@ void apply_flex(Pose& pose, const Armature& armature, const std::string& request
     throw Error("this is no flex", "--flex " + request, "write BONE=DEG, as in --flex Forearm=45");
   flex(pose, armature, require_bone(armature, request.substr(0, equals)), degrees);
 }
+
+Pose pose_of_motion(const PoseOptions& options, const Armature& armature) {
+  const Motion motion = read_bvh(options.motion);
+  warn(motion.warnings);
+  const RetargetMap map = options.map.empty() ? match_by_names(motion, armature) : read_retarget_map(options.map, motion, armature);
+  return Retarget(motion, armature, map, {.in_place = !options.root_motion}).at(options.frame.value_or(0));
+}
 }  // namespace
 
 void add_pose_options(CLI::App& command, PoseOptions& options) {
@@ -31,14 +39,21 @@ void add_pose_options(CLI::App& command, PoseOptions& options) {
       ->type_name("BONE=DEG")->expected(1)->take_all()->group(group);
   auto* motion = command.add_option("--motion", options.motion, "motion capture (BVH) to take the pose from")
                      ->type_name("F.bvh")->excludes(pose)->group(group);
-  command.add_option("--frame", options.frame, "its frame, from 0")->type_name("N")->check(CLI::NonNegativeNumber)->needs(motion)->group(group);
+  command.add_option("--frame", options.frame, "its frame, from 0")->type_name("N")->check(CLI::NonNegativeNumber)->group(group);
   command.add_option("--map", options.map, "which joint moves which bone (default: by names)")->type_name("M.json")->needs(motion)->group(group);
   command.add_flag("--root-motion", options.root_motion, "let the body travel as the motion does")->needs(motion)->group(group);
 }
 
+bool wants_pose(const PoseOptions& options) {
+  return !options.pose.empty() || !options.flex.empty() || !options.motion.empty();
+}
+
 Pose read_pose_options(const PoseOptions& options, const Armature& armature) {
+  if (options.frame && options.motion.empty())
+    throw Error("--frame says which frame, but of no motion", "--frame " + std::to_string(*options.frame), "add --motion F.bvh");
   Pose pose = rest_pose(armature);
   if (!options.pose.empty()) pose = read_pose(options.pose, armature);
+  if (!options.motion.empty()) pose = pose_of_motion(options, armature);
   for (const std::string& request : options.flex) apply_flex(pose, armature, request);
   return pose;
 }

@@ -5,6 +5,7 @@
 // Without any of them the pose is rest.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,13 @@ struct PoseOptions {
   std::string pose;               // file
   std::vector<std::string> flex;  // BONE=DEG
   std::string motion;             // file
-  int frame = 0;                  // of the motion, from 0
+  std::optional<int> frame;       // of the motion, from 0
   std::string map;                // file
   bool root_motion = false;
 };
+
+// True when any of them was given; --frame alone is not.
+bool wants_pose(const PoseOptions& options);
 
 // `options` must live as long as the command.
 void add_pose_options(CLI::App& command, PoseOptions& options);

@@ -107,6 +107,13 @@ glm::dmat3 rest_axes(const Bone& bone) {
   return axes;
 }
 
+double roll_of(const Bone& bone, const glm::dvec3& x) {
+  Bone straight = bone;
+  straight.roll = 0;
+  const glm::dmat3 axes = rest_axes(straight);
+  return std::atan2(-glm::dot(x, axes[2]), glm::dot(x, axes[0]));
+}
+
 glm::dvec3 flex_axis(const Armature& armature, int bone_index) {
   const Bone& bone = armature.bones[bone_index];
   if (bone.limits.type == JointLimits::Type::Hinge) return bone.limits.axis;

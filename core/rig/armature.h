@@ -54,6 +54,9 @@ Armature parents_first(std::vector<Bone> bones, const std::string& where);
 // Blender's bone matrix: columns x, y, z, with y from head to tail and the roll applied [vec_roll_to_mat3].
 glm::dmat3 rest_axes(const Bone& bone);
 
+// The roll that makes rest_axes(bone) agree with `x`, the bone's own x axis (unit, across the bone).
+double roll_of(const Bone& bone, const glm::dvec3& x);
+
 // Unit axis that `--flex` turns a bone about: its hinge axis if it has one, else (direction of its parent) x
 // (direction of the bone), so that positive bends further. Throws Error when there is no hinge and the two enclose
 // less than 10 degrees.

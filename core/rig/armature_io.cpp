@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/rig/bender_armature.h"
 #include "core/rig/bvh.h"
+#include "core/rig/gltf.h"
 
 namespace limber {
 
@@ -207,9 +208,15 @@ ArmatureFile read_armature_file(const Path& path) {
   const std::string text = read_file(path, kMostBytes);
   if (extension == ".json") return {parse_armature_json(text, path.string()), "Limber JSON", {}};
   if (extension == ".vtk") return {parse_bender_vtk(text, path.string()), "Bender VTK", {}};
+  if (extension == ".arm") return {parse_bender_arm(text, path.string()), "Bender ARM", {}};
   if (extension == ".bvh") {
     const Motion motion = parse_bvh(text, path.string());
     return {armature_of(motion), "BVH", motion.warnings};
+  }
+  if (extension == ".gltf" || extension == ".glb") {
+    GltfSummary gltf = parse_gltf(text, extension == ".glb", path.string());
+    if (gltf.armature.bones.empty()) throw Error("the model has no skin, so it is no rig", path.string(), "use a rigged model");
+    return {std::move(gltf.armature), "glTF", gltf.warnings};
   }
   throw Error("this is no kind of rig", path.string(), "use .json, .vtk, .arm, .bvh, .gltf or .glb");
 }

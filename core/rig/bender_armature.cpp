@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/rig/bender_armature.h"
 
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <memory>
+#include <new>
 #include <optional>
 #include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <expat.h>
 
 #include "core/base/error.h"
+#include "core/base/rigid_transform.h"
 
 namespace limber {
 
@@ -204,6 +212,123 @@ Armature parse_bender_vtk(const std::string& text, const std::string& where) {
   check_armature(armature, where);
   return armature;
 }
+
+// ---- .arm
+
+namespace {
+// A bone's own frame at its tail, in which its children are given; RAS.
+struct ArmFrame {
+  glm::dquat axes{1, 0, 0, 0};
+  glm::dvec3 tail{0};
+  int bone = -1;
+};
+
+struct ArmReader {
+  std::string where;
+  XML_Parser parser = nullptr;
+  std::vector<ArmFrame> open;
+  glm::dvec3 scale{1};
+  bool armature_seen = false;
+  std::vector<Bone> bones;
+  std::string what, what_to_do;  // of the first mistake; the parser cannot be left by an exception
+
+  void refuse(const std::string& mistake, const std::string& remedy) {
+    if (what.empty()) what = mistake, what_to_do = remedy;
+    XML_StopParser(parser, XML_FALSE);
+  }
+};
+
+const char* attribute(const char** attributes, std::string_view key) {
+  for (; *attributes; attributes += 2)
+    if (key == attributes[0]) return attributes[1];
+  return nullptr;
+}
+
+// Exactly `count` finite numbers; else the reader stops.
+std::array<double, 4> numbers_of(ArmReader& reader, const char* text, int count, const char* key) {
+  std::array<double, 4> values{};
+  const std::string_view all = text ? text : "";
+  const char* place = all.data();
+  const char* end = place + all.size();
+  for (int i = 0; i <= count; ++i) {
+    while (place != end && std::isspace(static_cast<unsigned char>(*place))) ++place;
+    if (i == count) break;
+    const auto [stop, error] = std::from_chars(place, end, values[i]);
+    // Numbers too small to hold are zero and stand in real files.
+    const bool tiny = error == std::errc::result_out_of_range && std::abs(values[i]) < 1;
+    if ((error != std::errc() && !tiny) || !std::isfinite(values[i]) || std::abs(values[i]) > 1e9) place = nullptr;
+    if (!place) break;
+    if (tiny) values[i] = 0;
+    place = stop;
+  }
+  if (place != end) reader.refuse(std::string("a bone's ") + key + " is not " + std::to_string(count) + " finite numbers", "correct the attribute");
+  return values;
+}
+
+glm::dvec3 vector_of(ArmReader& reader, const char* text, const char* key) {
+  const auto v = numbers_of(reader, text, 3, key);
+  return {v[0], v[1], v[2]};
+}
+
+glm::dquat orientation_of(ArmReader& reader, const char* text) {
+  if (!text) return {1, 0, 0, 0};
+  const auto q = numbers_of(reader, text, 4, "orientation");
+  const glm::dquat turn(q[3], q[0], q[1], q[2]);
+  const double length = glm::length(turn);
+  if (length > 1e-6) return turn / length;
+  reader.refuse("an orientation is no rotation", "give x, y, z, w, not all zero");
+  return {1, 0, 0, 0};
+}
+
+void arm_open(void* data, const char* element, const char** attributes) {
+  ArmReader& reader = *static_cast<ArmReader*>(data);
+  if (!reader.what.empty()) return;
+  if (element == std::string_view("armature")) {
+    if (reader.armature_seen) return reader.refuse("there are two armatures", "keep one in a file");
+    reader.armature_seen = true;
+    ArmFrame frame;
+    frame.axes = orientation_of(reader, attribute(attributes, "orientation"));
+    if (const char* location = attribute(attributes, "location")) frame.tail = vector_of(reader, location, "location");
+    if (const char* scale = attribute(attributes, "scale")) reader.scale = vector_of(reader, scale, "scale");
+    reader.open.push_back(frame);
+  } else if (element == std::string_view("bone")) {
+    if (reader.open.empty()) return reader.refuse("a bone stands outside the armature", "use an .arm file of Bender");
+    if (std::ssize(reader.bones) == kMostBones) return reader.refuse("there are more than " + std::to_string(kMostBones) + " bones", "use fewer");
+    const char* name = attribute(attributes, "name");
+    const ArmFrame parent = reader.open.back();
+    const glm::dvec3 head = parent.tail + parent.axes * (reader.scale * vector_of(reader, attribute(attributes, "head"), "head"));
+    const glm::dvec3 tail = parent.tail + parent.axes * (reader.scale * vector_of(reader, attribute(attributes, "tail"), "tail"));
+    const glm::dquat axes = glm::normalize(parent.axes * orientation_of(reader, attribute(attributes, "orientation")));
+    Bone bone{name ? name : "", parent.bone, lps_from_ras(head), lps_from_ras(tail)};
+    bone.roll = roll_of(bone, lps_from_ras(axes * glm::dvec3(1, 0, 0)));
+    reader.open.push_back({axes, tail, static_cast<int>(reader.bones.size())});
+    reader.bones.push_back(std::move(bone));
+  }
+}
+
+void arm_close(void* data, const char* element) {
+  ArmReader& reader = *static_cast<ArmReader*>(data);
+  if (element == std::string_view("bone") && !reader.open.empty()) reader.open.pop_back();
+}
+}  // namespace
+
+Armature parse_bender_arm(const std::string& text, const std::string& where) {
+  const std::unique_ptr<std::remove_pointer_t<XML_Parser>, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), XML_ParserFree);
+  if (!parser) throw std::bad_alloc();
+  ArmReader reader{.where = where, .parser = parser.get()};
+  XML_SetUserData(parser.get(), &reader);
+  XML_SetElementHandler(parser.get(), arm_open, arm_close);
+  const bool whole = XML_Parse(parser.get(), text.data(), static_cast<int>(text.size()), XML_TRUE) == XML_STATUS_OK;
+  const std::string here = where + ", line " + std::to_string(XML_GetCurrentLineNumber(parser.get()));
+  if (!reader.what.empty()) throw Error(reader.what, here, reader.what_to_do);
+  if (!whole) throw Error(std::string("this is not valid XML (") + XML_ErrorString(XML_GetErrorCode(parser.get())) + ")", here, "copy the whole file again");
+  if (!reader.armature_seen) throw Error("there is no armature", where, "use an .arm file of Bender");
+  Armature armature{std::move(reader.bones)};
+  check_armature(armature, where);
+  return armature;
+}
+
+// ---- writing
 
 std::string bender_vtk_text(const Armature& armature) {
   const int count = static_cast<int>(armature.bones.size());

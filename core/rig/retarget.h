@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Motion of one skeleton carried over to another. Joints are matched by names (own synonym table for CMU, Mixamo,
-// Rokoko, Bandai, MakeHuman, Bender, BodyParts3D) or by a map file {"source joint": "rig bone"}; scale comes from the
-// skeletons' heights; rest-pose offsets make *directions*, not angles, carry over.
+// Motion of one skeleton carried over to another.
+//
+// Each matched bone turns in the world exactly as its source joint turns:
+//   posed_from_rest(bone, frame) = source(joint, frame) * rest_offset(bone)
+// with `source` the joint's global rotation in LPS axes. The offset is fixed once, from a moment when the source stands as a
+// rig rests: its rest pose where that is a standing one, else the frame nearest to standing. At that moment
+//   - arms, thighs, shanks and fingers get the source's *directions* (so arms hang when the actor's hang, whatever pose
+//     either skeleton rests in), each by the shortest turn from where the bone above carries it; palms get its facing;
+//   - feet keep their pitch to the ground and get its heading; pelvis, spine, neck, head and collars, whose bones run
+//     differently in every skeleton, keep their rest shape and get the heading of hips and shoulders.
+// The body faces where the actor faces. Bones of the trunk between matched ones share the bend; all others follow the bone
+// they hang from. Lengths stay the rig's; travel is scaled by the legs' lengths.
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/pose/pose.h"
 #include "core/rig/bvh.h"
@@ -13,35 +24,52 @@
 namespace limber {
 
 struct RetargetMap {
-  struct Target {
-    std::string bone;
-    std::optional<glm::dquat> rest_offset;  // turns the source's rest direction onto the rig's
+  struct Source {
+    std::string joint;
+    std::optional<glm::dquat> rest_offset;  // as above; without one it is found
   };
-  std::map<std::string, Target> targets;  // by source joint
+  std::map<std::string, Source> sources;  // by rig bone; bones that are not named follow
+
+  // The bone's source joint, empty when it has none.
+  std::string joint_of(const std::string& bone) const;
 };
 
-// By names and hierarchy. Throws Error when nothing matches.
+// By what the names mean (core/rig/joint_names.h). Throws Error when nothing matches.
 RetargetMap match_by_names(const Motion& motion, const Armature& armature);
+
+// {"source joint": "rig bone" | ["rig bone", ...] | {"bone": name, "rest_offset_wxyz": [4]} | null}
+// Throws Error for a joint or bone that is not there, a bone named twice, or a map that matches nothing.
 RetargetMap read_retarget_map(const Path& path, const Motion& motion, const Armature& armature);
+RetargetMap parse_retarget_map(const std::string& text, const std::string& where, const Motion& motion, const Armature& armature);
 void write_retarget_map(const RetargetMap& map, const Path& path);
 
 struct RetargetSettings {
-  bool in_place = true;  // false: the root's travel moves the body (--root-motion)
+  bool in_place = true;  // false: the body travels as the source does since frame 0 (--root-motion)
 };
 
-// Prepared once, asked for many frames.
+// Prepared once, asked for many frames. Invariant: `motion` and `armature` outlive it.
 class Retarget {
  public:
+  // Throws Error when the motion has no frames.
   Retarget(const Motion& motion, const Armature& armature, const RetargetMap& map, const RetargetSettings& settings = {});
-  Pose at(int frame) const;  // throws Error for a frame the motion lacks
+
+  Pose at(int frame) const;               // throws Error for a frame the motion lacks
+  int joint_of(int bone) const { return joint_of_bone_[bone]; }  // -1 where unmatched
+  double scale() const { return scale_; }                        // mm per file unit
+  RetargetMap map() const;                                       // with the offsets that are in use
 
  private:
   const Motion* motion_;
   const Armature* armature_;
   RetargetSettings settings_;
-  std::vector<int> joint_of_bone_;       // -1 where unmatched
-  std::vector<glm::dquat> rig_from_source_;  // per bone
-  double scale_ = 1;                     // mm per file unit
+  std::vector<int> joint_of_bone_;
+  std::vector<glm::dquat> rest_offset_;  // per bone
+  struct Between {
+    int below = -1, above = -1;  // matched bones of the trunk
+    double share = 0;            // of the turn from below to above
+  };
+  std::vector<Between> between_;  // per bone; below = -1 where it follows its parent
+  double scale_ = 1;
 };
 
 }  // namespace limber

@@ -59,7 +59,7 @@ const std::vector<Door> kDoors = {
     {"SQLite", {"sqlite3"}, {"core/project/"}},
     {"zstd", {"zstd"}, {"core/project/"}},
     {"CLI11", {"CLI/"}, {"core/cmd/"}},
-    {"tinygltf", {"tiny_gltf"}, {"core/rig/gltf.cpp"}},
+    {"Expat", {"expat"}, {"core/rig/bender_armature.cpp"}},
     {"OpenSSL", {"openssl/"}, {"core/base/file.cpp"}},
     {"GLFW", {"GLFW/"}, {"editor/window.cpp"}},
     {"OpenGL", {"epoxy/", "GL/", "EGL/"}, {"render/", "editor/"}},

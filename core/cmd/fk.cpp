@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber fk RIG|BVH [--frame N] [POSE-OPTIONS] [--json]
+//
+// Where every joint is. Of a BVH: its own axes and units, global rotations of the joints, and the places of the End Sites.
+// Of a rig (or a BVH that is given a pose): world LPS mm, posed heads and tails, and the rotation of each bone from rest
+// to posed, which is the identity for a bone that nothing moves.
+#include <cstdio>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/cmd/command.h"
+#include "core/cmd/pose_options.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/bvh.h"
+
+namespace limber::cmd {
+
+namespace {
+using Json = nlohmann::ordered_json;
+
+struct FkOptions {
+  std::string file;
+  bool json = false;
+  PoseOptions pose;
+};
+
+Json json_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+template <class Joint>
+Json joint_json(const std::vector<Joint>& joints, size_t i, const RigidTransform& world, const glm::dvec3& position) {
+  const glm::dquat q = world.rotation.w < 0 ? -world.rotation : world.rotation;
+  Json one = {{"name", joints[i].name}, {"parent", nullptr}, {"position", json_of(position)}, {"rotation_wxyz", {q.w, q.x, q.y, q.z}}};
+  if (joints[i].parent >= 0) one["parent"] = joints[joints[i].parent].name;
+  return one;
+}
+
+Json fk_of_motion(const Motion& motion, std::optional<int> frame, const std::string& where) {
+  const int wanted = frame.value_or(motion.frame_count > 0 ? 0 : -1);
+  if (frame && wanted >= motion.frame_count)
+    throw Error("there is no frame " + std::to_string(wanted), where,
+                motion.frame_count > 0 ? "choose a frame from 0 to " + std::to_string(motion.frame_count - 1) : "leave --frame out: this is a rig");
+  const auto world = forward_kinematics(motion, wanted);
+  Json joints = Json::array();
+  for (size_t j = 0; j < world.size(); ++j) {
+    joints.push_back(joint_json(motion.joints, j, world[j], world[j].translation));
+    if (motion.joints[j].end_site) joints.back()["end_site"] = json_of(world[j] * *motion.joints[j].end_site);
+  }
+  return joints;
+}
+
+Json fk_of_rig(const Armature& armature, const Pose& pose) {
+  const auto posed = posed_from_rest(armature, pose);
+  Json joints = Json::array();
+  for (size_t b = 0; b < posed.size(); ++b) {
+    joints.push_back(joint_json(armature.bones, b, posed[b], posed[b] * armature.bones[b].head));
+    joints.back()["tail"] = json_of(posed[b] * armature.bones[b].tail);
+  }
+  return joints;
+}
+
+void print_table(const Json& joints) {
+  std::printf("%-28s %30s   %s\n", "joint", "position", "rotation (w x y z)");
+  for (const Json& joint : joints) {
+    const std::string name = joint["name"];
+    const std::vector<double> p = joint["position"], q = joint["rotation_wxyz"];
+    std::printf("%-28s %10.3f%10.3f%10.3f   %8.5f %8.5f %8.5f %8.5f\n", name.c_str(), p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
+  }
+}
+
+void run_fk(const FkOptions& options) {
+  const Path path = options.file;
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  Json joints;
+  if (extension == ".bvh" && !wants_pose(options.pose)) {
+    const Motion motion = read_bvh(path);
+    warn(motion.warnings);
+    joints = fk_of_motion(motion, options.pose.frame, options.file);
+  } else {
+    const ArmatureFile rig = read_armature_file(path);
+    warn(rig.warnings);
+    joints = fk_of_rig(rig.armature, read_pose_options(options.pose, rig.armature));
+  }
+  if (!options.json) return print_table(joints);
+  const std::string text = Json{{"joints", joints}}.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+}  // namespace
+
+void add_fk(CLI::App& app) {
+  auto* command = app.add_subcommand("fk", "world positions and rotations of every joint of a rig or a motion");
+  auto options = std::make_shared<FkOptions>();
+  command->add_option("FILE", options->file, "a rig (posed, LPS mm, rotations from rest) or a BVH (its own axes and units)")->required();
+  command->add_flag("--json", options->json, "print {\"joints\": [{name, parent, position, rotation_wxyz}]}");
+  add_pose_options(*command, options->pose);
+  command->callback([options] { run_fk(*options); });
+}
+
+}  // namespace limber::cmd

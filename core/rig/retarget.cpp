@@ -1,0 +1,534 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/rig/retarget.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/rig/joint_names.h"
+
+namespace limber {
+
+namespace {
+constexpr BodySide kSides[] = {BodySide::Left, BodySide::Right};
+constexpr BodyPart kFingers[] = {BodyPart::Thumb, BodyPart::Index, BodyPart::Middle, BodyPart::Ring, BodyPart::Little};
+const glm::dvec3 kUp(0, 0, 1);  // LPS: towards the head
+
+bool is_trunk(BodyPart part) {
+  return part == BodyPart::Pelvis || part == BodyPart::Spine || part == BodyPart::Neck || part == BodyPart::Head;
+}
+
+double angle_between(const glm::dvec3& a, const glm::dvec3& b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)); }
+
+// The shortest turn that takes direction a to direction b.
+glm::dquat shortest_turn(const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 axis = glm::cross(a, b);
+  const double sine = glm::length(axis);
+  if (sine > 1e-12) return glm::angleAxis(std::atan2(sine, glm::dot(a, b)), axis / sine);
+  if (glm::dot(a, b) > 0) return {1, 0, 0, 0};
+  // A half turn about any axis across.
+  const glm::dvec3 across = glm::cross(a, std::abs(a.z) < 0.9 * glm::length(a) ? kUp : glm::dvec3(1, 0, 0));
+  return glm::angleAxis(std::numbers::pi, glm::normalize(across));
+}
+
+// Right-handed axes: the third along `main`, the first as near to `side` as it can be.
+std::optional<glm::dmat3> axes_of(const glm::dvec3& main, const glm::dvec3& side) {
+  const glm::dvec3 across = side - main * (glm::dot(side, main) / std::max(glm::dot(main, main), 1e-300));
+  if (glm::length(across) < 0.05 * glm::length(side) || glm::length(main) < 1e-9 || glm::length(side) < 1e-9) return std::nullopt;
+  const glm::dvec3 z = glm::normalize(main), x = glm::normalize(across);
+  return glm::dmat3(x, glm::cross(z, x), z);
+}
+
+// ---- skeletons: a rig at rest, or a motion at a frame, by body parts, LPS
+
+struct Skeleton {
+  std::vector<int> parents;
+  std::vector<glm::dvec3> place, tip;  // of each joint; the tip is where it points without better knowledge
+  std::map<JointRole, int> joint;
+  std::vector<std::optional<JointRole>> role;
+
+  std::optional<glm::dvec3> place_of(BodyPart part, BodySide side, int index = 0) const {
+    const auto found = joint.find({part, side, index});
+    return found == joint.end() ? std::nullopt : std::optional(place[found->second]);
+  }
+};
+
+void name_roles(Skeleton& skeleton, const std::vector<std::string>& names) {
+  skeleton.role = joint_roles(names, skeleton.parents);
+  for (size_t j = 0; j < names.size(); ++j)
+    if (skeleton.role[j]) skeleton.joint[*skeleton.role[j]] = static_cast<int>(j);
+}
+
+Skeleton skeleton_of(const Armature& armature) {
+  Skeleton skeleton;
+  std::vector<std::string> names;
+  for (const Bone& bone : armature.bones) {
+    skeleton.parents.push_back(bone.parent);
+    skeleton.place.push_back(bone.head);
+    skeleton.tip.push_back(bone.tail);
+    names.push_back(bone.name);
+  }
+  name_roles(skeleton, names);
+  return skeleton;
+}
+
+// Places only; tips are the mean of the children, of their children where those stand on the joint itself, or the End Site.
+void place_joints(Skeleton& skeleton, const Motion& motion, int frame) {
+  const auto world = forward_kinematics(motion, frame);
+  const size_t count = world.size();
+  skeleton.place.resize(count);
+  skeleton.tip.assign(count, glm::dvec3(0));
+  for (size_t j = 0; j < count; ++j) skeleton.place[j] = lps_from_bvh(world[j].translation);
+  std::vector<int> children(count, 0);
+  for (size_t j = count; j-- > 0;) {
+    const auto& end = motion.joints[j].end_site;
+    if (children[j] > 0) skeleton.tip[j] /= double(children[j]);
+    else skeleton.tip[j] = end ? lps_from_bvh(world[j] * *end) : skeleton.place[j];
+    const int parent = motion.joints[j].parent;
+    if (parent < 0) continue;
+    const glm::dvec3 seen = skeleton.place[j] == skeleton.place[parent] ? skeleton.tip[j] : skeleton.place[j];
+    if (seen == skeleton.place[parent]) continue;
+    skeleton.tip[parent] += seen;
+    ++children[parent];
+  }
+}
+
+Skeleton skeleton_of(const Motion& motion) {
+  Skeleton skeleton;
+  std::vector<std::string> names;
+  for (const BvhJoint& joint : motion.joints) {
+    skeleton.parents.push_back(joint.parent);
+    names.push_back(joint.name);
+  }
+  name_roles(skeleton, names);
+  place_joints(skeleton, motion, -1);
+  return skeleton;
+}
+
+std::optional<glm::dvec3> mean_knuckle(const Skeleton& skeleton, BodySide side) {
+  glm::dvec3 sum(0);
+  int count = 0;
+  for (BodyPart finger : kFingers)
+    if (const auto knuckle = skeleton.place_of(finger, side, 1); knuckle && finger != BodyPart::Thumb) sum += *knuckle, ++count;
+  return count ? std::optional(sum / double(count)) : std::nullopt;
+}
+
+// From the joint to where its limb goes on; not of unit length, zero when unknown.
+glm::dvec3 direction_of(const Skeleton& skeleton, int joint) {
+  const glm::dvec3 here = skeleton.place[joint];
+  std::optional<glm::dvec3> there;
+  if (const auto& role = skeleton.role[joint]) {
+    switch (role->part) {
+      case BodyPart::Clavicle: there = skeleton.place_of(BodyPart::UpperArm, role->side); break;
+      case BodyPart::UpperArm: there = skeleton.place_of(BodyPart::Forearm, role->side); break;
+      case BodyPart::Forearm: there = skeleton.place_of(BodyPart::Hand, role->side); break;
+      case BodyPart::Hand: there = mean_knuckle(skeleton, role->side); break;
+      case BodyPart::Thigh: there = skeleton.place_of(BodyPart::Shank, role->side); break;
+      case BodyPart::Shank: there = skeleton.place_of(BodyPart::Foot, role->side); break;
+      case BodyPart::Foot: there = skeleton.place_of(BodyPart::Toes, role->side); break;
+      case BodyPart::Thumb: case BodyPart::Index: case BodyPart::Middle: case BodyPart::Ring: case BodyPart::Little:
+        there = skeleton.place_of(role->part, role->side, role->index + 1);
+        break;
+      default: break;
+    }
+  }
+  if (there && glm::length(*there - here) > 1e-9) return *there - here;
+  return skeleton.tip[joint] - here;
+}
+
+// From the right side to the left: of the hips, of the shoulders.
+std::optional<glm::dvec3> across(const Skeleton& skeleton, BodyPart part) {
+  const auto left = skeleton.place_of(part, BodySide::Left), right = skeleton.place_of(part, BodySide::Right);
+  return left && right && glm::length(*left - *right) > 1e-9 ? std::optional(*left - *right) : std::nullopt;
+}
+
+std::optional<glm::dvec3> neck_base(const Skeleton& skeleton) {
+  if (const auto neck = skeleton.place_of(BodyPart::Neck, BodySide::Middle)) return neck;
+  const auto left = skeleton.place_of(BodyPart::UpperArm, BodySide::Left), right = skeleton.place_of(BodyPart::UpperArm, BodySide::Right);
+  if (left && right) return (*left + *right) / 2.0;
+  return skeleton.place_of(BodyPart::Head, BodySide::Middle);
+}
+
+// From the hips up to the neck.
+std::optional<glm::dvec3> trunk_line(const Skeleton& skeleton) {
+  const auto neck = neck_base(skeleton);
+  auto hips = skeleton.place_of(BodyPart::Pelvis, BodySide::Middle);
+  const auto left = skeleton.place_of(BodyPart::Thigh, BodySide::Left), right = skeleton.place_of(BodyPart::Thigh, BodySide::Right);
+  if (left && right) hips = (*left + *right) / 2.0;
+  return neck && hips && glm::length(*neck - *hips) > 1e-9 ? std::optional(*neck - *hips) : std::nullopt;
+}
+
+// Axes of the body by `part`'s two sides and the trunk.
+std::optional<glm::dmat3> body_axes(const Skeleton& skeleton, BodyPart part) {
+  const auto line = trunk_line(skeleton), side = across(skeleton, part);
+  return line && side ? axes_of(*line, *side) : std::nullopt;
+}
+
+// How far the limbs are from standing, radians over limbs, seen from the body's own axes: legs below, feet forward, arms
+// aside or hanging, limbs straight, both sides alike. Nothing for a skeleton that is no body.
+std::optional<double> unlike_standing(const Skeleton& skeleton) {
+  const auto axes = body_axes(skeleton, BodyPart::Thigh);
+  if (!axes) return std::nullopt;
+  const glm::dmat3 body_from_world = glm::transpose(*axes);
+  double sum = 0;
+  int count = 0;
+  auto add = [&](double angle, double free) { sum += std::max(0.0, angle - free), ++count; };
+  auto limb = [&](BodyPart part, BodySide side) -> std::optional<glm::dvec3> {
+    const auto found = skeleton.joint.find({part, side});
+    if (found == skeleton.joint.end()) return std::nullopt;
+    const glm::dvec3 direction = body_from_world * direction_of(skeleton, found->second);
+    return glm::length(direction) > 1e-9 ? std::optional(glm::normalize(direction)) : std::nullopt;
+  };
+
+  for (BodyPart part : {BodyPart::UpperArm, BodyPart::Forearm, BodyPart::Thigh, BodyPart::Shank, BodyPart::Foot}) {
+    const auto left = limb(part, BodySide::Left), right = limb(part, BodySide::Right);
+    if (left && right) add(angle_between(*left * glm::dvec3(-1, 1, 1), *right), 0.1);
+    const bool is_leg = part == BodyPart::Thigh || part == BodyPart::Shank, is_foot = part == BodyPart::Foot;
+    for (const auto& direction : {left, right})
+      // A foot points forward, and forward is -y: the axes are left, back and up.
+      if (direction && (is_leg || is_foot)) add(angle_between(*direction, is_leg ? -kUp : glm::dvec3(0, -1, 0)), is_leg ? 0.35 : 0.7);
+  }
+  for (BodySide side : kSides) {
+    const auto upper = limb(BodyPart::UpperArm, side), fore = limb(BodyPart::Forearm, side);
+    // Anything from hanging to spread to the side.
+    const double outward = side == BodySide::Left ? 1 : -1;
+    if (upper) add(std::max(0.0, angle_between(*upper, glm::normalize(glm::dvec3(outward, 0, -1)))), 0.9);
+    if (upper && fore) add(angle_between(*upper, *fore), 0.5);
+  }
+  return count ? std::optional(sum / count) : std::nullopt;
+}
+
+// The moment that offsets are taken from: -1 for the rest pose.
+int standing_frame(const Motion& motion, Skeleton skeleton) {
+  place_joints(skeleton, motion, -1);
+  const auto rest = unlike_standing(skeleton);
+  // No body is known better by a frame than by its rest; a body whose limbs are some 10 degrees off still stands.
+  if (!rest && (body_axes(skeleton, BodyPart::UpperArm) || !trunk_line(skeleton))) return -1;
+  if (rest && *rest < 0.2) return -1;
+  double best = rest.value_or(1e9);
+  int best_frame = -1;
+  const int step = std::max(1, motion.frame_count / 200);
+  for (int frame = 0; frame < motion.frame_count; frame += step) {
+    place_joints(skeleton, motion, frame);
+    const auto unlike = unlike_standing(skeleton);
+    if (unlike && *unlike < best - 1e-9) best = *unlike, best_frame = frame;
+  }
+  return best_frame;
+}
+
+// ---- how the rig's bones lie at that moment
+
+class Alignment {
+ public:
+  // Turns per rig bone, from rest to how the source stands; only those of matched bones are meant.
+  Alignment(const Skeleton& rig, const Skeleton& source, const std::vector<int>& joint_of_bone, bool source_at_rest)
+      : rig_(rig), source_(source), joint_(joint_of_bone), turn_(joint_of_bone.size(), glm::dquat(1, 0, 0, 0)) {
+    hips_ = body_turn(BodyPart::Thigh, source_at_rest);
+    shoulders_ = body_turn(BodyPart::UpperArm, source_at_rest);
+    if (!hips_) hips_ = shoulders_;
+    if (!shoulders_) shoulders_ = hips_;
+    for (size_t bone = 0; bone < joint_.size(); ++bone) turn_[bone] = joint_[bone] >= 0 ? turn_of(static_cast<int>(bone)) : above(static_cast<int>(bone));
+    for (BodySide side : {BodySide::Middle, BodySide::Left, BodySide::Right}) turn_palm(side);
+  }
+
+  const std::vector<glm::dquat>& turns() const { return turn_; }
+
+ private:
+  // Of the whole body. An upright rest pose turns only about the vertical: leaning differs between skeletons by where
+  // their joints are, not by how they stand.
+  std::optional<glm::dquat> body_turn(BodyPart part, bool source_at_rest) const {
+    const auto from = body_axes(rig_, part), to = body_axes(source_, part);
+    if (!from || !to) return std::nullopt;
+    const glm::dquat full = glm::normalize(glm::quat_cast(*to * glm::transpose(*from)));
+    if (!source_at_rest || angle_between((*to)[2], kUp) > 0.35) return full;
+    return heading_turn((*from)[0], (*to)[0]);
+  }
+
+  static glm::dquat heading_turn(const glm::dvec3& from, const glm::dvec3& to) {
+    return glm::angleAxis(std::atan2(to.y, to.x) - std::atan2(from.y, from.x), kUp);
+  }
+
+  glm::dquat above(int bone) const {
+    const int parent = rig_.parents[bone];
+    return parent >= 0 ? turn_[parent] : hips_.value_or(glm::dquat(1, 0, 0, 0));
+  }
+
+  glm::dquat turn_of(int bone) const {
+    const auto& role = rig_.role[bone];
+    if (role && is_trunk(role->part)) return trunk_turn(*role);
+    const bool keeps_shape = role && (role->part == BodyPart::Clavicle || role->part == BodyPart::HipLink);
+    if (role && role->part == BodyPart::Clavicle && shoulders_) return *shoulders_;
+    if (keeps_shape || (role && role->part == BodyPart::Toes)) return above(bone);
+
+    const glm::dvec3 here = direction_of(rig_, bone), there = direction_of(source_, joint_[bone]);
+    if (glm::length(here) < 1e-9 || glm::length(there) < 1e-9) return above(bone);
+    if (role && role->part == BodyPart::Foot) {
+      auto pitch = [](const glm::dvec3& d) { return std::atan2(d.z, std::hypot(d.x, d.y)); };
+      // Both flat on the ground, however high their ankles are; a foot that is lifted gives its direction.
+      if (std::abs(pitch(here) - pitch(there)) < 0.6 && std::abs(pitch(there)) < 1 && std::abs(pitch(here)) < 1) return heading_turn(here, there);
+    }
+    const glm::dquat carried = above(bone);
+    return glm::normalize(shortest_turn(carried * here, there) * carried);
+  }
+
+  glm::dquat trunk_turn(const JointRole& role) const {
+    if (!hips_) return {1, 0, 0, 0};
+    if (role.part == BodyPart::Pelvis) return *hips_;
+    if (role.part != BodyPart::Spine) return *shoulders_;
+    int bones = 0;
+    while (rig_.joint.contains({BodyPart::Spine, BodySide::Middle, bones})) ++bones;
+    return glm::normalize(glm::slerp(*hips_, *shoulders_, double(role.index + 1) / bones));
+  }
+
+  // The palm faces as the source's does; half of the twist that takes is the forearm's.
+  void turn_palm(BodySide side) {
+    const auto hand = rig_.joint.find({BodyPart::Hand, side});
+    if (hand == rig_.joint.end() || joint_[hand->second] < 0) return;
+    const int bone = hand->second, source = joint_[bone];
+    const auto [here, there] = knuckle_lines(side, source);
+    if (!here || !there) return;
+    const auto from = axes_of(turn_[bone] * direction_of(rig_, bone), turn_[bone] * *here), to = axes_of(direction_of(source_, source), *there);
+    if (!from || !to) return;
+    const glm::dquat before = turn_[bone];
+    turn_[bone] = glm::normalize(glm::quat_cast(*to * glm::transpose(*from)) * before);
+
+    const int forearm = rig_.parents[bone];
+    if (forearm >= 0 && joint_[forearm] >= 0 && rig_.role[forearm] && rig_.role[forearm]->part == BodyPart::Forearm) {
+      const glm::dvec3 along = glm::normalize(turn_[forearm] * direction_of(rig_, forearm));
+      const glm::dquat more = turn_[bone] * glm::conjugate(before);
+      const double twist = std::remainder(2 * std::atan2(glm::dot(glm::dvec3(more.x, more.y, more.z), along), more.w), 2 * std::numbers::pi);
+      turn_[forearm] = glm::normalize(glm::angleAxis(twist / 2, along) * turn_[forearm]);
+    }
+    // What hangs from the hand comes along, then finds its own direction again.
+    for (size_t below = bone + 1; below < joint_.size(); ++below) {
+      if (!hangs_from(static_cast<int>(below), bone)) continue;
+      turn_[below] = joint_[below] >= 0 ? turn_of(static_cast<int>(below)) : above(static_cast<int>(below));
+    }
+  }
+
+  bool hangs_from(int bone, int ancestor) const {
+    while (bone > ancestor) bone = rig_.parents[bone];
+    return bone == ancestor;
+  }
+
+  // Across the hand, thumb side to little finger, by what both skeletons have: the knuckles, else the thumb.
+  std::pair<std::optional<glm::dvec3>, std::optional<glm::dvec3>> knuckle_lines(BodySide side, int source_hand) const {
+    const auto& role = source_.role[source_hand];
+    const BodySide source_side = role ? role->side : side;
+    auto knuckles = [](const Skeleton& skeleton, BodySide of) -> std::optional<glm::dvec3> {
+      const auto index = skeleton.place_of(BodyPart::Index, of, 1), little = skeleton.place_of(BodyPart::Little, of, 1);
+      return index && little ? std::optional(*little - *index) : std::nullopt;
+    };
+    auto thumb = [](const Skeleton& skeleton, BodySide of) -> std::optional<glm::dvec3> {
+      for (int segment : {3, 2, 1}) {
+        const auto found = skeleton.joint.find({BodyPart::Thumb, of, segment});
+        const auto hand = skeleton.place_of(BodyPart::Hand, of);
+        if (found != skeleton.joint.end() && hand) return *hand - skeleton.tip[found->second];
+      }
+      return std::nullopt;
+    };
+    if (knuckles(rig_, side) && knuckles(source_, source_side)) return {knuckles(rig_, side), knuckles(source_, source_side)};
+    return {thumb(rig_, side), thumb(source_, source_side)};
+  }
+
+  const Skeleton& rig_;
+  const Skeleton& source_;
+  const std::vector<int>& joint_;
+  std::vector<glm::dquat> turn_;
+  std::optional<glm::dquat> hips_, shoulders_;
+};
+
+// ---- matching
+
+// Which hand a hand without a side is, by how its fingers lie: along, index to little and the way the fingers curl are
+// right-handed in a right hand. Right when nothing tells.
+BodySide side_of_single(const Skeleton& rig) {
+  auto of = [&](BodyPart finger, int segment) { return rig.place_of(finger, BodySide::Middle, segment); };
+  const auto index = of(BodyPart::Index, 1), little = of(BodyPart::Little, 1), knuckle = of(BodyPart::Middle, 1), bend = of(BodyPart::Middle, 2);
+  const auto last = rig.joint.find({BodyPart::Middle, BodySide::Middle, 3});
+  if (!index || !little || !knuckle || !bend || last == rig.joint.end()) return BodySide::Right;
+  const glm::dvec3 along = *bend - *knuckle, end = rig.tip[last->second] - *bend;
+  const glm::dvec3 curl = end - along * (glm::dot(end, along) / std::max(glm::dot(along, along), 1e-300));
+  return glm::dot(glm::cross(along, *little - *index), curl) >= 0 ? BodySide::Right : BodySide::Left;
+}
+
+std::vector<int> chain_of(const Skeleton& skeleton, BodyPart part) {
+  std::vector<int> chain;
+  for (int index = 0;; ++index) {
+    const auto found = skeleton.joint.find({part, BodySide::Middle, index});
+    if (found == skeleton.joint.end()) return chain;
+    chain.push_back(found->second);
+  }
+}
+
+// Bones of a chain take the joints of the same names where there are any, else joints spread evenly with the last on the last.
+void match_chain(const std::vector<int>& bones, const std::vector<int>& joints, const Armature& armature, const Motion& motion,
+                 const std::function<void(int, int)>& match) {
+  bool any = false;
+  for (int bone : bones)
+    for (int joint : joints)
+      if (plain_name(armature.bones[bone].name) == plain_name(motion.joints[joint].name)) match(bone, joint), any = true;
+  if (any || bones.empty() || joints.empty()) return;
+  const size_t n = bones.size(), m = joints.size();
+  if (n <= m)
+    for (size_t k = 0; k < n; ++k) match(bones[k], joints[((k + 1) * m + n - 1) / n - 1]);
+  else
+    for (size_t i = 0; i < m; ++i) match(bones[((i + 1) * n + m - 1) / m - 1], joints[i]);
+}
+
+std::string names_of(const Motion& motion) {
+  std::string names;
+  for (size_t i = 0; i < motion.joints.size() && i < 6; ++i) names += (i ? ", " : "") + motion.joints[i].name;
+  return names + (motion.joints.size() > 6 ? ", ..." : "");
+}
+
+double leg_length(const Skeleton& skeleton, BodyPart upper, BodyPart lower, BodyPart end) {
+  double sum = 0;
+  int count = 0;
+  for (BodySide side : kSides) {
+    const auto a = skeleton.place_of(upper, side), b = skeleton.place_of(lower, side), c = skeleton.place_of(end, side);
+    if (a && b && c) sum += glm::length(*b - *a) + glm::length(*c - *b), ++count;
+  }
+  return count ? sum / count : 0;
+}
+
+// mm of the rig per unit of the source: by the legs, else the arms, else the trunk.
+double scale_between(const Skeleton& rig, const Skeleton& source) {
+  auto length = [](const Skeleton& skeleton, int way) {
+    if (way == 0) return leg_length(skeleton, BodyPart::Thigh, BodyPart::Shank, BodyPart::Foot);
+    if (way == 1) return leg_length(skeleton, BodyPart::UpperArm, BodyPart::Forearm, BodyPart::Hand);
+    const auto line = trunk_line(skeleton);
+    return line ? glm::length(*line) : 0.0;
+  };
+  for (int way : {0, 1, 2}) {
+    const double here = length(rig, way), there = length(source, way);
+    if (here > 1e-9 && there > 1e-9) return here / there;
+  }
+  return 1;
+}
+}  // namespace
+
+std::string RetargetMap::joint_of(const std::string& bone) const {
+  const auto found = sources.find(bone);
+  return found == sources.end() ? "" : found->second.joint;
+}
+
+RetargetMap match_by_names(const Motion& motion, const Armature& armature) {
+  const Skeleton rig = skeleton_of(armature), source = skeleton_of(motion);
+  std::vector<int> joint_of(armature.bones.size(), -1);
+  auto match = [&](int bone, int joint) {
+    if (joint_of[bone] < 0) joint_of[bone] = joint;
+  };
+  for (BodyPart chain : {BodyPart::Spine, BodyPart::Neck}) match_chain(chain_of(rig, chain), chain_of(source, chain), armature, motion, match);
+
+  // A rig of one limb without sides takes the motion of the side that it is.
+  const bool one_limb = std::none_of(rig.joint.begin(), rig.joint.end(), [](const auto& entry) { return entry.first.side != BodySide::Middle; });
+  const bool sided_source = std::any_of(source.joint.begin(), source.joint.end(), [](const auto& entry) { return entry.first.side != BodySide::Middle; });
+  const BodySide only_side = side_of_single(rig);
+  for (const auto& [role, bone] : rig.joint) {
+    if (role.part == BodyPart::Spine || role.part == BodyPart::Neck) continue;
+    JointRole wanted = role;
+    if (one_limb && sided_source && role.part >= BodyPart::Clavicle) wanted.side = only_side;
+    auto found = source.joint.find(wanted);
+    // A metacarpal without one of its own goes with the hand, where the rig has no hand to carry it.
+    if (found == source.joint.end() && role.index == 0 && role.part > BodyPart::Thumb && !rig.joint.contains({BodyPart::Hand, role.side}))
+      found = source.joint.find({BodyPart::Hand, wanted.side});
+    if (found != source.joint.end()) match(bone, found->second);
+  }
+
+  // What means nothing known still matches by its spelling.
+  std::map<std::string, int> by_name;
+  for (size_t j = 0; j < motion.joints.size(); ++j)
+    if (!source.role[j]) by_name.emplace(plain_name(motion.joints[j].name), static_cast<int>(j));
+  for (size_t b = 0; b < armature.bones.size(); ++b)
+    if (const auto found = by_name.find(plain_name(armature.bones[b].name)); !rig.role[b] && found != by_name.end()) match(static_cast<int>(b), found->second);
+
+  RetargetMap map;
+  for (size_t b = 0; b < joint_of.size(); ++b)
+    if (joint_of[b] >= 0) map.sources[armature.bones[b].name] = {motion.joints[joint_of[b]].name, {}};
+  if (map.sources.empty()) throw Error("no joint of the motion is known by its name", names_of(motion), "write a map file and give it with --map");
+  return map;
+}
+
+Retarget::Retarget(const Motion& motion, const Armature& armature, const RetargetMap& map, const RetargetSettings& settings)
+    : motion_(&motion), armature_(&armature), settings_(settings), joint_of_bone_(armature.bones.size(), -1),
+      rest_offset_(armature.bones.size(), glm::dquat(1, 0, 0, 0)), between_(armature.bones.size()) {
+  if (motion.frame_count == 0) throw Error("the motion has no frames", names_of(motion), "use a BVH with frames");
+  std::map<std::string, int> joints;
+  for (size_t j = 0; j < motion.joints.size(); ++j) joints.emplace(motion.joints[j].name, static_cast<int>(j));
+  for (const auto& [bone, source] : map.sources) {
+    const auto joint = joints.find(source.joint);
+    if (joint == joints.end()) throw Error("the motion has no such joint", source.joint, "use one of its joints (" + names_of(motion) + ")");
+    joint_of_bone_[require_bone(armature, bone)] = joint->second;
+  }
+
+  // Offsets, at the moment when the source stands.
+  const Skeleton rig = skeleton_of(armature);
+  Skeleton source = skeleton_of(motion);
+  const int standing = standing_frame(motion, source);
+  place_joints(source, motion, standing);
+  const auto world = forward_kinematics(motion, standing);
+  const Alignment alignment(rig, source, joint_of_bone_, standing < 0);
+  for (size_t b = 0; b < rest_offset_.size(); ++b) {
+    if (joint_of_bone_[b] < 0) continue;
+    const auto& given = map.sources.at(armature.bones[b].name).rest_offset;
+    const glm::dquat at_standing = lps_from_bvh(world[joint_of_bone_[b]].rotation);
+    rest_offset_[b] = given ? *given : glm::normalize(glm::conjugate(at_standing) * alignment.turns()[b]);
+  }
+  scale_ = scale_between(rig, source);
+
+  // Bones of the trunk that lie between matched ones: nearest below by walking up, nearest above by what walks up to them.
+  for (size_t top = 0; top < joint_of_bone_.size(); ++top) {
+    if (joint_of_bone_[top] < 0 || !rig.role[top] || !is_trunk(rig.role[top]->part)) continue;
+    std::vector<int> gap;
+    int below = armature.bones[top].parent;
+    for (; below >= 0 && joint_of_bone_[below] < 0; below = armature.bones[below].parent) gap.push_back(below);
+    if (below < 0) continue;
+    for (size_t k = 0; k < gap.size(); ++k)
+      if (between_[gap[k]].below < 0) between_[gap[k]] = {below, static_cast<int>(top), double(gap.size() - k) / double(gap.size() + 1)};
+  }
+}
+
+RetargetMap Retarget::map() const {
+  RetargetMap map;
+  for (size_t b = 0; b < joint_of_bone_.size(); ++b)
+    if (joint_of_bone_[b] >= 0) map.sources[armature_->bones[b].name] = {motion_->joints[joint_of_bone_[b]].name, rest_offset_[b]};
+  return map;
+}
+
+Pose Retarget::at(int frame) const {
+  if (frame < 0 || frame >= motion_->frame_count)
+    throw Error("the motion has no frame " + std::to_string(frame), "--frame", "choose one from 0 to " + std::to_string(motion_->frame_count - 1));
+  const auto source = forward_kinematics(*motion_, frame);
+  const size_t count = joint_of_bone_.size();
+  auto matched = [&](int bone) { return glm::normalize(lps_from_bvh(source[joint_of_bone_[bone]].rotation) * rest_offset_[bone]); };
+
+  Pose pose = rest_pose(*armature_);
+  std::vector<glm::dquat> posed(count, glm::dquat(1, 0, 0, 0));
+  for (size_t b = 0; b < count; ++b) {
+    const int parent = armature_->bones[b].parent;
+    const glm::dquat carried = parent < 0 ? glm::dquat(1, 0, 0, 0) : posed[parent];
+    const bool follows = joint_of_bone_[b] < 0 && between_[b].below < 0;
+    if (follows) {
+      posed[b] = carried;
+      continue;
+    }
+    posed[b] = joint_of_bone_[b] >= 0 ? matched(static_cast<int>(b))
+                                      : glm::normalize(glm::slerp(matched(between_[b].below), matched(between_[b].above), between_[b].share));
+    pose.rotation[b] = glm::normalize(glm::conjugate(carried) * posed[b]);
+  }
+
+  if (!settings_.in_place) {
+    const auto first = std::find_if(joint_of_bone_.begin(), joint_of_bone_.end(), [](int joint) { return joint >= 0; });
+    if (first != joint_of_bone_.end()) {
+      const auto start = forward_kinematics(*motion_, 0);
+      pose.root_translation = scale_ * lps_from_bvh(source[*first].translation - start[*first].translation);
+    }
+  }
+  return pose;
+}
+
+}  // namespace limber
