@@ -86,14 +86,14 @@ class Arm {
   }
 
   void add_flesh() {
-    Solid upper(Loft(upper_, {{36, {8, 1}, {33, 36}}, {16, {9, 0}, {42, 47}}, {-12, {9, 0}, {48, 52}}, {-45, {8, 0}, {50, 54}},
-                              {-90, {5, 0}, {46, 52}}, {-140, {2, 0}, {43, 52}}, {-180, {1, -1}, {43, 51}},
-                              {-225, {0, 0}, {42, 47}}, {-262, {0, 1}, {42, 42}}, {-296, {-1, 2}, {43, 40}},
-                              {-312, {-1, 2}, {42, 38}}}, 26));
-    upper.add(cone(upper_, {34, -2, -20}, 22, {24, 0, -100}, 16), 26)                       // deltoid
-        .add(cone(upper_, {3, -30, -130}, 19, {1, -33, -195}, 21), 16)                      // biceps
-        .add(cone(upper_, {14, 26, -80}, 20, {18, 28, -165}, 22), 22)                       // triceps
-        .add(cone(upper_, {-12, 26, -110}, 20, {-14, 22, -195}, 19), 22);
+    Solid upper(Loft(upper_, {{36, {8, 1}, {30, 33}}, {16, {9, 0}, {40, 44}}, {-12, {9, 0}, {45, 49}}, {-45, {8, 0}, {46, 50}},
+                              {-90, {5, 0}, {42, 47}}, {-140, {2, 0}, {40, 47}}, {-180, {1, -1}, {40, 46}},
+                              {-225, {0, 0}, {38, 41}}, {-262, {0, 1}, {39, 38}}, {-296, {-1, 2}, {41, 37}},
+                              {-312, {-1, 2}, {40, 35}}}, 26));
+    upper.add(cone(upper_, {32, -2, -20}, 22, {24, 0, -100}, 14), 26)                       // deltoid
+        .add(cone(upper_, {2, -28, -125}, 17, {1, -31, -195}, 18), 18)                      // biceps
+        .add(cone(upper_, {15, 26, -85}, 18, {17, 26, -160}, 19), 22)                       // triceps
+        .add(cone(upper_, {-12, 26, -110}, 18, {-13, 21, -195}, 17), 22);
     const int upper_arm = anatomy_.add_flesh(upper, plan_.flesh_parent, 30, 4.5);
 
     Solid fore(Loft(fore_, {{16, {0, 1}, {38, 36}}, {-12, {0, -1}, {45, 41}}, {-50, {0, -2}, {45, 43}}, {-95, {0, -1}, {39, 41}},
@@ -115,20 +115,20 @@ class Arm {
     Solid humerus;
     humerus.add(cone(upper_, {13, 0, -24}, 14.5, {7, 2, -95}, 11))
         .add(cone(upper_, {7, 2, -95}, 11, {1, 5, -210}, 9.5), 4)
-        .add(cone(upper_, {1, 5, -210}, 9.5, {0, 7, -272}, 9), 4)
-        .add(cone(upper_, {0, 6, -258}, 8.5, {-27, 4, -292}, 5), 10)       // medial epicondyle
-        .add(cone(upper_, {0, 6, -258}, 8.5, {23, 3, -291}, 5), 10)        // lateral epicondyle
+        .add(cone(upper_, {1, 5, -210}, 9.5, {0, 8, -272}, 9), 4)
+        .add(cone(upper_, {0, 7, -258}, 8.5, {-27, 5, -292}, 6), 12)       // medial epicondyle
+        .add(cone(upper_, {0, 7, -258}, 8.5, {23, 5, -291}, 6), 12)        // lateral epicondyle
         .add(cone(upper_, {17, -3, -6}, 13, {14, 0, -26}, 13), 8);         // greater tubercle
     // The fossae where the olecranon, the coronoid process and the radial head swing.
     for (int degrees = 0; degrees <= 90; degrees += 15) {
       const double angle = glm::radians(static_cast<double>(degrees));
-      humerus.cut(ball_at(upper_, V(-8, 17.5 * std::sin(angle), kElbowZ + 17.5 * std::cos(angle)), 12.5), 3);
+      humerus.cut(ball_at(upper_, V(-8, 17.5 * std::sin(angle), kElbowZ + 17.5 * std::cos(angle)), 11), 2);
     }
     for (int degrees = 10; degrees <= 130; degrees += 20) {
       const double angle = glm::radians(static_cast<double>(degrees));
       const V arc(0, -std::sin(angle), std::cos(angle));
-      humerus.cut(ball_at(upper_, V(-8, 0, kElbowZ) + 18.0 * arc, 9.5), 3)
-          .cut(ball_at(upper_, V(15, 0, kElbowZ) + 19.0 * arc, 9.5), 3);
+      humerus.cut(ball_at(upper_, V(-8, 0, kElbowZ) + 18.0 * arc, 7.5), 2)
+          .cut(ball_at(upper_, V(15, 0, kElbowZ) + 18.0 * arc, 7.5), 2);
     }
     humerus.add(cone(upper_, {-17, 0, kElbowZ}, 12, {-4, 0, kElbowZ}, 10), 3)  // trochlea
         .add(cone(upper_, {-4, 0, kElbowZ}, 9.5, {14, 0, kElbowZ}, 10.5), 3)   // capitulum

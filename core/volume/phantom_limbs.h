@@ -21,11 +21,12 @@ struct LimbPlan {
 
 // From the humerus to the finger tips. The forearm is half pronated: the palm faces the thigh.
 void add_arm(Anatomy& anatomy, const LimbPlan& plan);
-// From the femur to the toes.
-void add_leg(Anatomy& anatomy, const LimbPlan& plan);
-// Pelvis, spine, rib cage, organs, neck and head; returns where the limbs join.
+// From the femur to the toes. The foot stands flat in `upright`'s axes, however the leg leans.
+void add_leg(Anatomy& anatomy, const LimbPlan& plan, const Frame& upright);
+// Pelvis, spine, rib cage, organs, shoulder girdle, neck and head; returns where the limbs join.
 struct TrunkJoints {
-  int hips_flesh, chest_flesh, hips_bone, chest_bone;
+  int flesh, hips_bone;                // places in the Anatomy's flesh and rig
+  glm::dvec3 left_hip, left_shoulder;  // centres; the right ones lie across x = 0
 };
 TrunkJoints add_trunk(Anatomy& anatomy, double thinnest_radius);
 
@@ -35,10 +36,10 @@ struct Turn {
   glm::dvec3 axis;  // world (LPS) at rest
   double degrees;
 };
-struct Frame60 {
+struct MotionFrame {
   std::vector<Turn> turns;
   glm::dvec3 root_offset{0};  // LPS, mm
 };
-Motion make_motion(const Armature& armature, const std::vector<Frame60>& frames, double frame_time);
+Motion make_motion(const Armature& armature, const std::vector<MotionFrame>& frames, double frame_time);
 
 }  // namespace limber::phantom

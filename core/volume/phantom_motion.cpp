@@ -20,7 +20,7 @@ glm::dvec3 zxy_degrees(const glm::dmat3& r) {
 }
 }  // namespace
 
-Motion make_motion(const Armature& armature, const std::vector<Frame60>& frames, double frame_time) {
+Motion make_motion(const Armature& armature, const std::vector<MotionFrame>& frames, double frame_time) {
   using C = BvhChannel;
   Motion motion;
   std::map<std::string, int> joint_of;

@@ -2,12 +2,15 @@
 #include "core/volume/phantom.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/volume/components.h"
 
 using namespace limber;
 
@@ -44,6 +47,80 @@ TEST_CASE("the arm phantom is closed by skin at every spacing") {
     CAPTURE(spacing);
     CHECK(leaks(make_arm_phantom(spacing)) == 0);
   }
+}
+
+TEST_CASE("the body phantom is closed by skin, its limbs and fingers do not touch") {
+  for (double spacing : {4.0, 8.0}) {
+    CAPTURE(spacing);
+    const Phantom body = make_body_phantom(spacing);
+    CHECK(leaks(body) == 0);
+    CHECK_NOTHROW(check_armature(body.armature, "phantom"));
+    // Below the crotch each leg stands alone; at the wrists there are two hands beside the trunk.
+    const auto pieces_at = [&](double z) {
+      Grid grid = body.volume.grid;
+      LabelVolume slice{grid, {}};
+      slice.grid.size.z = 1;
+      const int k = static_cast<int>((z - grid.origin.z) / grid.spacing.z + 0.5);
+      const std::int64_t area = std::int64_t{grid.size.x} * grid.size.y;
+      slice.voxels.assign(body.volume.voxels.begin() + k * area, body.volume.voxels.begin() + (k + 1) * area);
+      for (Label& label : slice.voxels) label = label != 0;
+      return connected_components(slice).voxels.size();
+    };
+    CHECK(pieces_at(400) == 2);
+    CHECK(pieces_at(800) == 2);
+    CHECK(pieces_at(1150) == 3);
+  }
+}
+
+TEST_CASE("every bone of the body phantom is a piece of its own, with marrow cores in the long ones") {
+  const Phantom body = make_body_phantom(3);
+  const auto kinds = body.tissues.kinds();
+  LabelVolume bone = body.volume, marrow = body.volume;
+  for (Label& label : bone.voxels) label = is_bone(kinds[label]);
+  for (Label& label : marrow.voxels) label = kinds[label] == TissueKind::Marrow;
+  const auto large = [](const LabelVolume& volume, std::int64_t least) {
+    const auto sizes = connected_components(volume).voxels;
+    return std::count_if(sizes.begin(), sizes.end(), [&](std::int64_t size) { return size >= least; });
+  };
+  // Of 118 parts, the smallest toe bones may be lost at 3 mm.
+  CHECK(large(bone, 4) >= 90);
+  CHECK(large(marrow, 30) >= 12);  // humeri, radii, ulnae, femora, tibiae, fibulae
+}
+
+TEST_CASE("a phantom's motion is its own rig's: at rest each joint lies on its bone's head, and feet alternate") {
+  for (const Phantom& phantom : {make_arm_phantom(6), make_body_phantom(10)}) {
+    CHECK(phantom.motion.frame_count == 60);
+    REQUIRE(phantom.motion.joints.size() == phantom.armature.bones.size());
+    const auto rest = forward_kinematics(phantom.motion, -1);
+    double worst = 0;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      CHECK(phantom.motion.joints[i].name == phantom.armature.bones[i].name);
+      const glm::dvec3 p = rest[i].translation;
+      worst = std::max(worst, glm::length(glm::dvec3(p.x, -p.z, p.y) - phantom.armature.bones[i].head));
+    }
+    CHECK(worst < 1e-9);
+  }
+  const Phantom body = make_body_phantom(10);
+  const auto ahead = [&](int frame) {  // of the left ankle before the right one, mm
+    const auto pose = forward_kinematics(body.motion, frame);
+    const auto at = [&](const char* name) { return pose[require_bone(body.armature, name)].translation.z; };
+    return at("LeftFoot") - at("RightFoot");
+  };
+  CHECK(ahead(0) > 300);
+  CHECK(ahead(30) < -300);
+}
+
+TEST_CASE("the arm curl bends the elbow by 100 degrees about its hinge") {
+  const Phantom arm = make_arm_phantom(8);
+  const int fore = require_bone(arm.armature, "Forearm"), hand = require_bone(arm.armature, "Hand");
+  const auto direction = [&](int frame) {
+    const auto pose = forward_kinematics(arm.motion, frame);
+    return glm::normalize(pose[hand].translation - pose[fore].translation);
+  };
+  double most = 0;
+  for (int frame = 0; frame < 60; ++frame)
+    most = std::max(most, glm::degrees(std::acos(std::clamp(glm::dot(direction(0), direction(frame)), -1.0, 1.0))));
+  CHECK(most == doctest::Approx(100).epsilon(0.02));
 }
 
 TEST_CASE("the arm phantom has the same tissues and volume at 2, 3 and 4 mm") {
