@@ -14,6 +14,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", LIMBER_VERSION);
   cmd::add_fk(app);
   cmd::add_info(app);
+  cmd::add_phantom(app);
+  cmd::add_prepare(app);
   cmd::add_skin_points(app);
   cmd::add_weights(app);
 

@@ -91,7 +91,8 @@ class Arm {
                               {-225, {0, 0}, {38, 41}}, {-262, {0, 1}, {39, 38}}, {-296, {-1, 2}, {41, 37}},
                               {-312, {-1, 2}, {40, 35}}}, 26));
     upper.add(cone(upper_, {32, -2, -20}, 22, {24, 0, -100}, 14), 26)                       // deltoid
-        .add(cone(upper_, {2, -28, -125}, 17, {1, -31, -195}, 18), 18)                      // biceps
+        .add(cone(upper_, {2, -27, -110}, 16, {1, -31, -180}, 18), 18)                      // biceps
+        .add(cone(upper_, {1, -31, -180}, 18, {2, -25, -262}, 11), 22)
         .add(cone(upper_, {15, 26, -85}, 18, {17, 26, -160}, 19), 22)                       // triceps
         .add(cone(upper_, {-12, 26, -110}, 18, {-13, 21, -195}, 17), 22);
     const int upper_arm = anatomy_.add_flesh(upper, plan_.flesh_parent, 30, 4.5);
@@ -120,15 +121,15 @@ class Arm {
         .add(cone(upper_, {0, 7, -258}, 8.5, {23, 5, -291}, 6), 12)        // lateral epicondyle
         .add(cone(upper_, {17, -3, -6}, 13, {14, 0, -26}, 13), 8);         // greater tubercle
     // The fossae where the olecranon, the coronoid process and the radial head swing.
-    for (int degrees = 0; degrees <= 90; degrees += 15) {
+    for (int degrees = 50; degrees <= 110; degrees += 15) {
       const double angle = glm::radians(static_cast<double>(degrees));
       humerus.cut(ball_at(upper_, V(-8, 17.5 * std::sin(angle), kElbowZ + 17.5 * std::cos(angle)), 11), 2);
     }
-    for (int degrees = 10; degrees <= 130; degrees += 20) {
+    for (int degrees = 15; degrees <= 135; degrees += 20) {
       const double angle = glm::radians(static_cast<double>(degrees));
       const V arc(0, -std::sin(angle), std::cos(angle));
-      humerus.cut(ball_at(upper_, V(-8, 0, kElbowZ) + 18.0 * arc, 7.5), 2)
-          .cut(ball_at(upper_, V(15, 0, kElbowZ) + 18.0 * arc, 7.5), 2);
+      humerus.cut(ball_at(upper_, V(-8, 0, kElbowZ) + 18.0 * arc, 6.5), 2)
+          .cut(ball_at(upper_, V(15, 0, kElbowZ) + 18.0 * arc, 6.5), 2);
     }
     humerus.add(cone(upper_, {-17, 0, kElbowZ}, 12, {-4, 0, kElbowZ}, 10), 3)  // trochlea
         .add(cone(upper_, {-4, 0, kElbowZ}, 9.5, {14, 0, kElbowZ}, 10.5), 3)   // capitulum

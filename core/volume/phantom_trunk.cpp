@@ -88,8 +88,8 @@ class Trunk {
                           {1390, {0, 10}, {158, 102}, 2.3}, {1430, {0, 16}, {132, 86}, 2.2}, {1465, {0, 20}, {92, 68}, 2},
                           {1490, {0, 22}, {66, 58}, 2}}, 30));
     for (double side : {-1.0, 1.0})
-      torso.add(cone(mirrored({48, 34, 1486}, side), 32, mirrored({150, 22, 1434}, side), 38), 40)             // shoulder
-          .add(ellipsoid(mirrored({72, -82, 1352}, side), {82, 36, 58}), 26)                                   // breast
+      torso.add(cone(mirrored({46, 32, 1488}, side), 34, mirrored({158, 20, 1428}, side), 42), 44)             // shoulder
+          .add(ellipsoid(mirrored({70, -74, 1362}, side), {84, 36, 66}), 44)                                   // breast
           .add(ellipsoid(mirrored({74, 78, 918}, side), {78, 62, 78}), 34)                                     // buttock
           .add(cone(mirrored({128, 52, 1370}, side), 34, mirrored({118, 48, 1240}, side), 26), 30);            // latissimus
     torso.cut(cone({0, 175, 1130}, 66, {0, 172, 1330}, 52), 40);                                               // furrow of the back
