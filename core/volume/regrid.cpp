@@ -72,9 +72,12 @@ class Regrid {
     // Air first, because skin must be closed; what is put there stays. Then inside, which must not open the skin again.
     if (!every_voxel_lies_in_an_old_one()) {
       locked_.assign(to_.voxels.size(), false);
-      close_all(Closing::Air, progress);
-      close_all(Closing::Inside, progress);
-      close_all(Closing::Air, progress);
+      std::vector<std::int64_t> ignored, changed;
+      progress.update("regrid", 0.7);
+      close_all(all_insertions(Closing::Air), Closing::Air, ignored);
+      progress.update("regrid", 0.85);
+      close_all(all_insertions(Closing::Inside), Closing::Inside, changed);
+      close_all(insertions_around(changed, Closing::Air), Closing::Air, ignored);
     }
     return std::move(to_);
   }
@@ -118,6 +121,20 @@ class Regrid {
     if (outside > kTie) add_share(shares, 0, outside);
   }
 
+  // The label of all old voxels of a box when they have only one, as nearly everywhere.
+  std::optional<Label> only_label(const Span& x, const Span& y, const Span& z) const {
+    if (x.reach > x.end || y.reach > y.end || z.reach > z.end || x.first == x.end || y.first == y.end || z.first == z.end)
+      return std::nullopt;
+    const Label label = from_.at({x.first, y.first, z.first});
+    for (int k = z.first; k < z.end; ++k)
+      for (int j = y.first; j < y.end; ++j) {
+        const Label* row = &from_.voxels[from_.grid.index({0, j, k})];
+        for (int i = x.first; i < x.end; ++i)
+          if (row[i] != label) return std::nullopt;
+      }
+    return label;
+  }
+
   void gather(const glm::ivec3& v, Shares& shares) const {
     gather(spans_[0][v.x], spans_[1][v.y], spans_[2][v.z], shares);
   }
@@ -155,7 +172,7 @@ class Regrid {
     const glm::ivec3 size = to_.grid.size;
     constexpr int kSlices = 16;
     for (int first = 0; first < size.z; first += kSlices) {
-      progress.update("regrid", 0.8 * first / size.z);
+      progress.update("regrid", 0.7 * first / size.z);
       const int rows = size.y * std::min(kSlices, size.z - first);
       parallel_for(rows, 16, [&](std::int64_t begin, std::int64_t end) {
         Shares shares;
@@ -163,6 +180,10 @@ class Regrid {
           glm::ivec3 v(0, row % size.y, first + row / size.y);
           Label* out = &to_.voxels[to_.grid.index(v)];
           for (; v.x < size.x; ++v.x) {
+            if (const auto only = only_label(spans_[0][v.x], spans_[1][v.y], spans_[2][v.z])) {
+              out[v.x] = *only;
+              continue;
+            }
             gather(v, shares);
             const auto winner = shares.size() == 1 ? shares[0].label : largest(shares, volume_);
             out[v.x] = winner ? *winner : break_tie(v, shares, volume_);
@@ -215,50 +236,75 @@ class Regrid {
     return Insertion{take_p ? i : k, between.label, take_p ? in_p : in_q};
   }
 
+  // What neighbours p and q, a step apart, ask for.
+  void add_insertion(const glm::ivec3& p, const glm::ivec3& step, Closing closing, std::vector<Insertion>& insertions) const {
+    const glm::ivec3 q = p + step;
+    const Label a = to_.at(p), b = to_.at(q);
+    if (a == b || (closing == Closing::Air) != (a == 0 || b == 0)) return;
+    const bool by_face = std::abs(step.x) + std::abs(step.y) + std::abs(step.z) == 1;
+    if ((!by_face && closing == Closing::Inside) || met(p, q, a, b, !by_face)) return;
+    if (const auto found = insertion(p, q, a, b)) insertions.push_back(*found);
+  }
+
+  static glm::ivec3 step_to_neighbour(int n) { return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}; }  // 0 to 26; 13 is no step
+
   std::vector<Insertion> insertions_of_slice(int z, Closing closing) const {
     std::vector<Insertion> insertions;
     const glm::ivec3 size = to_.grid.size;
-    for (int y = 0; y < size.y; ++y)
-      for (int x = 0; x < size.x; ++x) {
-        const glm::ivec3 p(x, y, z);
-        const Label a = to_.at(p);
-        // Half of the neighbours: each pair once.
-        for (int n = 14; n < 27; ++n) {
-          const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1), q = p + step;
-          if (!to_.grid.contains(q)) continue;
-          const Label b = to_.at(q);
-          if (a == b || (closing == Closing::Air) != (a == 0 || b == 0)) continue;
-          const bool by_face = std::abs(step.x) + std::abs(step.y) + std::abs(step.z) == 1;
-          if (!by_face && closing == Closing::Inside) continue;
-          if (met(p, q, a, b, !by_face)) continue;
-          if (const auto found = insertion(p, q, a, b)) insertions.push_back(*found);
-        }
+    // Half of the neighbours: each pair once.
+    std::vector<glm::ivec3> steps;
+    for (int n = 14; n < 27; ++n)
+      if (z + step_to_neighbour(n).z < size.z) steps.push_back(step_to_neighbour(n));
+    for (int y = 0; y < size.y; ++y) {
+      const Label* row = &to_.voxels[to_.grid.index({0, y, z})];
+      for (const glm::ivec3& step : steps) {
+        if (y + step.y < 0 || y + step.y >= size.y) continue;
+        const Label* other = row + to_.grid.index(step);
+        for (int x = std::max(0, -step.x); x < size.x - std::max(0, step.x); ++x)
+          if (row[x] != other[x]) add_insertion({x, y, z}, step, closing, insertions);
       }
+    }
     return insertions;
   }
 
-  void close_all(Closing closing, Progress& progress) {
-    for (int round = 0; round < kMostRounds; ++round) {
-      progress.update("regrid", 0.8 + 0.05 * round);
-      std::vector<std::vector<Insertion>> of_slice(to_.grid.size.z);
-      parallel_for(to_.grid.size.z, 1, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t z = begin; z < end; ++z) of_slice[z] = insertions_of_slice(static_cast<int>(z), closing);
-      });
-      std::vector<Insertion> all;
-      for (const auto& insertions : of_slice) all.insert(all.end(), insertions.begin(), insertions.end());
-      if (all.empty()) return;
+  std::vector<Insertion> insertions_around(const std::vector<std::int64_t>& changed, Closing closing) const {
+    std::vector<Insertion> insertions;
+    const glm::ivec3 size = to_.grid.size;
+    for (const std::int64_t i : changed) {
+      const glm::ivec3 p(i % size.x, i / size.x % size.y, i / (std::int64_t{size.x} * size.y));
+      for (int n = 0; n < 27; ++n)
+        if (to_.grid.contains(p + step_to_neighbour(n))) add_insertion(p, step_to_neighbour(n), closing, insertions);
+    }
+    return insertions;
+  }
+
+  std::vector<Insertion> all_insertions(Closing closing) const {
+    std::vector<std::vector<Insertion>> of_slice(to_.grid.size.z);
+    parallel_for(to_.grid.size.z, 1, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t z = begin; z < end; ++z) of_slice[z] = insertions_of_slice(static_cast<int>(z), closing);
+    });
+    std::vector<Insertion> all;
+    for (const auto& insertions : of_slice) all.insert(all.end(), insertions.begin(), insertions.end());
+    return all;
+  }
+
+  // Makes insertions and those that they call for in turn; the voxels that changed are added to `changed`.
+  void close_all(std::vector<Insertion> insertions, Closing closing, std::vector<std::int64_t>& changed) {
+    for (int round = 0; round < kMostRounds && !insertions.empty(); ++round) {
       // Of several for one voxel the largest share wins, then the smaller label.
-      std::sort(all.begin(), all.end(), [](const Insertion& a, const Insertion& b) {
+      std::sort(insertions.begin(), insertions.end(), [](const Insertion& a, const Insertion& b) {
         if (a.voxel != b.voxel) return a.voxel < b.voxel;
         return a.share != b.share ? a.share > b.share : a.label < b.label;
       });
-      std::int64_t before = -1;
-      for (const Insertion& one : all)
-        if (one.voxel != before) {
-          before = one.voxel;
+      std::vector<std::int64_t> now;
+      for (const Insertion& one : insertions)
+        if (now.empty() || now.back() != one.voxel) {
+          now.push_back(one.voxel);
           to_.voxels[one.voxel] = one.label;
           if (closing == Closing::Air) locked_[one.voxel] = true;
         }
+      changed.insert(changed.end(), now.begin(), now.end());
+      insertions = insertions_around(now, closing);
     }
   }
 };
