@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/rig/retarget.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "core/base/error.h"
+#include "core/rig/armature_io.h"
+#include "tests/support/program.h"
+#include "tests/support/shared_data.h"
+
+using namespace limber;
+
+namespace {
+// A rig of a body with hanging arms, mm, LPS.
+Armature hanging_body() {
+  Armature rig;
+  auto add = [&](const char* name, const char* parent, glm::dvec3 head, glm::dvec3 tail) {
+    rig.bones.push_back({name, *parent ? *rig.find(parent) : -1, head, tail});
+  };
+  add("Pelvis", "", {0, 0, 900}, {0, 0, 1000});
+  add("SpineLow", "Pelvis", {0, 0, 1000}, {0, 0, 1150});
+  add("SpineMiddle", "SpineLow", {0, 0, 1150}, {0, 0, 1300});
+  add("SpineTop", "SpineMiddle", {0, 0, 1300}, {0, 0, 1450});
+  add("Neck", "SpineTop", {0, 0, 1450}, {0, 0, 1550});
+  for (double side : {1.0, -1.0}) {
+    const std::string s = side > 0 ? "Left" : "Right";
+    auto limb = [&](const char* name, const std::string& parent, glm::dvec3 head, glm::dvec3 tail) {
+      add((s + name).c_str(), parent.c_str(), head * glm::dvec3(side, 1, 1), tail * glm::dvec3(side, 1, 1));
+    };
+    limb("UpperArm", "SpineTop", {200, 0, 1400}, {220, 0, 1100});
+    limb("Forearm", s + "UpperArm", {220, 0, 1100}, {230, -30, 850});
+    limb("Hand", s + "Forearm", {230, -30, 850}, {230, -40, 700});
+    limb("Thigh", "Pelvis", {90, 0, 900}, {90, 0, 480});
+    limb("Shank", s + "Thigh", {90, 0, 480}, {90, 0, 80});
+    limb("Foot", s + "Shank", {90, 0, 80}, {110, -150, 0});
+  }
+  return rig;
+}
+
+// A motion of a body in T-pose, two units to the metre less, whose joints all turn as the angles say (degrees about x, y, z).
+Motion t_pose_body(const std::vector<std::array<double, 3>>& frames) {
+  std::string text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 9 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n";
+  int joints = 1;
+  auto open = [&](const std::string& name, const std::string& offset) {
+    text += "JOINT " + name + "\n{\nOFFSET " + offset + "\nCHANNELS 3 Zrotation Xrotation Yrotation\n";
+    ++joints;
+  };
+  open("Spine", "0 1 0");
+  open("Chest", "0 2 0");
+  open("Neck", "0 2 0");
+  text += "End Site\n{\nOFFSET 0 1 0\n}\n}\n";
+  for (const std::string side : {"Left", "Right"}) {
+    const std::string sign = side == "Left" ? "" : "-";
+    open(side + "Arm", sign + "2 1.5 0");
+    open(side + "ForeArm", sign + "3 0 0");
+    open(side + "Hand", sign + "2.5 0 0");
+    text += "End Site\n{\nOFFSET " + sign + "1 0 0\n}\n}\n}\n}\n";
+  }
+  text += "}\n}\n";
+  for (const std::string side : {"Left", "Right"}) {
+    open(side + "UpLeg", (side == "Left" ? "1" : "-1") + std::string(" 0 0"));
+    open(side + "Leg", "0 -4 0");
+    open(side + "Foot", "0 -4 0");
+    text += "End Site\n{\nOFFSET 0 -0.5 1.5\n}\n}\n}\n}\n";
+  }
+  text += "}\nMOTION\nFrames: " + std::to_string(frames.size()) + "\nFrame Time: 0.01\n";
+  for (size_t f = 0; f < frames.size(); ++f) {
+    text += std::to_string(f) + " 9 0";
+    for (int j = 0; j < joints; ++j)
+      for (double angle : frames[f]) text += " " + std::to_string(angle * (1 + 0.1 * j));
+    text += "\n";
+  }
+  return parse_bvh(text, "test");
+}
+
+glm::dvec3 posed_direction(const Armature& rig, const std::vector<RigidTransform>& posed, const char* bone) {
+  const int b = require_bone(rig, bone);
+  return glm::normalize(posed[b].rotation * (rig.bones[b].tail - rig.bones[b].head));
+}
+
+double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 180 / std::numbers::pi;
+}
+
+// Largest angle, degrees, between how a matched bone and its joint have turned since frame 0.
+double largest_difference(const Motion& motion, const Armature& rig, int step) {
+  const Retarget retarget(motion, rig, match_by_names(motion, rig));
+  const auto rig_start = posed_from_rest(rig, retarget.at(0));
+  const auto source_start = forward_kinematics(motion, 0);
+  double largest = 0;
+  for (int frame = 0; frame < motion.frame_count; frame += step) {
+    const auto posed = posed_from_rest(rig, retarget.at(frame));
+    const auto source = forward_kinematics(motion, frame);
+    for (size_t b = 0; b < rig.bones.size(); ++b) {
+      const int j = retarget.joint_of(static_cast<int>(b));
+      if (j < 0) continue;
+      const glm::dquat here = posed[b].rotation * glm::conjugate(rig_start[b].rotation);
+      const glm::dquat there = lps_from_bvh(source[j].rotation * glm::conjugate(source_start[j].rotation));
+      const glm::dquat off = here * glm::conjugate(there);
+      largest = std::max(largest, 2 * std::atan2(glm::length(glm::dvec3(off.x, off.y, off.z)), std::abs(off.w)));
+    }
+  }
+  return largest * 180 / std::numbers::pi;
+}
+}  // namespace
+
+TEST_CASE("retarget: an actor in T-pose spreads the arms of a rig that rests with hanging arms") {
+  const Motion motion = t_pose_body({{0, 0, 0}});
+  const Armature rig = hanging_body();
+  const auto posed = posed_from_rest(rig, Retarget(motion, rig, match_by_names(motion, rig)).at(0));
+  for (const char* bone : {"LeftUpperArm", "LeftForearm", "LeftHand"}) CHECK(degrees_between(posed_direction(rig, posed, bone), {1, 0, 0}) < 1e-6);
+  for (const char* bone : {"RightUpperArm", "RightForearm"}) CHECK(degrees_between(posed_direction(rig, posed, bone), {-1, 0, 0}) < 1e-6);
+  CHECK(degrees_between(posed_direction(rig, posed, "LeftShank"), {0, 0, -1}) < 1e-6);
+  // The trunk keeps its shape and the feet their pitch.
+  CHECK(degrees_between(posed_direction(rig, posed, "SpineTop"), {0, 0, 1}) < 1e-6);
+  const glm::dvec3 foot = posed_direction(rig, posed, "LeftFoot");
+  CHECK(foot.x == doctest::Approx(0).epsilon(1e-9));
+  CHECK(foot.z == doctest::Approx(-80 / std::sqrt(110.0 * 110 / 30.25 + 80 * 80 + 150 * 150)).epsilon(0.02));
+}
+
+TEST_CASE("retarget: matched bones turn as their joints do, whatever the frame") {
+  const Motion motion = t_pose_body({{0, 0, 0}, {10, 20, 30}, {-50, 15, 5}, {80, -40, 120}});
+  CHECK(largest_difference(motion, hanging_body(), 1) < 1e-5);
+}
+
+TEST_CASE("retarget: a spine of three takes the bend of two without a jump") {
+  const Motion motion = t_pose_body({{0, 30, 0}});
+  const Armature rig = hanging_body();
+  const Retarget retarget(motion, rig, match_by_names(motion, rig));
+  const auto posed = posed_from_rest(rig, retarget.at(0));
+  CHECK(retarget.joint_of(require_bone(rig, "SpineTop")) >= 0);
+  double bend = 0, largest = 0;
+  const char* chain[] = {"Pelvis", "SpineLow", "SpineMiddle", "SpineTop"};
+  for (int i = 1; i < 4; ++i) {
+    const double step = degrees_between(posed_direction(rig, posed, chain[i - 1]), posed_direction(rig, posed, chain[i]));
+    bend += step;
+    largest = std::max(largest, step);
+  }
+  CHECK(bend == doctest::Approx(degrees_between(posed_direction(rig, posed, "Pelvis"), posed_direction(rig, posed, "SpineTop"))).epsilon(0.02));
+  CHECK(largest < 0.6 * bend);
+}
+
+TEST_CASE("retarget: in place the root stays, with root motion it travels scaled by the legs") {
+  const Motion motion = t_pose_body({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  const Armature rig = hanging_body();
+  const RetargetMap map = match_by_names(motion, rig);
+  CHECK(Retarget(motion, rig, map).at(2).root_translation == glm::dvec3(0));
+  const Retarget travelling(motion, rig, map, {.in_place = false});
+  CHECK(travelling.scale() == doctest::Approx(820.0 / 8).epsilon(1e-6));
+  CHECK(glm::length(travelling.at(2).root_translation - glm::dvec3(2 * 820.0 / 8, 0, 0)) < 1e-4);
+}
+
+TEST_CASE("retarget: a map of one's own is read, written and held to what is there") {
+  const Motion motion = t_pose_body({{0, 30, 0}});
+  const Armature rig = hanging_body();
+  const RetargetMap map = parse_retarget_map(R"({"Spine": ["SpineLow", "SpineMiddle"], "Neck": {"bone": "Neck", "rest_offset_wxyz": [2, 0, 0, 0]}, "Chest": null})", "test", motion, rig);
+  CHECK(map.joint_of("SpineMiddle") == "Spine");
+  CHECK(map.sources.at("Neck").rest_offset == glm::dquat(1, 0, 0, 0));
+  CHECK(map.joint_of("Pelvis").empty());
+
+  const test::TemporaryFolder folder;
+  const RetargetMap found = Retarget(motion, rig, match_by_names(motion, rig)).map();
+  write_retarget_map(found, folder / "map.json");
+  const RetargetMap again = read_retarget_map(folder / "map.json", motion, rig);
+  CHECK(Retarget(motion, rig, again).at(0) == Retarget(motion, rig, found).at(0));
+
+  auto refused = [&](const char* text) { CHECK_THROWS_AS(parse_retarget_map(text, "test", motion, rig), Error); };
+  refused("");
+  refused("{}");
+  refused(R"({"Tail": "Pelvis"})");
+  refused(R"({"Hips": "Wing"})");
+  refused(R"({"Hips": 3})");
+  refused(R"({"Hips": "Pelvis", "Spine": "Pelvis"})");
+  refused(R"({"Hips": {"bone": "Pelvis", "rest_offset_wxyz": [0, 0, 0, 0]}})");
+}
+
+TEST_CASE("retarget: real motions keep the directions of matched bones on real rigs") {
+  for (const char* file : {"data/bvh/cmu_01_01.bvh", "data/bvh/rokoko_jesse_dance.bvh"})
+    for (const char* rig_file : {"data/bp3d/body.armature.json", "data/makehuman/body.armature.json"}) {
+      NEEDS_SHARED(file);
+      NEEDS_SHARED(rig_file);
+      const std::string names = std::string(file) + " on " + rig_file;
+      CAPTURE(names);
+      CHECK(largest_difference(read_bvh(test::shared_path(file)), read_armature(test::shared_path(rig_file)), 7) < 1e-4);
+    }
+}
+
+TEST_CASE("retarget: real motions find the limbs of real rigs") {
+  struct Expected {
+    const char *motion, *rig, *bone, *joint;
+  };
+  for (const Expected& e : {Expected{"cmu_01_01", "bp3d/body", "LeftClavicle", "LeftShoulder"}, {"cmu_01_01", "bp3d/body", "LeftUpperArm", "LeftArm"},
+                            {"cmu_01_01", "bp3d/body", "RightShank", "RightLeg"}, {"cmu_01_01", "bp3d/body", "ThoraxUpper", "Spine1"},
+                            {"rokoko_jesse_dance", "bp3d/body", "LeftIndexMiddle", "LeftHandIndex2"}, {"rokoko_jesse_dance", "bp3d/body", "RightToes", "RightToeBase"},
+                            {"mocapbank_crlf", "bp3d/body", "LeftUpperArm", "LeftShoulder"}, {"mocapbank_crlf", "bp3d/body", "LeftThigh", "LeftHip"},
+                            {"freebvh_fingers", "makehuman/body", "LeftArm", "mixamorig:LeftArm"}, {"mh_tpose_6ch", "bp3d/body", "LeftThigh", "upperleg01.L"}}) {
+    const std::string motion_file = std::string("data/bvh/") + e.motion + ".bvh", rig_file = std::string("data/") + e.rig + ".armature.json";
+    NEEDS_SHARED(motion_file);
+    NEEDS_SHARED(rig_file);
+    const RetargetMap map = match_by_names(read_bvh(test::shared_path(motion_file)), read_armature(test::shared_path(rig_file)));
+    CHECK_MESSAGE(map.joint_of(e.bone) == e.joint, e.motion, " moves ", e.bone, " by ", map.joint_of(e.bone));
+  }
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Our JSON: poses, rigs and maps; the first byte chooses which.
+#include <string>
+
+#include "core/base/error.h"
+#include "core/pose/pose_io.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/retarget.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const unsigned char* bytes, std::size_t size) {
+  using namespace limber;
+  static const Armature rig{{{"upper", -1, {0, 0, 0}, {0, 0, 10}}, {"lower", 0, {0, 0, 10}, {0, 3, 20}}}};
+  static const Motion motion = parse_bvh("HIERARCHY ROOT base { OFFSET 0 0 0 CHANNELS 0 JOINT tip { OFFSET 0 1 0 CHANNELS 0 } }", "motion");
+  if (size == 0) return 0;
+  const std::string text(reinterpret_cast<const char*>(bytes) + 1, size - 1);
+  try {
+    switch (bytes[0] % 3) {
+      case 0: posed_from_rest(rig, parse_pose(text, "fuzz", rig)); break;
+      case 1: parse_armature_json(text, "fuzz"); break;
+      case 2: parse_retarget_map(text, "fuzz", motion, rig); break;
+    }
+  } catch (const Error&) {
+  }
+  return 0;
+}
