@@ -136,6 +136,8 @@ struct Meaning {
 };
 
 Meaning meaning_of(const std::string& name) {
+  // MakeHuman puts a helper "__UpLeg_L" before "UpLeg_L".
+  if (name.starts_with("__")) return {};
   Words words = words_of(name);
   Meaning meaning;
   meaning.side = take_side(words);

@@ -196,7 +196,7 @@ TEST_CASE("retarget: real motions find the limbs of real rigs") {
                             {"cmu_01_01", "bp3d/body", "RightShank", "RightLeg"}, {"cmu_01_01", "bp3d/body", "ThoraxUpper", "Spine1"},
                             {"rokoko_jesse_dance", "bp3d/body", "LeftIndexMiddle", "LeftHandIndex2"}, {"rokoko_jesse_dance", "bp3d/body", "RightToes", "RightToeBase"},
                             {"mocapbank_crlf", "bp3d/body", "LeftUpperArm", "LeftShoulder"}, {"mocapbank_crlf", "bp3d/body", "LeftThigh", "LeftHip"},
-                            {"freebvh_fingers", "makehuman/body", "LeftArm", "mixamorig:LeftArm"}, {"mh_tpose_6ch", "bp3d/body", "LeftThigh", "upperleg01.L"}}) {
+                            {"freebvh_fingers", "makehuman/body", "LeftArm", "mixamorig:LeftArm"}, {"mh_tpose_6ch", "bp3d/body", "LeftThigh", "upperleg01.L"}, {"mh_walk1", "bp3d/body", "RightThigh", "UpLeg_R"}}) {
     const std::string motion_file = std::string("data/bvh/") + e.motion + ".bvh", rig_file = std::string("data/") + e.rig + ".armature.json";
     NEEDS_SHARED(motion_file);
     NEEDS_SHARED(rig_file);

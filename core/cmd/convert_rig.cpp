@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/cmd/convert_rig.h"
+
+#include <algorithm>
+
+#include "core/cmd/command.h"
+#include "core/cmd/info_rig.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/bvh.h"
+
+namespace limber::cmd {
+
+namespace {
+std::string extension_of(const Path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+}  // namespace
+
+bool converts_rig_or_motion(const Path& in, const Path& out) {
+  const std::string to = extension_of(out);
+  return (to == ".json" || to == ".vtk" || to == ".bvh") && is_rig_or_motion(in);
+}
+
+void convert_rig_or_motion(const Path& in, const Path& out) {
+  if (extension_of(in) == ".bvh" && extension_of(out) == ".bvh") {
+    const Motion motion = read_bvh(in);
+    warn(motion.warnings);
+    return write_bvh(motion, out);
+  }
+  const ArmatureFile rig = read_armature_file(in);
+  warn(rig.warnings);
+  write_armature(rig.armature, out);
+}
+
+}  // namespace limber::cmd
