@@ -13,10 +13,12 @@
 
 namespace limber::cmd {
 
+void add_fit_joint(CLI::App& app);
 void add_fk(CLI::App& app);
 void add_info(CLI::App& app);
 void add_phantom(CLI::App& app);
 void add_prepare(CLI::App& app);
+void add_report(CLI::App& app);
 void add_skin_points(CLI::App& app);
 void add_weights(CLI::App& app);
 

@@ -12,10 +12,12 @@ int main(int argc, char** argv) {
   CLI::App app("Limber changes the pose of labelled voxel anatomy.", "limber");
   app.require_subcommand(1);
   app.set_version_flag("--version", LIMBER_VERSION);
+  cmd::add_fit_joint(app);
   cmd::add_fk(app);
   cmd::add_info(app);
   cmd::add_phantom(app);
   cmd::add_prepare(app);
+  cmd::add_report(app);
   cmd::add_skin_points(app);
   cmd::add_weights(app);
 

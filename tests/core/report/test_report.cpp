@@ -6,6 +6,9 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/volume/volume_io.h"
+#include "tests/support/program.h"
+
 using namespace limber;
 using nlohmann::json;
 
@@ -102,4 +105,26 @@ TEST_CASE("report: reads as a table") {
   CHECK(text.str().find("fat") != std::string::npos);
   CHECK(text.str().find("-27.10") != std::string::npos);
   CHECK(text.str().find("total 1.25") != std::string::npos);
+}
+
+TEST_CASE("report: the command matches labels by their file values, whatever else the volumes hold") {
+  const test::TemporaryFolder folder;
+  TissueTable both = table_of(1, 40, "a");
+  both.tissues.push_back({.label = 2, .file_value = 200, .name = "b"});
+  LabelVolume before = box_of(2, 10), after = box_of(1, 5);
+  before.at({0, 0, 0}) = 1;
+  write_volume(before, folder / "before.nrrd", both);
+  write_volume(after, folder / "after.nrrd", table_of(1, 200, "b"));
+  const auto run = test::run_limber({"report", (folder / "before.nrrd").string(), (folder / "after.nrrd").string(), "--json"});
+  REQUIRE(run.exit_code == 0);
+  const json report = json::parse(run.out);
+  CHECK(report["inputs"][0]["sha256"].get<std::string>().size() == 64);
+  REQUIRE(report["tissues"].size() == 2);
+  CHECK(report["tissues"][0]["label"] == 40);
+  CHECK(report["tissues"][0]["voxels_after"] == 0);
+  CHECK(report["tissues"][1]["label"] == 200);
+  CHECK(report["tissues"][1]["voxels_before"] == 1000);
+  CHECK(report["tissues"][1]["voxels_after"] == 125);
+
+  CHECK(test::run_limber({"report", (folder / "before.nrrd").string(), (folder / "none.nrrd").string()}).exit_code == 1);
 }
