@@ -4,12 +4,13 @@
 #include <memory>
 #include <optional>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/cmd/command.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bone_parts.h"
+#include "core/skin/geodesic.h"
 #include "core/skin/heat_diffusion.h"
+#include "core/skin/rigid.h"
 #include "core/skin/weights_io.h"
 #include "core/volume/volume_io.h"
 
@@ -40,8 +41,9 @@ void make_weights(const Options& options) {
 
   VolumeFile file = read_volume(options.volume, progress);
   warn(file.warnings);
-  if (!options.tissues.empty()) throw Error("tissue tables are not read", options.tissues, "name the bone labels with --bones");
-  TissueTable tissues = merge_tissue_tables(file.tissues, nullptr);
+  std::optional<TissueTable> user;
+  if (!options.tissues.empty()) user = read_tissue_table(options.tissues);
+  TissueTable tissues = merge_tissue_tables(file.tissues, user ? &*user : nullptr);
   if (!options.bones.empty()) tissues = with_bones(std::move(tissues), options.bones);
   const ArmatureFile rig = read_armature_file(options.rig);
   warn(rig.warnings);
@@ -49,14 +51,17 @@ void make_weights(const Options& options) {
   const TissueVoxels tissue(file.volume);
   const BoneParts parts = split_bones(file.volume, tissue, tissues, rig.armature, progress);
   WeightsReport report;
-  const SkinWeights weights = diffuse_heat(file.volume, tissue, tissues, rig.armature, parts, {}, progress, &report);
+  const SkinWeights weights =
+      options.method == "rigid"      ? bind_rigid(file.volume, tissue, rig.armature, parts, progress, &report)
+      : options.method == "geodesic" ? bind_geodesic(file.volume, tissue, rig.armature, parts, {}, progress, &report)
+                                     : diffuse_heat(file.volume, tissue, tissues, rig.armature, parts, {}, progress, &report);
   warn(report.warnings);
   write_weights(weights, file.volume, tissue, options.output);
   if (!options.bender_folder.empty()) write_bender_weights(weights, file.volume, tissue, options.bender_folder);
 
   std::printf("tissue: %lld voxels, table: %s\n", static_cast<long long>(tissue.size()), tissues.source.c_str());
   print_table(parts, rig.armature);
-  std::printf("heat: residual %.1e in %d iterations\n", report.residual, report.iterations);
+  if (options.method == "heat") std::printf("heat: residual %.1e in %d iterations\n", report.residual, report.iterations);
 }
 }  // namespace
 

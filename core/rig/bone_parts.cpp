@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <queue>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -18,7 +19,8 @@ namespace {
 // 0.9 puts 0.4 % of bone voxels into a basin of another bone, 0.7 puts 2.4 %. Splitting one bone too often costs
 // nothing: its pieces find the same rig bone.
 constexpr double kMergeRatio = 0.9;
-constexpr double kWiggleVoxels = 0.3;  // what rounding to voxels makes of a smooth ridge
+constexpr double kWiggleVoxels = 0.6;  // what rounding to voxels makes of the smooth ridge of a thick tube,
+constexpr double kWiggleShare = 0.2;   // but no more than this share of the depth: a finger bone is two voxels deep
 constexpr std::int64_t kMostDistances = 16'000'000;  // basins x rig bones: 64 MB
 
 // The bone voxels and which of their 26 neighbours are bone of the same connected tissue.
@@ -135,7 +137,7 @@ std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing)
 // Flooding from the deepest voxel outwards: each basin is a summit of `height` and what slopes up to it. Where two
 // basins meet, the lower one is a mere wiggle of the higher when the pass between them is nearly as high as its
 // summit; then they are one.
-std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>& height, double merge_ratio, double wiggle) {
+std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>& height, double wiggle) {
   std::vector<std::int32_t> order(graph.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int a, int b) { return height[a] > height[b] || (height[a] == height[b] && a < b); });
@@ -165,7 +167,7 @@ std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>
       if (a == b) continue;
       if (summit[b] > summit[a] || (summit[b] == summit[a] && b < a)) std::swap(a, b);
       const float pass = std::min(height[i], height[n]);
-      if (pass >= merge_ratio * summit[b] || summit[b] - pass <= wiggle) parent[b] = a;
+      if (pass >= kMergeRatio * summit[b] || summit[b] - pass <= std::min(wiggle, kWiggleShare * summit[b])) parent[b] = a;
     }
   }
   std::vector<std::int32_t> number(parent.size(), -1);
@@ -183,23 +185,42 @@ class Hugging {
  public:
   Hugging(const Armature& armature, const Grid& grid) : world_from_voxel_(world_from_voxel(grid)) {
     for (const Bone& bone : armature.bones) {
-      // Two bones share the point where they meet; the tenth cut off at either end decides by direction there.
-      const glm::dvec3 along = bone.tail - bone.head;
-      Bone segment;
-      segment.head = bone.head + 0.1 * along;
-      segment.tail = bone.tail - 0.1 * along;
-      segments_.push_back(std::move(segment));
+      const double length = glm::length(bone.tail - bone.head);
+      double at_head = length, at_tail = length;
+      for (const Bone& other : armature.bones) {
+        const double other_length = glm::length(other.tail - other.head), near = 0.05 * std::min(length, other_length);
+        for (const glm::dvec3& end : {other.head, other.tail}) {
+          if (glm::distance(bone.head, end) <= near) at_head = std::min(at_head, other_length);
+          if (glm::distance(bone.tail, end) <= near) at_tail = std::min(at_tail, other_length);
+        }
+      }
+      segments_.push_back(cut_back(bone, 0.1 * length, 0.1 * length));
+      parting_.push_back(cut_back(bone, 0.1 * at_head, 0.1 * at_tail));
     }
   }
   int bone_count() const { return static_cast<int>(segments_.size()); }
+  // Two bones share the point where they meet; a tenth cut off at either end decides by direction there.
   double distance(int bone, const glm::ivec3& voxel) const {
     return distance_to_bone(segments_[bone], world_from_voxel_ * glm::dvec3(voxel));
+  }
+  // Cut back by the same length where they meet, so that bones part at the plane that halves the angle between them.
+  double parting_distance(int bone, const glm::ivec3& voxel) const {
+    return distance_to_bone(parting_[bone], world_from_voxel_ * glm::dvec3(voxel));
   }
   glm::dvec3 world(const glm::dvec3& voxel) const { return world_from_voxel_ * voxel; }
 
  private:
+  static Bone cut_back(const Bone& bone, double at_head, double at_tail) {
+    const double length = glm::length(bone.tail - bone.head);
+    const glm::dvec3 along = length > 0 ? (bone.tail - bone.head) / length : glm::dvec3(0);
+    Bone segment;
+    segment.head = bone.head + at_head * along;
+    segment.tail = bone.tail - at_tail * along;
+    return segment;
+  }
+
   AffineTransform world_from_voxel_;
-  std::vector<Bone> segments_;
+  std::vector<Bone> segments_, parting_;
 };
 
 std::vector<std::vector<std::int32_t>> members_of(const std::vector<std::int32_t>& basin) {
@@ -247,7 +268,7 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
     int best = 0;
     double nearest = std::numeric_limits<double>::max();
     for (size_t k = 0; k < bones.size(); ++k)
-      if (const double d = hugging.distance(bones[k], graph.voxel[i]); d < nearest) nearest = d, best = static_cast<int>(k);
+      if (const double d = hugging.parting_distance(bones[k], graph.voxel[i]); d < nearest) nearest = d, best = static_cast<int>(k);
     basin[i] = cut->second + best;
   }
 }
@@ -311,7 +332,43 @@ class Pieces {
     while (cluster_[p].parent != p) p = cluster_[p].parent;
     return p;
   }
-  int bone(std::int32_t p) const { return best(cluster_[root(p)]); }
+  // After settle(): the rig bone of a basin, or -1 for one that touches nothing and lies far from every bone.
+  int bone(std::int32_t p) const { return bone_[root(p)]; }
+
+  // Gives every piece its rig bone. A piece that lies along a bone follows that bone. One that lies further from its
+  // nearest bone than the piece along it does by half again (a rib beside the hanging arm, the breastbone between two
+  // collarbones) must touch bones that are joined to its nearest, or it follows what it touches: of a chain of bones the
+  // nearest, of several chains the bone they spring from.
+  void settle(const Armature& armature) {
+    const auto count = static_cast<std::int32_t>(cluster_.size());
+    bone_.assign(count, -1);
+    std::vector<double> claim(bones_, 0), own_distance(bones_, 0);
+    auto is_piece = [&](std::int32_t p) { return cluster_[p].parent == p && cluster_[p].voxels > 0; };
+    for (std::int32_t p = 0; p < count; ++p) {
+      if (!is_piece(p)) continue;
+      const int b = best(cluster_[p]);
+      const double d = std::max(1e-3, double(cluster_[p].distance[b]));
+      if (const double c = cluster_[p].voxels / (d * d); c > claim[b]) claim[b] = c, own_distance[b] = d;
+    }
+    std::vector<std::int32_t> waiting;
+    for (std::int32_t p = 0; p < count; ++p) {
+      if (!is_piece(p)) continue;
+      const int b = best(cluster_[p]);
+      if (cluster_[p].distance[b] <= 1.5 * own_distance[b])
+        bone_[p] = b;
+      else
+        waiting.push_back(p);
+    }
+    for (bool settled = true; settled;) {
+      settled = false;
+      std::vector<std::pair<std::int32_t, int>> found;  // all of a round see the same neighbours
+      for (std::int32_t p : waiting)
+        if (bone_[p] < 0)
+          if (const int b = bone_of_touched(p, armature); b >= 0) found.push_back({p, b});
+      for (auto [p, b] : found) bone_[p] = b, settled = true;
+    }
+  }
+  int nearest_bone(std::int32_t p) const { return best(cluster_[root(p)]); }
 
  private:
   // A pass this much shallower than the summit is a joint, not a waist.
@@ -324,6 +381,34 @@ class Pieces {
     std::vector<float> distance;              // mean, mm, by rig bone
     std::map<std::int32_t, float> contact;    // by cluster: depth of the deepest pass
   };
+
+  static bool above(const Armature& armature, int ancestor, int bone) {
+    while (bone > ancestor) bone = armature.bones[bone].parent;
+    return bone == ancestor;
+  }
+  int bone_of_touched(std::int32_t p, const Armature& armature) const {
+    std::vector<int> touched;
+    for (auto [n, pass] : cluster_[p].contact)
+      if (bone_[n] >= 0) touched.push_back(bone_[n]);
+    if (touched.empty()) return -1;
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    const int own = best(cluster_[p]);
+    auto joined = [&](int b) { return b == own || armature.bones[b].parent == own || armature.bones[own].parent == b; };
+    if (std::all_of(touched.begin(), touched.end(), joined)) return own;
+    bool chain = true;
+    for (size_t k = 1; k < touched.size(); ++k) chain &= above(armature, touched[k - 1], touched[k]);
+    int nearest = touched[0];
+    for (int b : touched)
+      if (cluster_[p].distance[b] < cluster_[p].distance[nearest]) nearest = b;
+    if (chain) return nearest;
+    for (int spring = touched[0]; spring >= 0; spring = armature.bones[spring].parent) {
+      bool all = true;
+      for (int b : touched) all &= above(armature, spring, b);
+      if (all) return spring;
+    }
+    return nearest;
+  }
 
   void touch(std::int32_t a, std::int32_t b, float pass) {
     float& deepest = cluster_[a].contact[b];
@@ -369,6 +454,7 @@ class Pieces {
 
   int bones_;
   std::vector<Cluster> cluster_;
+  std::vector<int> bone_;  // by cluster
 };
 
 // Basins of fewer than `fewest` voxels join the neighbouring basin they share most faces with.
@@ -403,14 +489,56 @@ void join_specks(const BoneGraph& graph, std::int64_t fewest, std::vector<std::i
   }
 }
 
+// The rig bone of every basin. A piece that touches none with a bone takes that of the bone voxel nearest to it through
+// the tissue, or where that is far, of the rig bone nearest in space.
+std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tissue, const LabelVolume& volume,
+                                 const std::vector<std::int32_t>& basin, const Pieces& pieces) {
+  const std::int32_t basins = *std::max_element(basin.begin(), basin.end()) + 1;
+  std::vector<int> bone(basins);
+  std::map<std::int32_t, std::vector<glm::ivec3>> lonely;  // by piece
+  for (std::int32_t p = 0; p < basins; ++p) bone[p] = pieces.bone(p);
+  for (std::int64_t i = 0; i < graph.size(); ++i)
+    if (bone[basin[i]] < 0) lonely[pieces.root(basin[i])].push_back(graph.voxel[i]);
+
+  std::vector<int> found(basins, -1);
+  std::int64_t budget = 20'000'000;  // voxels looked at in all
+  for (auto& [piece, front] : lonely) {
+    found[piece] = pieces.nearest_bone(piece);
+    std::set<std::int64_t> seen;
+    for (const glm::ivec3& v : front) seen.insert(tissue.index_of(v));
+    bool searching = true;
+    while (searching && !front.empty() && budget > 0 && seen.size() < 200'000) {
+      std::vector<glm::ivec3> next;
+      for (const glm::ivec3& v : front)
+        for (int direction = 0; direction < 6 && searching; ++direction) {
+          glm::ivec3 w = v;
+          w[direction >> 1] += direction & 1 ? 1 : -1;
+          if (volume.at_or_air(w) == 0) continue;
+          const std::int64_t place = tissue.index_of(w);
+          if (!seen.insert(place).second) continue;
+          --budget;
+          const auto at = std::lower_bound(graph.place.begin(), graph.place.end(), place);
+          if (at != graph.place.end() && *at == place && bone[basin[at - graph.place.begin()]] >= 0) {
+            found[piece] = bone[basin[at - graph.place.begin()]];
+            searching = false;
+          }
+          next.push_back(w);
+        }
+      front = std::move(next);
+    }
+  }
+  for (std::int32_t p = 0; p < basins; ++p)
+    if (bone[p] < 0) bone[p] = found[pieces.root(p)];
+  return bone;
+}
+
 // The touching pieces of one rig bone are one part; what touches none of its bone's other pieces and is small (under a
 // hundredth of its largest) belongs to that largest one.
 void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vector<std::int32_t>& basin, const Pieces& pieces,
-                  BoneParts& result) {
+                  const std::vector<int>& bone, BoneParts& result) {
   const std::int32_t basins = *std::max_element(basin.begin(), basin.end()) + 1;
   std::vector<std::int32_t> joined(basins);
-  std::vector<int> bone(basins);
-  for (std::int32_t p = 0; p < basins; ++p) joined[p] = pieces.root(p), bone[p] = pieces.bone(p);
+  for (std::int32_t p = 0; p < basins; ++p) joined[p] = pieces.root(p);
   auto root = [&](std::int32_t p) {
     while (joined[p] != p) p = joined[p] = joined[joined[p]];
     return p;
@@ -464,7 +592,7 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   progress.update("bones", 0.6);
 
   const double voxel = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
-  std::vector<std::int32_t> basin = flood(graph, height, kMergeRatio, kWiggleVoxels * voxel);
+  std::vector<std::int32_t> basin = flood(graph, height, kWiggleVoxels * voxel);
   const Hugging hugging(armature, volume.grid);
   cut_where_several_bones_run(graph, armature, volume.grid, tissue, hugging, basin);
   for (std::int64_t fewest = 8; ; fewest *= 2) {
@@ -476,7 +604,8 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
 
   Pieces pieces(graph, depth, hugging, basin);
   pieces.join();
-  gather_parts(graph, hugging, basin, pieces, result);
+  pieces.settle(armature);
+  gather_parts(graph, hugging, basin, pieces, bones_of_basins(graph, tissue, volume, basin, pieces), result);
   progress.update("bones", 1);
   return result;
 }

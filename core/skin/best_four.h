@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/rig/armature.h"
+#include "core/skin/heat_diffusion.h"
 #include "core/skin/skin_weights.h"
 
 namespace limber {
@@ -25,5 +27,12 @@ class BestFour {
  private:
   std::vector<Influence> best_;  // by falling weight, not normalized
 };
+
+std::vector<std::string> names_of_bones(const Armature& armature);
+
+// Tissue that no bone has reached (pieces that lie apart in the air): each piece follows the rig bone nearest to its
+// centre, and is named in the report's warnings, the largest first.
+void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature, BestFour& best,
+                   WeightsReport& report, const TissueTable* tissues = nullptr);
 
 }  // namespace limber

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Geodesic voxel binding [Dionne & de Lasa 2013]: weights fall with the distance travelled inside tissue.
+// Geodesic voxel binding [Dionne & de Lasa 2013]: a bone's weight falls with the length d of the shortest way to it
+// inside the tissue, as (1 / ((1 - falloff) d + falloff d^2))^2 with d in units of 100 mm. Bone stays exactly rigid.
 #pragma once
 
 #include "core/skin/heat_diffusion.h"
@@ -7,11 +8,11 @@
 namespace limber {
 
 struct GeodesicBinding {
-  double falloff = 0.5;  // alpha of the paper, [0, 1]: blend of sharp and smooth
+  double falloff = 0.5;  // alpha of the paper, [0, 1]: 1 is sharper
 };
 
-SkinWeights bind_geodesic(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
-                          const GeodesicBinding& settings = {}, Progress& progress = no_progress(),
+SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
+                          const BoneParts& parts, const GeodesicBinding& settings = {}, Progress& progress = no_progress(),
                           WeightsReport* report = nullptr);
 
 }  // namespace limber

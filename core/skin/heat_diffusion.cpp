@@ -136,69 +136,6 @@ std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures, const
   return blocks;
 }
 
-// A piece of soft tissue that touches no bone (it lies apart in the air) follows the rig bone nearest to its centre.
-void cover_unreached(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const Armature& armature,
-                     const SoftBody::Coarse& coarse, const std::vector<bool>& reached, BestFour& best, WeightsReport& report) {
-  struct Island {
-    std::int64_t voxels = 0;
-    glm::dvec3 sum{0};
-    Label label = 0;  // of its first voxel
-    int bone = 0;
-  };
-  std::vector<Island> islands;
-  std::vector<std::int32_t> island_of(coarse.graph.size(), -1), open;
-  for (std::int32_t seed = 0; seed < coarse.graph.size(); ++seed) {
-    if (reached[seed] || island_of[seed] >= 0) continue;
-    const auto number = static_cast<std::int32_t>(islands.size());
-    islands.emplace_back();
-    island_of[seed] = number;
-    open.push_back(seed);
-    while (!open.empty()) {
-      const std::int32_t cell = open.back();
-      open.pop_back();
-      for (std::int32_t k = coarse.graph.first[cell]; k < coarse.graph.first[cell + 1]; ++k)
-        if (const std::int32_t next = coarse.graph.neighbour[k]; island_of[next] < 0) {
-          island_of[next] = number;
-          open.push_back(next);
-        }
-    }
-  }
-  if (islands.empty()) return;
-
-  auto island_at = [&](std::int64_t place) { return coarse.cell_of_place[place] < 0 ? -1 : island_of[coarse.cell_of_place[place]]; };
-  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
-    const std::int32_t number = island_at(place);
-    if (number < 0) return;
-    Island& island = islands[number];
-    if (island.voxels++ == 0) island.label = volume.at(v);
-    island.sum += glm::dvec3(v);
-  });
-  const AffineTransform from_voxel = world_from_voxel(volume.grid);
-  for (Island& island : islands) {
-    const glm::dvec3 centre = from_voxel * (island.sum / double(island.voxels));
-    double nearest = std::numeric_limits<double>::max();
-    for (size_t b = 0; b < armature.bones.size(); ++b)
-      if (const double d = distance_to_bone(armature.bones[b], centre); d < nearest) nearest = d, island.bone = static_cast<int>(b);
-  }
-  for (std::int64_t place = 0; place < tissue.size(); ++place)
-    if (const std::int32_t number = island_at(place); number >= 0) best.hold(place, islands[number].bone);
-
-  std::stable_sort(islands.begin(), islands.end(), [](const Island& a, const Island& b) { return a.voxels > b.voxels; });
-  constexpr size_t kMostLines = 8;
-  for (size_t k = 0; k < std::min(islands.size(), kMostLines); ++k) {
-    const Island& island = islands[k];
-    const glm::dvec3 centre = from_voxel * (island.sum / double(island.voxels));
-    const Tissue* label = tissues.find(island.label);
-    char text[256];
-    std::snprintf(text, sizeof text, "no bone reaches %lld voxels of label %.15g near (%.0f, %.0f, %.0f): given to %.80s",
-                  static_cast<long long>(island.voxels), label ? label->file_value : double(island.label), centre.x, centre.y,
-                  centre.z, armature.bones[island.bone].name.c_str());
-    report.warnings.push_back(text);
-  }
-  if (islands.size() > kMostLines)
-    report.warnings.push_back("no bone reaches " + std::to_string(islands.size() - kMostLines) + " smaller pieces either: each given to the nearest bone");
-}
-
 }  // namespace
 
 SkinWeights diffuse_heat(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
@@ -216,7 +153,8 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
   progress.update("weights", 0);
   const int bone_count = static_cast<int>(armature.bones.size());
   const std::vector<std::uint16_t> held_by = bone_holding(volume, tissue, parts, armature);
-  const SoftBody body(volume, tissue, tissues, held_by);
+  const NearestBone nearest = nearest_bone(volume, tissue, armature, held_by);
+  const SoftBody body(volume, tissue, tissues, held_by, nearest);
   const SoftBody::Coarse coarse = body.coarse();
   const std::vector<bool> reached = reached_cells(coarse.graph, coarse.held);
   const CoarseTemperatures temperatures = solve_coarse(coarse, reached, bone_count);
@@ -262,10 +200,8 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
   }
   for (std::int64_t place = 0; place < tissue.size(); ++place)
     if (held_by[place] != kSoft) best.hold(place, held_by[place]);
-  cover_unreached(volume, tissue, tissues, armature, coarse, reached, best, said);
-  std::vector<std::string> names;
-  for (const Bone& bone : armature.bones) names.push_back(bone.name);
-  return best.weights(std::move(names), tissue);
+  cover_islands(volume, tissue, armature, best, said, &tissues);
+  return best.weights(names_of_bones(armature), tissue);
 }
 
 }  // namespace limber

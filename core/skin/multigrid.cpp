@@ -32,22 +32,22 @@ std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse) {
   coarse.spacing = fine.spacing * glm::dvec3(halved + glm::i16vec3(1));
   std::vector<std::int32_t> parent(fine.size(), -1);
   std::vector<glm::i16vec3> position;
-  std::array<std::int32_t, 8> open;
+  std::vector<std::int32_t> open;
   for (std::int32_t seed = 0; seed < fine.size(); ++seed) {
     if (parent[seed] >= 0) continue;
     const glm::i16vec3 block = fine.position[seed] >> halved;
     const auto aggregate_number = static_cast<std::int32_t>(position.size());
     position.push_back(block);
     parent[seed] = aggregate_number;
-    int open_count = 0;
-    open[open_count++] = seed;
-    while (open_count > 0) {
-      const std::int32_t i = open[--open_count];
+    open.push_back(seed);
+    while (!open.empty()) {
+      const std::int32_t i = open.back();
+      open.pop_back();
       for (std::int32_t k = fine.first[i]; k < fine.first[i + 1]; ++k) {
         const std::int32_t j = fine.neighbour[k];
         if (parent[j] >= 0 || (fine.position[j] >> halved) != block) continue;
         parent[j] = aggregate_number;
-        open[open_count++] = j;
+        open.push_back(j);
       }
     }
   }

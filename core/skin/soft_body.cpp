@@ -3,8 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "core/skin/tissue_front.h"
 
 namespace limber {
+
+namespace {
+// Of 1 / distance^2. Beside weights painted by hand 1 to 4 do equally well; 0 (conduction alone) loses a fifth of them.
+constexpr float kAttraction = 2;
+// The last bone of a chain stands for all that comes after it (four fingers, the toes, the jaw), most of it further off
+// than the bone is long: beyond kOwnReach of its length, distances to it count as kLastBone of what they are.
+constexpr float kOwnReach = 0.5f;
+constexpr float kLastBone = 0.65f;
+// Bone that is not drawn is taken to fill this share of the flesh around its axis, a voxel's diagonal at least.
+constexpr double kBoneShare = 0.5;
+}  // namespace
 
 float conductivity(TissueKind kind) {
   // W/m/K of living tissue at 37 C over muscle's 0.49.
@@ -18,6 +32,32 @@ float conductivity(TissueKind kind) {
     default: return 1.0f;  // muscle, tendon, cartilage, nerve, vessel, organs: 0.46 to 0.52
   }
 }
+
+namespace {
+
+// How far the air is from a bone's axis, mm: the median over points along it of the shortest of 26 rays.
+double flesh_around(const Bone& bone, const LabelVolume& volume) {
+  const AffineTransform from_world = voxel_from_world(volume.grid);
+  const double step = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
+  constexpr int kPoints = 9;
+  std::vector<double> depths;
+  for (int k = 0; k < kPoints; ++k) {
+    const glm::dvec3 at = glm::mix(bone.head, bone.tail, (k + 0.5) / kPoints);
+    double shortest = std::numeric_limits<double>::max();
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          if (x == 0 && y == 0 && z == 0) continue;
+          const glm::dvec3 along = glm::normalize(glm::dvec3(x, y, z)) * step;
+          for (int n = 0; n * step < shortest; ++n)
+            if (volume.at_or_air(glm::ivec3(glm::floor(from_world * (at + double(n) * along) + 0.5))) == 0) shortest = n * step;
+        }
+    depths.push_back(shortest);
+  }
+  std::nth_element(depths.begin(), depths.begin() + kPoints / 2, depths.end());
+  return depths[kPoints / 2];
+}
+}  // namespace
 
 std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
                                         const Armature& armature) {
@@ -33,8 +73,7 @@ std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueV
   for (size_t b = 0; b < armature.bones.size(); ++b) {
     if (has_part[b]) continue;
     const Bone& bone = armature.bones[b];
-    // As thick as a slender bone, so that the result does not depend on the spacing, but at least a voxel's diagonal.
-    const double radius = std::max(0.87 * voxel, std::min(0.06 * glm::length(bone.tail - bone.head), 8.0));
+    const double radius = std::max(0.87 * voxel, kBoneShare * flesh_around(bone, volume));
     glm::dvec3 lowest(1e300), highest(-1e300);
     for (const glm::dvec3& end : {bone.head, bone.tail})
       for (int corner = 0; corner < 8; ++corner) {
@@ -58,14 +97,43 @@ std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueV
   return held_by;
 }
 
+NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
+                         const std::vector<std::uint16_t>& held_by) {
+  std::vector<float> reach;  // mm, from where distances shrink
+  for (const Bone& bone : armature.bones) reach.push_back(kOwnReach * static_cast<float>(glm::length(bone.tail - bone.head)));
+  for (const Bone& bone : armature.bones)
+    if (bone.parent >= 0) reach[bone.parent] = std::numeric_limits<float>::infinity();
+  auto counted = [&](float distance, std::uint16_t bone) {
+    return distance <= reach[bone] ? distance : reach[bone] + kLastBone * (distance - reach[bone]);
+  };
+
+  NearestBone nearest{held_by, std::vector<float>(tissue.size(), std::numeric_limits<float>::infinity())};
+  TissueFront front(volume, tissue);
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    if (held_by[place] == kSoft) return;
+    nearest.distance[place] = 0;
+    front.start(place, v);
+  });
+  front.spread([&](std::int64_t from, std::int64_t to, float way) {
+    if (held_by[to] != kSoft) return false;
+    const float distance = counted(way, nearest.bone[from]);
+    if (distance >= nearest.distance[to]) return false;
+    nearest.distance[to] = distance;
+    nearest.bone[to] = nearest.bone[from];
+    return true;
+  });
+  return nearest;
+}
+
 SoftBody::SoftBody(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-                   const std::vector<std::uint16_t>& held_by)
-    : volume_(volume), tissue_(tissue), held_by_(held_by), conductivity_(1 << 16, 1.0f) {
+                   const std::vector<std::uint16_t>& held_by, const NearestBone& nearest)
+    : volume_(volume), tissue_(tissue), held_by_(held_by), nearest_(nearest), conductivity_(1 << 16, 1.0f) {
   for (const Tissue& t : tissues.tissues) conductivity_[t.label] = conductivity(t.kind);
   const glm::dvec3 s = volume.grid.spacing;
   const glm::dvec3 area_over_distance(s.y * s.z / s.x, s.x * s.z / s.y, s.x * s.y / s.z);
   const double largest = std::max({area_over_distance.x, area_over_distance.y, area_over_distance.z});
   for (int axis = 0; axis < 3; ++axis) face_[axis] = static_cast<float>(area_over_distance[axis] / largest);
+  volume_of_voxel_ = static_cast<float>(volume.grid.voxel_volume() / largest);
 }
 
 // A brick and one layer around it: places in the tissue list, -1 for air.
@@ -106,6 +174,11 @@ struct SoftBody::Window {
 float SoftBody::face(std::int64_t axis, Label a, Label b) const {
   const float ka = conductivity_[a], kb = conductivity_[b];
   return face_[axis] * (ka == kb ? ka : 2 * ka * kb / (ka + kb));
+}
+
+float SoftBody::attraction(std::int64_t place) const {
+  const float distance = nearest_.distance[place];
+  return kAttraction * volume_of_voxel_ / (distance * distance);  // zero where no bone is reached
 }
 
 SoftBody::Region SoftBody::region(const std::vector<std::int32_t>& bricks) const {
@@ -157,6 +230,10 @@ SoftBody::Region SoftBody::region(const std::vector<std::int32_t>& bricks) const
         conductance[cell][count++] = g;
       }
       graph.first[cell + 1] = count;
+      if (const float g = attraction(place); g > 0) {
+        graph.diagonal[cell] += g;
+        region.held.push_back({cell, nearest_.bone[place], g});
+      }
     });
   }
   for (std::int64_t i = 0; i < size; ++i) graph.first[i + 1] += graph.first[i];
@@ -254,6 +331,10 @@ SoftBody::Coarse SoftBody::coarse() const {
           graph.diagonal[cell] += g;
           links.push_back({cell, cell_of[other], g});
         }
+      }
+      if (const float g = attraction(place); g > 0) {
+        graph.diagonal[cell] += g;
+        coarse.held.push_back({cell, nearest_.bone[place], g});
       }
     });
     // One entry a pair.

@@ -4,6 +4,11 @@
 // counts: a face conducts area / distance times the harmonic mean of the two conductivities; towards a held voxel only
 // the soft half of the way resists.
 //
+// A soft voxel is also warmed from afar, by the bone nearest to it through the tissue, with a strength that falls with
+// the square of the distance [Baran & Popovic 2007, 4]. Without it a small bone loses the flesh beyond it to a larger
+// neighbour (fingertips to the palm), and the two sides of a joint mix over the whole thickness of the limb; the law is
+// free of scale, so a finger and a thigh blend alike.
+//
 // Conductivities are the thermal ones of living tissue relative to muscle. They matter where layers differ: fat
 // conducts half as much, so skin over a limb follows the limb all around instead of the nearest bit of bone.
 #pragma once
@@ -30,7 +35,16 @@ float conductivity(TissueKind kind);
 std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
                                         const Armature& armature);
 
-// Heat flowing from a held voxel into a cell.
+// For every soft voxel the bone nearest to it and how far it is, found by spreading through tissue: a bone across an air
+// gap does not count. Held voxels have distance 0; kSoft and infinity where no held voxel is reached.
+struct NearestBone {
+  std::vector<std::uint16_t> bone;
+  std::vector<float> distance;  // mm, between voxel centres
+};
+NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
+                         const std::vector<std::uint16_t>& held_by);
+
+// Heat flowing from a bone into a cell, through a face or from afar.
 struct HeldFace {
   std::int32_t cell;
   std::uint16_t bone;
@@ -41,7 +55,7 @@ class SoftBody {
  public:
   // References are kept.
   SoftBody(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-           const std::vector<std::uint16_t>& held_by);
+           const std::vector<std::uint16_t>& held_by, const NearestBone& nearest);
 
   // The soft voxels of some bricks as cells; what lies in other bricks has temperature zero.
   struct Region {
@@ -63,12 +77,15 @@ class SoftBody {
  private:
   struct Window;
   float face(std::int64_t axis, Label a, Label b) const;
+  float attraction(std::int64_t place) const;
 
   const LabelVolume& volume_;
   const TissueVoxels& tissue_;
   const std::vector<std::uint16_t>& held_by_;
+  const NearestBone& nearest_;
   std::vector<float> conductivity_;  // by label
   std::array<float, 3> face_;        // area / distance of a face across each axis, largest 1
+  float volume_of_voxel_ = 1;        // mm3, in the same measure
 };
 
 }  // namespace limber

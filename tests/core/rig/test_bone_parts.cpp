@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/rig/bone_parts.h"
+
+#include <map>
+#include <set>
+
+#include <doctest/doctest.h>
+
+#include "core/rig/armature_io.h"
+#include "core/volume/volume_io.h"
+#include "tests/core/skin/small_body.h"
+#include "tests/support/shared_data.h"
+
+using namespace limber;
+using namespace limber::test;
+
+namespace {
+// Bone voxels per rig bone.
+std::map<std::string, std::int64_t> voxels_by_bone(const BoneParts& parts, const Armature& armature) {
+  std::map<std::string, std::int64_t> count;
+  for (std::uint16_t part : parts.part_of)
+    if (part) ++count[armature.bones[parts.parts[part - 1].bone].name];
+  return count;
+}
+
+// Two balls of bone, each with a shaft, that touch in a disc; joint between them.
+SmallBody two_touching_bones() {
+  SmallBody body;
+  body.volume.grid.size = {32, 32, 92};
+  body.volume.voxels.assign(body.volume.grid.voxel_count(), kMuscle);
+  for (int z = 2; z < 90; ++z)
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x) {
+        const double r = glm::length(glm::dvec2(x, y) - 15.5);
+        const double to_ball = std::min(std::abs(z - 37.0), std::abs(z - 54.0));
+        if (r < 4.5 || r * r + to_ball * to_ball < 90) body.volume.at({x, y, z}) = kBone;
+      }
+  // Nothing but the touching balls between z = 37 and 54.
+  for (int z = 45; z < 47; ++z)
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x)
+        if (glm::length(glm::dvec2(x, y) - 15.5) > 3.0) body.volume.at({x, y, z}) = kMuscle;
+  body.tissues = muscle_and_bone();
+  body.armature.bones = {bone_between("Upper", -1, {15, 15, 0}, {15, 15, 45.5}), bone_between("Lower", 0, {15, 15, 45.5}, {15, 15, 91})};
+  return body;
+}
+}  // namespace
+
+TEST_CASE("bone parts: two bones that touch part where they touch, shafts stay with their balls") {
+  const SmallBody body = two_touching_bones();
+  const TissueVoxels tissue(body.volume);
+  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
+  REQUIRE(parts.parts.size() == 2);
+  std::int64_t wrong = 0;
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    CHECK((parts.part_of[place] > 0) == (body.volume.at(v) == kBone));
+    if (parts.part_of[place]) wrong += (parts.parts[parts.part_of[place] - 1].bone == 0) != (v.z < 46);
+  });
+  CHECK(wrong <= 40);  // of the disc in which they touch
+}
+
+TEST_CASE("bone parts: one tube drawn along several rig bones is cut at their joints") {
+  SmallBody body = two_bone_bar(12, 40, 0);
+  const TissueVoxels tissue(body.volume);
+  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
+  REQUIRE(parts.parts.size() == 2);
+  CHECK(parts.parts[0].voxel_count == parts.parts[1].voxel_count);
+}
+
+TEST_CASE("bone parts: labels that name different bones are never joined, a shell and its core are") {
+  SmallBody body = two_touching_bones();
+  for (int z = 0; z < 92; ++z)
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x)
+        if (Label& label = body.volume.at({x, y, z}); label == kBone && z >= 43) label = 3;  // not where the neck is
+  for (Label label : {Label{3}, Label{4}}) {
+    Tissue tissue = body.tissues.tissues.back();
+    tissue.label = label;
+    body.tissues.tissues.push_back(tissue);
+  }
+  for (int z = 10; z < 30; ++z) body.volume.at({15, 15, z}) = 4;  // a core of another label
+  const TissueVoxels tissue(body.volume);
+  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    if (parts.part_of[place]) CHECK(parts.parts[parts.part_of[place] - 1].bone == (body.volume.at(v) == 3 ? 1 : 0));
+  });
+}
+
+TEST_CASE("bone parts: a volume that is all bone, or has none, is no trouble") {
+  SmallBody body = two_bone_bar(6, 12, 2);
+  for (Label& label : body.volume.voxels) label = kBone;
+  CHECK(split_bones(body.volume, TissueVoxels(body.volume), body.tissues, body.armature).parts.size() >= 1);
+  for (Label& label : body.volume.voxels) label = kMuscle;
+  CHECK(split_bones(body.volume, TissueVoxels(body.volume), body.tissues, body.armature).parts.empty());
+}
+
+TEST_CASE("bone parts: on a whole arm with one bone label, every true bone lies on one rig bone") {
+  NEEDS_SHARED("data/bp3d/arm_shoulder_1mm_tissue.mha");
+  const VolumeFile file = read_volume(shared_path("data/bp3d/arm_shoulder_1mm_tissue.mha"));
+  const VolumeFile truth = read_volume(shared_path("data/bp3d/arm_shoulder_1mm.nrrd"));
+  const Armature armature = read_armature(shared_path("data/bp3d/arm_shoulder.armature.json"));
+  const TissueTable tissues = with_bones(file.tissues, {7});
+  const TissueVoxels tissue(file.volume);
+  const BoneParts parts = split_bones(file.volume, tissue, tissues, armature);
+  std::map<double, std::map<int, std::int64_t>> bones_of_structure;
+  std::int64_t bone_voxels = 0;
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    if (!parts.part_of[place]) return;
+    ++bone_voxels;
+    ++bones_of_structure[truth.tissues.find(truth.volume.at(v))->file_value][parts.parts[parts.part_of[place] - 1].bone];
+  });
+  std::int64_t astray = 0;
+  for (const auto& [structure, bones] : bones_of_structure) {
+    std::int64_t all = 0, most = 0;
+    for (auto [bone, voxels] : bones) all += voxels, most = std::max(most, voxels);
+    astray += all - most;
+  }
+  MESSAGE(astray, " of ", bone_voxels, " bone voxels lie on another rig bone than most of their structure");
+  CHECK(astray < bone_voxels / 200);
+}
+
+TEST_CASE("bone parts: each of the arm's 21 rig bones finds its own bone, and no part is torn between two") {
+  NEEDS_SHARED("data/bender/man-arm-2mm.mha");
+  const VolumeFile file = read_volume(shared_path("data/bender/man-arm-2mm.mha"));
+  const Armature armature = read_armature(shared_path("data/bender/man-arm-2mm-armature.vtk"));
+  const TissueTable tissues = merge_tissue_tables(file.tissues, nullptr);
+  const TissueVoxels tissue(file.volume);
+  const BoneParts parts = split_bones(file.volume, tissue, tissues, armature);
+  const auto count = voxels_by_bone(parts, armature);
+  CHECK(count.size() == 21);
+  // Humerus and forearm leave only a few touching voxels.
+  std::int64_t touching = 0;
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    if (!parts.part_of[place] || parts.parts[parts.part_of[place] - 1].bone != 0) return;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = -1; side <= 1; side += 2) {
+        glm::ivec3 w = v;
+        w[axis] += side;
+        if (file.volume.at_or_air(w) == 0) continue;
+        const std::uint16_t part = parts.part_of[tissue.index_of(w)];
+        touching += part && parts.parts[part - 1].bone == 1;
+      }
+  });
+  MESSAGE(touching, " faces between humerus and forearm");
+  CHECK(touching < 200);
+}
