@@ -67,24 +67,9 @@ Json describe_weights(const Path& path) {
   return {{"kind", "weights"}, {"bones", Json::parse(weights.bones, nullptr, false)}, {"voxels", weights.voxels}};
 }
 
-// A rig, unless the keys are labels.
-Json describe_json(const Path& path) {
-  constexpr std::uint64_t kMostBytes = 256 << 20;
-  const Json json = Json::parse(read_file(path, kMostBytes), nullptr, false);
-  const bool labels = json.is_object() && !json.empty() && std::all_of(json.begin(), json.end(), [](const Json& entry) { return entry.is_string() || entry.is_object(); }) &&
-                      std::all_of(json.items().begin(), json.items().end(), [](const auto& item) {
-                        return !item.key().empty() && item.key().find_first_not_of("-0123456789") == std::string::npos;
-                      });
-  return labels ? describe_tissues(path) : Json::parse(describe_rig_or_motion(path));
-}
-
 Json describe(const Path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (extension == ".json") return describe_json(path);
-  if (is_rig_or_motion(path)) return Json::parse(describe_rig_or_motion(path));
-  if (extension == ".ctbl" || extension == ".label") return describe_tissues(path);
-  if (extension == ".txt" && !is_volume_path(path)) return describe_tissues(path);
+  if (is_tissue_table(path)) return describe_tissues(path);
+  if (path.extension() == ".json" || is_rig_or_motion(path)) return Json::parse(describe_rig_or_motion(path));
   if (is_weights_path(path)) return describe_weights(path);
   return describe_volume(path);
 }

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   CLI::App app("Limber changes the pose of labelled voxel anatomy.", "limber");
   app.require_subcommand(1);
   app.set_version_flag("--version", LIMBER_VERSION);
+  cmd::add_convert(app);
   cmd::add_fit_joint(app);
   cmd::add_fk(app);
   cmd::add_info(app);

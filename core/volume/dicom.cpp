@@ -6,11 +6,10 @@
 #include <cstring>
 #include <map>
 
-#include <gdcmImageReader.h>
-#include <gdcmReader.h>
-#include <gdcmTrace.h>
+#include <dlfcn.h>
 
 #include "core/base/error.h"
+#include "core/volume/dicom_codec.h"
 #include "core/volume/header_text.h"
 #include "core/volume/voxel_stream.h"
 
@@ -40,27 +39,48 @@ struct Slice {
   glm::dvec3 normal() const { return glm::cross(along_row, along_column); }
 };
 
-// Values of one element, as text or as a 16-bit number.
+// The module with GDCM, found where the program's run path says: beside it, or in ../lib/limber.
+struct Codec {
+  decltype(&limber_dicom_elements) elements;
+  decltype(&limber_dicom_pixels) pixels;
+};
+const Codec& codec(const Path& path) {
+  static const Codec loaded = [] {
+    void* module = ::dlopen("limber_dicom.so", RTLD_NOW | RTLD_LOCAL);
+    Codec functions{nullptr, nullptr};
+    if (!module) return functions;
+    functions.elements = reinterpret_cast<decltype(&limber_dicom_elements)>(::dlsym(module, "limber_dicom_elements"));
+    functions.pixels = reinterpret_cast<decltype(&limber_dicom_pixels)>(::dlsym(module, "limber_dicom_pixels"));
+    return functions;
+  }();
+  if (!loaded.elements || !loaded.pixels)
+    throw Error("DICOM cannot be read, limber_dicom.so is missing or damaged", path.string(), "install Limber again, or give NRRD, MetaImage or NIfTI");
+  return loaded;
+}
+
+// The elements that describe an image, as text or as a 16-bit number.
 class Elements {
  public:
-  explicit Elements(const gdcm::DataSet& set) : set_(set) {}
+  explicit Elements(const Path& path) {
+    const auto keep = [](void* context, std::uint16_t group, std::uint16_t element, const char* bytes, std::size_t size) {
+      constexpr std::size_t kLongest = 1024;  // of what is asked for below
+      if (size <= kLongest) static_cast<Elements*>(context)->values_[{group, element}] = std::string(bytes, size);
+    };
+    if (codec(path).elements(path.c_str(), keep, this) != 0) throw Error("the DICOM header is damaged", path.string(), "export the series again");
+  }
 
   std::string text(std::uint16_t group, std::uint16_t element) const {
-    const gdcm::Tag tag(group, element);
-    if (!set_.FindDataElement(tag)) return {};
-    const gdcm::ByteValue* value = set_.GetDataElement(tag).GetByteValue();
-    if (!value || !value->GetPointer()) return {};
-    std::string text(value->GetPointer(), value->GetLength());
+    const auto found = values_.find({group, element});
+    if (found == values_.end()) return {};
+    std::string text = found->second;
     while (!text.empty() && (text.back() == '\0' || is_blank(text.back()))) text.pop_back();
     return text;
   }
   std::optional<int> word(std::uint16_t group, std::uint16_t element) const {
-    const gdcm::Tag tag(group, element);
-    if (!set_.FindDataElement(tag)) return std::nullopt;
-    const gdcm::ByteValue* value = set_.GetDataElement(tag).GetByteValue();
-    if (!value || !value->GetPointer() || value->GetLength() < 2) return std::nullopt;
+    const auto found = values_.find({group, element});
+    if (found == values_.end() || found->second.size() < 2) return std::nullopt;
     std::uint16_t number;
-    std::memcpy(&number, value->GetPointer(), 2);
+    std::memcpy(&number, found->second.data(), 2);
     return number;
   }
   // Numbers between backslashes; none unless there are `count`.
@@ -72,7 +92,7 @@ class Elements {
   }
 
  private:
-  const gdcm::DataSet& set_;
+  std::map<std::pair<std::uint16_t, std::uint16_t>, std::string> values_;
 };
 
 std::optional<VoxelType> type_of(int bits, bool is_signed) {
@@ -83,11 +103,7 @@ std::optional<VoxelType> type_of(int bits, bool is_signed) {
 }
 
 Slice read_slice_header(const Path& path) {
-  gdcm::Reader reader;
-  reader.SetFileName(path.c_str());
-  const gdcm::Tag pixels(0x7fe0, 0x0010);
-  if (!reader.ReadUpToTag(pixels)) throw Error("the DICOM header is damaged", path.string(), "export the series again");
-  const Elements elements(reader.GetFile().GetDataSet());
+  const Elements elements(path);
 
   Slice slice;
   slice.path = path;
@@ -180,20 +196,6 @@ glm::dvec3 slice_step(const std::vector<Slice>& slices, const Path& path) {
   return step;
 }
 
-// A library's own exception becomes an Error here, at its door.
-template <class Body>
-auto behind_door(const Path& path, const Body& body) {
-  try {
-    return body();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error("the DICOM data cannot be read", path.string(), error.what());
-  }
-}
-
 class DicomSource final : public VoxelSource {
  public:
   DicomSource(std::vector<Slice> slices, bool scale) : slices_(std::move(slices)), scale_(scale) {}
@@ -201,7 +203,7 @@ class DicomSource final : public VoxelSource {
   void read(void* to, std::size_t bytes) override {
     auto* out = static_cast<char*>(to);
     while (bytes > 0) {
-      if (place_ == buffer_.size()) behind_door(slices_.at(next_).path, [&] { decode_next(); });
+      if (place_ == buffer_.size()) decode_next();
       const std::size_t now = std::min(bytes, buffer_.size() - place_);
       std::memcpy(out, buffer_.data() + place_, now);
       place_ += now;
@@ -216,13 +218,8 @@ class DicomSource final : public VoxelSource {
     const Slice& slice = slices_.at(next_++);
     const auto damaged = [&] { return Error("the pixels of the DICOM image are missing or damaged", slice.path.string(), "export the series again"); };
     if (slice.bytes() > PlainFile(slice.path).size() * kCodecMost) throw damaged();
-    gdcm::ImageReader reader;
-    reader.SetFileName(slice.path.c_str());
-    if (!reader.Read()) throw damaged();
-    const gdcm::Image& image = reader.GetImage();
-    if (image.GetNumberOfDimensions() != 2 || static_cast<std::int64_t>(image.GetBufferLength()) != slice.bytes()) throw damaged();
     buffer_.resize(static_cast<std::size_t>(slice.bytes()));
-    if (!image.GetBuffer(buffer_.data())) throw damaged();
+    if (codec(slice.path).pixels(slice.path.c_str(), buffer_.data(), buffer_.size()) != 0) throw damaged();
     if (scale_) to_float(slice);
     place_ = 0;
   }
@@ -285,17 +282,12 @@ bool is_dicom_folder(const Path& path) {
 }
 
 OpenedVolume open_dicom(const Path& path) {
-  gdcm::Trace::DebugOff();
-  gdcm::Trace::WarningOff();
-  gdcm::Trace::ErrorOff();
-  return behind_door(path, [&] {
-    std::vector<Slice> slices;
-    if (fs::is_directory(path))
-      slices = read_series(path);
-    else
-      slices.push_back(read_slice_header(path));
-    return open_slices(std::move(slices), path);
-  });
+  std::vector<Slice> slices;
+  if (fs::is_directory(path))
+    slices = read_series(path);
+  else
+    slices.push_back(read_slice_header(path));
+  return open_slices(std::move(slices), path);
 }
 
 }  // namespace limber

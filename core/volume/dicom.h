@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// DICOM images: a folder with one series, or a single file, plain or compressed (JPEG, JPEG 2000, RLE). This is the
-// only door to GDCM, the DICOM library that ITK itself wraps: going to it directly spares each start of the program
-// the loading of ITK. Slices are ordered along their normal and must be evenly spaced.
+// DICOM images: a folder with one series, or a single file, plain or compressed (JPEG, JPEG 2000, RLE). Slices are
+// ordered along their normal and must be evenly spaced. The pixels are decoded by GDCM, the DICOM library that ITK itself
+// wraps, behind dicom_codec.
 #pragma once
 
 #include "core/volume/voxel_source.h"

@@ -72,10 +72,13 @@ std::optional<std::vector<Number>> numbers_of(std::string_view text) {
   return numbers;
 }
 
-// The shortest text that reads back as exactly this number.
+// The shortest text that reads back as exactly this number; whole numbers without an exponent.
 inline std::string text_of(double number) {
+  constexpr double kExact = 9007199254740992;  // 2^53
+  if (number >= -kExact && number <= kExact && number == static_cast<double>(static_cast<std::int64_t>(number)))
+    return std::to_string(static_cast<std::int64_t>(number));
   char buffer[40];
-  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, number == 0 ? 0.0 : number);
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, number);
   return std::string(buffer, end);
 }
 

@@ -45,7 +45,7 @@ const std::vector<Rule>& rules() {
       {TissueKind::Fat, {"fat", "adipose", "subcutaneous", "sat"}},
       {TissueKind::Cartilage, {"cartilage", "chondral", "meniscus", "menisci", "disc", "disk", "labrum"}},
       {TissueKind::Tendon, {"tendon", "ligament", "ligamentum", "retinaculum", "retinacula", "aponeurosis", "iliotibial", "interosseal", "linea"}},
-      {TissueKind::Nerve, {"nerve", "nervus", "plexus", "ganglion", "spinal"}},
+      {TissueKind::Nerve, {"nerve", "nervus", "plexus", "ganglion", "cord"}},
       {TissueKind::Vessel,
        {"artery", "arteries", "arteria", "vein", "vena", "vessel", "aorta", "brachiocephalic", "carotid", "jugular", "arteriole", "venous", "vascular"}},
       {TissueKind::Blood, {"blood"}},
@@ -61,7 +61,7 @@ const std::vector<Rule>& rules() {
         "brachioradialis", "buccinator", "bulbospongiosus", "coccygeus", "coracobrachialis", "corrugator", "cremaster", "deltoid", "depressor", "diaphragm",
         "digastric", "dilator", "erector", "extensor", "fibularis", "flexor", "frontalis", "gastrocnemius", "gemellus", "genioglossus", "geniohyoid", "gluteus",
         "gracilis", "hamstring", "hyoglossus", "iliacus", "iliococcygeus", "iliocostalis", "iliopsoas", "infraspinatus", "intercostal", "interossei",
-        "interosseous", "interosseus", "interspinalis", "interspinales", "intertransversarius", "intertransversarii", "latissimus", "levator", "longissimus",
+        "interosseous", "interosseus", "interspinalis", "interspinales", "intertransversarius", "intertransversarii", "latissimus", "levator", "levatores", "longissimus",
         "longus", "lumbrical", "masseter", "mentalis", "multifidus", "mylohyoid", "oblique", "obliquus", "obturator", "occipitofrontalis", "omohyoid", "opponens",
         "orbicularis", "palmaris", "pectineus", "pectoralis", "peroneus", "piriformis", "plantaris", "platysma", "popliteus", "procerus", "pronator", "psoas",
         "pterygoid", "pubococcygeus", "puborectalis", "quadratus", "quadriceps", "rectus", "rhomboid", "rhomboideus", "risorius", "rotatores", "rotator",
@@ -81,7 +81,7 @@ const std::vector<Rule>& rules() {
         "cranium",   "mandible",  "maxilla",     "pelvis",     "hip",       "ilium",     "ischium",  "pubis",      "carpal",     "metacarpal", "tarsal", "metatarsal",
         "phalanx",   "phalanges", "capitate",    "hamate",     "lunate",    "scaphoid",  "trapezium", "trapezoid", "triquetral", "triquetrum", "pisiform", "calcaneus",
         "talus",     "navicular", "cuboid",      "cuneiform",  "sesamoid",  "hyoid",     "ethmoid",  "vomer",      "sphenoid",   "zygomatic", "tooth",   "teeth",
-        "incisor",   "molar",     "premolar",    "canine",     "cortical",  "compact"}},
+        "incisor",   "molar",     "premolar",    "canine", "concha",     "cortical",  "compact"}},
   };
   return kRules;
 }

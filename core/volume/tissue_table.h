@@ -84,6 +84,8 @@ void apply_kind_defaults(Tissue& tissue);
 // Reads a label table: our JSON, Slicer .ctbl, ITK-SNAP label file; told apart by content. Keys are file values.
 // Throws Error naming the line or key that is wrong.
 TissueTable read_tissue_table(const Path& path);
+// By name, and for .json by content: an object whose every key is a whole number.
+bool is_tissue_table(const Path& path);
 void write_tissue_table(const TissueTable& table, const Path& path);  // by extension: .json, .ctbl, .txt (ITK-SNAP)
 
 // `table` completed for a volume whose labels and file values stand in `in_file` (as read from the volume's file):

@@ -12,6 +12,7 @@
 #include "core/volume/header_text.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/tissue_table_io.h"
+#include "core/volume/voxel_source.h"
 
 namespace limber {
 
@@ -216,6 +217,18 @@ TissueTable parse_tissue_table(const std::string& bytes, const std::string& wher
 }
 
 TissueTable read_tissue_table(const Path& path) { return parse_tissue_table(read_file(path, kMostBytes), path.string()); }
+
+bool is_tissue_table(const Path& path) {
+  const std::string extension = lower_case(path.extension().string());
+  if (extension == ".ctbl" || extension == ".label") return true;
+  if (extension == ".txt") return !is_virtual_family(path);
+  if (extension != ".json") return false;
+  const Json json = Json::parse(read_file(path, kMostBytes), nullptr, false);
+  if (!json.is_object() || json.empty()) return false;
+  for (const auto& [key, entry] : json.items())
+    if (key.empty() || key.find_first_not_of("-0123456789") != std::string::npos) return false;
+  return true;
+}
 
 void write_tissue_table(const TissueTable& table, const Path& path) {
   const std::string extension = lower_case(path.extension().string());

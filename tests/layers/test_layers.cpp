@@ -51,7 +51,7 @@ struct Door {
 };
 
 const std::vector<Door> kDoors = {
-    {"GDCM", {"gdcm"}, {"core/volume/dicom.cpp"}},
+    {"GDCM", {"gdcm"}, {"core/volume/dicom_codec.cpp"}},
     {"bzip2", {"bzlib"}, {"core/volume/voxel_stream.cpp"}},
     {"TetGen", {"tetgen"}, {"core/mesh/tetrahedralize.cpp"}},
     {"CHOLMOD", {"cholmod", "suitesparse/"}, {"core/base/cholesky.cpp"}},
