@@ -20,6 +20,7 @@ void add_info(CLI::App& app);
 void add_phantom(CLI::App& app);
 void add_prepare(CLI::App& app);
 void add_report(CLI::App& app);
+void add_resample(CLI::App& app);
 void add_skin_points(CLI::App& app);
 void add_weights(CLI::App& app);
 

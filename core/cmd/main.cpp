@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   cmd::add_phantom(app);
   cmd::add_prepare(app);
   cmd::add_report(app);
+  cmd::add_resample(app);
   cmd::add_skin_points(app);
   cmd::add_weights(app);
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How a command is told a body: VOLUME --rig RIG [--tissues T] [--bones L,L].
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "core/base/progress.h"
+#include "core/rig/armature.h"
+#include "core/volume/volume_io.h"
+
+namespace limber::cmd {
+
+struct BodyOptions {
+  std::string volume, rig, tissues;  // files
+  std::vector<double> bones;         // labels that are bone, as in the file; none: what the tissue table says
+};
+
+struct Body {
+  VolumeFile file;
+  TissueTable tissues;
+  Armature rig;
+};
+
+// `options` must live as long as the command.
+void add_body_options(CLI::App& command, BodyOptions& options);
+
+// Warnings of the files go to stderr.
+Body read_body(const BodyOptions& options, Progress& progress);
+
+}  // namespace limber::cmd
