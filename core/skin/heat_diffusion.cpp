@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/skin/best_four.h"
@@ -18,6 +19,7 @@ namespace {
 constexpr float kNegligible = 3e-4f;
 constexpr double kCoarseResidual = 1e-4;
 constexpr double kLaneCost = 0.25;  // of one more right side, over that of a region solved for one
+constexpr int kMostTogether = 4;    // right sides: four floats fill a vector register, and six vectors of them the memory
 
 // Temperatures on the coarse body: by bone, the cells where it matters.
 struct CoarseTemperatures {
@@ -73,7 +75,7 @@ CoarseTemperatures solve_coarse(const SoftBody::Coarse& coarse, const std::vecto
     const int lanes = static_cast<int>(block.size());
     std::vector<float> b(size * lanes, 0.0f), x(size * lanes, 0.0f);
     fill_sources(coarse.held, lane_of_bone, lanes, b);
-    multigrid.solve(b, x, lanes, kCoarseResidual, 100);
+    multigrid.solve(std::move(b), x, lanes, kCoarseResidual, 100);
     for (int lane = 0; lane < lanes; ++lane) {
       for (std::int64_t c = 0; c < size; ++c)
         if (x[c * lanes + lane] > kNegligible)
@@ -108,7 +110,7 @@ std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures, const
   while (!waiting.empty()) {
     Block block{{waiting.front()}, bricks[waiting.front()]};
     waiting.erase(waiting.begin());
-    while (std::ssize(block.bones) < Multigrid::kMostLanes) {
+    while (std::ssize(block.bones) < kMostTogether) {
       // The bone that saves most by sharing the region instead of having one of its own.
       double best_gain = 0;
       size_t best = waiting.size();
@@ -181,8 +183,9 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
       if (!reached[cell]) region.graph.diagonal[i] += 1;
       for (int lane = 0; lane < lanes; ++lane) x[i * lanes + lane] = guess[std::int64_t{cell} * lanes + lane];
     }
+    region.held = {};
     const Multigrid multigrid(std::move(region.graph));
-    const SolveReport solved = multigrid.solve(b, x, lanes, settings.residual, settings.maximum_iterations, progress);
+    const SolveReport solved = multigrid.solve(std::move(b), x, lanes, settings.residual, settings.maximum_iterations, progress);
     if (progress.cancelled()) throw Cancelled();
     if (solved.residual > settings.residual) {
       char text[64];

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -152,13 +153,14 @@ class Multigrid::Solver {
     }
   }
 
-  SolveReport solve(const std::vector<float>& b, std::vector<float>& x, double residual, int most_iterations,
+  SolveReport solve(std::vector<float> b, std::vector<float>& x, double residual, int most_iterations,
                     const Progress& progress) {
     const CellGraph& graph = grid_.finest();
-    std::vector<float> r(b.size()), p(b.size()), q(b.size());
+    std::vector<float> p(b.size()), q(b.size());
     const Sums bb = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
       for (int l = 0; l < Lanes; ++l) sums[l] += double(b[i * Lanes + l]) * b[i * Lanes + l];
     });
+    std::vector<float>& r = b;  // from here on
     Sums rr = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
       float acc[Lanes];
       gather(graph, x.data(), i, acc);
@@ -334,17 +336,17 @@ class Multigrid::Solver {
   std::vector<Vectors> at_;
 };
 
-SolveReport Multigrid::solve(const std::vector<float>& b, std::vector<float>& x, int lanes, double residual,
+SolveReport Multigrid::solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual,
                              int most_iterations, const Progress& progress) const {
   switch (lanes) {
-    case 1: return Solver<1>(*this).solve(b, x, residual, most_iterations, progress);
-    case 2: return Solver<2>(*this).solve(b, x, residual, most_iterations, progress);
-    case 3: return Solver<3>(*this).solve(b, x, residual, most_iterations, progress);
-    case 4: return Solver<4>(*this).solve(b, x, residual, most_iterations, progress);
-    case 5: return Solver<5>(*this).solve(b, x, residual, most_iterations, progress);
-    case 6: return Solver<6>(*this).solve(b, x, residual, most_iterations, progress);
-    case 7: return Solver<7>(*this).solve(b, x, residual, most_iterations, progress);
-    default: return Solver<8>(*this).solve(b, x, residual, most_iterations, progress);
+    case 1: return Solver<1>(*this).solve(std::move(b), x, residual, most_iterations, progress);
+    case 2: return Solver<2>(*this).solve(std::move(b), x, residual, most_iterations, progress);
+    case 3: return Solver<3>(*this).solve(std::move(b), x, residual, most_iterations, progress);
+    case 4: return Solver<4>(*this).solve(std::move(b), x, residual, most_iterations, progress);
+    case 5: return Solver<5>(*this).solve(std::move(b), x, residual, most_iterations, progress);
+    case 6: return Solver<6>(*this).solve(std::move(b), x, residual, most_iterations, progress);
+    case 7: return Solver<7>(*this).solve(std::move(b), x, residual, most_iterations, progress);
+    default: return Solver<8>(*this).solve(std::move(b), x, residual, most_iterations, progress);
   }
 }
 

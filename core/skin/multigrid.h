@@ -53,7 +53,7 @@ class Multigrid {
   //   b, x       #cells x lanes; x holds the first guess
   //   lanes      right sides, 1 to kMostLanes
   //   residual   where a right side stops, |b - A x| / |b|
-  SolveReport solve(const std::vector<float>& b, std::vector<float>& x, int lanes, double residual, int most_iterations,
+  SolveReport solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual, int most_iterations,
                     const Progress& progress = no_progress()) const;
 
  private:

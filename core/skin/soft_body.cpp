@@ -197,53 +197,53 @@ SoftBody::Region SoftBody::region(const std::vector<std::int32_t>& bricks) const
     if (colour == 0) graph.red_count = static_cast<std::int32_t>(region.place.size());
   }
 
-  // Faces are found brick by brick, but a cell's list must lie at its number: count first.
+  // Faces are found brick by brick, but a cell's list lies at its number: once to count them, once to note them.
   const std::int64_t size = graph.size();
-  std::vector<std::array<std::int32_t, 6>> neighbour(size);
-  std::vector<std::array<float, 6>> conductance(size);
   graph.diagonal.assign(size, 0);
   graph.first.assign(size + 1, 0);
   Window window;
-  for (std::int32_t brick : bricks) {
-    window.look(*this, brick);
-    const glm::ivec3 corner = tissue_.bricks()[brick].corner;
-    tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
-      const std::int32_t cell = cell_of[place];
-      if (cell < 0) return;
-      const int here = Window::at(v - corner);
-      int count = 0;
-      for (int direction = 0; direction < 6; ++direction) {
-        const int axis = direction >> 1, there = here + (direction & 1 ? Window::kStep[axis] : -Window::kStep[axis]);
-        const std::int32_t other = window.place[there];
-        if (other < 0) continue;
-        const std::uint16_t holder = held_by_[other];
-        if (holder != kSoft) {
-          const float g = 2 * face_[axis] * conductivity_[window.label[here]];
+  for (const bool counting : {true, false}) {
+    for (std::int32_t brick : bricks) {
+      window.look(*this, brick);
+      const glm::ivec3 corner = tissue_.bricks()[brick].corner;
+      tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+        const std::int32_t cell = cell_of[place];
+        if (cell < 0) return;
+        const int here = Window::at(v - corner);
+        std::int32_t next = counting ? 0 : graph.first[cell];
+        for (int direction = 0; direction < 6; ++direction) {
+          const int axis = direction >> 1, there = here + (direction & 1 ? Window::kStep[axis] : -Window::kStep[axis]);
+          const std::int32_t other = window.place[there];
+          if (other < 0) continue;
+          if (counting) {
+            next += cell_of[other] >= 0;
+            continue;
+          }
+          if (const std::uint16_t holder = held_by_[other]; holder != kSoft) {
+            const float g = 2 * face_[axis] * conductivity_[window.label[here]];
+            graph.diagonal[cell] += g;
+            region.held.push_back({cell, holder, g});
+            continue;
+          }
+          const float g = face(axis, window.label[here], window.label[there]);
           graph.diagonal[cell] += g;
-          region.held.push_back({cell, holder, g});
-          continue;
+          if (cell_of[other] < 0) continue;
+          graph.neighbour[next] = cell_of[other];
+          graph.conductance[next++] = g;
         }
-        const float g = face(axis, window.label[here], window.label[there]);
-        graph.diagonal[cell] += g;
-        if (cell_of[other] < 0) continue;
-        neighbour[cell][count] = cell_of[other];
-        conductance[cell][count++] = g;
-      }
-      graph.first[cell + 1] = count;
-      if (const float g = attraction(place); g > 0) {
-        graph.diagonal[cell] += g;
-        region.held.push_back({cell, nearest_.bone[place], g});
-      }
-    });
-  }
-  for (std::int64_t i = 0; i < size; ++i) graph.first[i + 1] += graph.first[i];
-  graph.neighbour.resize(graph.first[size]);
-  graph.conductance.resize(graph.first[size]);
-  for (std::int64_t i = 0; i < size; ++i)
-    for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k) {
-      graph.neighbour[k] = neighbour[i][k - graph.first[i]];
-      graph.conductance[k] = conductance[i][k - graph.first[i]];
+        if (counting) {
+          graph.first[cell + 1] = next;
+        } else if (const float g = attraction(place); g > 0) {
+          graph.diagonal[cell] += g;
+          region.held.push_back({cell, nearest_.bone[place], g});
+        }
+      });
     }
+    if (!counting) break;
+    for (std::int64_t i = 0; i < size; ++i) graph.first[i + 1] += graph.first[i];
+    graph.neighbour.resize(graph.first[size]);
+    graph.conductance.resize(graph.first[size]);
+  }
   return region;
 }
 
