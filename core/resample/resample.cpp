@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/deform/inverse_map.h"
 #include "core/resample/output_grid.h"
+#include "core/rig/bone_parts.h"
 
 namespace limber {
 
@@ -57,6 +58,43 @@ struct LabelSets {
     }
   }
 };
+
+// Bone tissue must follow one rig bone wholly. Weights made by hand or by other programs may not: then the bones of the
+// volume are separated, and each follows the rig bone it hugs.
+SkinWeights with_rigid_bones(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
+                             const TissueTable& tissues, const LabelSet& is_bone, const Armature& armature, Progress& progress) {
+  auto is_rigid = [&](std::int64_t brick) {
+    bool rigid = true;
+    auto influence = weights.chunk(brick).begin();
+    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
+      rigid &= (influence++)->weight[0] == kFullWeight || !is_bone[volume.at(v)];
+    });
+    return rigid;
+  };
+  std::int64_t soft = 0;
+  while (soft < weights.chunk_count() && is_rigid(soft)) ++soft;
+  if (soft == weights.chunk_count()) return weights;
+
+  const BoneParts parts = split_bones(volume, tissue, tissues, armature, progress);
+  std::vector<int> bone_of_part;
+  for (const auto& part : parts.parts) {
+    const auto found = std::find(weights.bones().begin(), weights.bones().end(), armature.bones[part.bone].name);
+    bone_of_part.push_back(found == weights.bones().end() ? -1 : int(found - weights.bones().begin()));
+  }
+  SkinWeights rigid = weights;
+  for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
+    SkinWeights::Chunk chunk = weights.chunk(brick);
+    auto influence = chunk.begin();
+    tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+      Influence& mine = *influence++;
+      if (!is_bone[volume.at(v)]) return;
+      const int part = parts.part_of[place], bone = part ? bone_of_part[part - 1] : -1;
+      mine = rigid_influence(bone >= 0 ? bone : mine.bone[0]);
+    });
+    rigid.set_chunk(brick, std::move(chunk));
+  }
+  return rigid;
+}
 
 // Grey values between voxel centres, linear; the nearest voxel's outside the grid.
 class GreySampler {
@@ -275,10 +313,11 @@ Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Arma
   const TissueVoxels tissue(volume);
   const LabelSets labels(tissues);
   const auto motions = bone_motions(weights, armature, pose);
+  const SkinWeights rigid = with_rigid_bones(weights, volume, tissue, tissues, labels.bone, armature, progress);
   const glm::dvec3 ratio = settings.spacing ? spacing_ratio(volume.grid, *settings.spacing) : glm::dvec3(1);
 
-  const PosedLattice lattice(volume, tissue, weights, motions, blend_of(method), ratio, progress);
-  const RigidBones bones(lattice, weights, labels.bone, motions);
+  const PosedLattice lattice(volume, tissue, rigid, motions, blend_of(method), ratio, progress);
+  const RigidBones bones(lattice, rigid, labels.bone, motions);
   const OutputGrid output = output_grid(lattice, bones);
   std::optional<TissueDepth> depth;
   if (can_fold(motions)) depth.emplace(tissue, volume.grid.spacing);

@@ -80,3 +80,22 @@ TEST_CASE("resample: results are the same for 1, 2 and 4 threads, bit for bit") 
     }
   }
 }
+
+TEST_CASE("resample: bones stay rigid though the given weights would bend them") {
+  test::BentTube tube = test::bent_tube();
+  const TissueVoxels tissue(tube.volume);
+  for (std::int64_t b = 0; b < tube.weights.chunk_count(); ++b) {
+    SkinWeights::Chunk chunk;
+    tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
+      const double far = std::clamp((v.z - 6) / 30.0, 0.0, 1.0);
+      chunk.push_back(quantize({{0, 1 - far}, {1, far}}));
+    });
+    tube.weights.set_chunk(b, std::move(chunk));
+  }
+  for (const Method& method : kMethods) {
+    const Posed result = posed(tube, tube.pose(45), method);
+    CHECK(result.report.new_hole_voxels == 0);
+    REQUIRE(result.report.bones.size() == 2);
+    for (const auto& bone : result.report.bones) CHECK(bone.rigid_residual_mm < 0.01);
+  }
+}
