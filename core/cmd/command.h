@@ -17,6 +17,7 @@ void add_convert(CLI::App& app);
 void add_fit_joint(CLI::App& app);
 void add_fk(CLI::App& app);
 void add_info(CLI::App& app);
+void add_job(CLI::App& app);
 void add_phantom(CLI::App& app);
 void add_prepare(CLI::App& app);
 void add_report(CLI::App& app);

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   cmd::add_fit_joint(app);
   cmd::add_fk(app);
   cmd::add_info(app);
+  cmd::add_job(app);
   cmd::add_phantom(app);
   cmd::add_prepare(app);
   cmd::add_report(app);

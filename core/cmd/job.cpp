@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber job JOB.json: what a worker or a cluster node runs. A job is a command written down: its keys are the command's
+// options, so that a job can do what the command line can, and the same way.
+//   {"command": "resample", "volume": "arm.mha", "rig": "rig.json", "flex": ["Forearm=90"], "method": "dqs", "output": "posed.nrrd"}
+// Lists repeat an option (bones, labels: joined by commas); true sets a flag. Paths are relative to the job's folder.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/cmd/command.h"
+
+namespace limber::cmd {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::uint64_t kLargestJob = 1 << 20;
+
+std::string text_of(const Json& value, const std::string& key, const Path& job) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number()) return value.dump();
+  throw Error("a setting is neither text nor a number", job.string() + ", " + key, "write \"" + key + "\": \"value\"");
+}
+
+// The words of the command line that the job stands for.
+std::vector<std::string> words_of(const Json& job, const Path& path) {
+  std::vector<std::string> words{job.at("command").get<std::string>()};
+  for (const auto& [key, value] : job.items()) {
+    if (key == "command" || key == "volume") continue;
+    if (value.is_boolean()) {
+      if (value.get<bool>()) words.push_back("--" + key);
+    } else if (value.is_array()) {
+      for (const Json& one : value) words.push_back("--" + key + "=" + text_of(one, key, path));
+    } else {
+      words.push_back("--" + key + "=" + text_of(value, key, path));
+    }
+  }
+  words.insert(words.begin() + 1, text_of(job.at("volume"), "volume", path));
+  return words;
+}
+
+Json read_job(const Path& path) {
+  const Json job = Json::parse(read_file(path, kLargestJob), nullptr, false);
+  if (!job.is_object()) throw Error("this is not a job", path.string(), "write a JSON object with \"command\" and its options");
+  for (const char* key : {"command", "volume"})
+    if (!job.contains(key) || !job[key].is_string())
+      throw Error(std::string("the job has no \"") + key + "\"", path.string(), "add it: \"command\": \"resample\", \"volume\": FILE");
+  if (job["command"] != "resample")
+    throw Error("a job cannot run this command", path.string() + ", " + job["command"].get<std::string>(), "use \"command\": \"resample\"");
+  return job;
+}
+
+void run(const Path& path) {
+  std::vector<std::string> words = words_of(read_job(path), path);
+  const Path where = std::filesystem::absolute(path);
+  std::filesystem::current_path(where.parent_path());
+
+  CLI::App app;
+  add_resample(app);
+  std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+  try {
+    app.parse(words);
+  } catch (const CLI::ParseError& error) {
+    throw Error("the job does not describe a resampling", path.string(), error.what());
+  }
+}
+
+}  // namespace
+
+void add_job(CLI::App& app) {
+  auto* command = app.add_subcommand("job", "a resampling described in a file");
+  auto path = std::make_shared<std::string>();
+  command->add_option("JOB", *path, "JSON: {\"command\": \"resample\", \"volume\", \"rig\", ... as the command's options}")->required();
+  command->callback([path] { run(*path); });
+}
+
+}  // namespace limber::cmd
