@@ -14,13 +14,13 @@ TEST_CASE("job: a resampling described in a file gives the same bytes as the com
   const TemporaryFolder folder;
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
   const std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", tissues = folder / "tissues.json";
-  const auto direct = run_limber({"resample", volume, "--rig", rig, "--tissues", tissues, "--flex", "Forearm=60", "--flex", "Hand=20",
+  const auto direct = run_limber({"resample", volume, "--rig", rig, "--tissues", tissues, "--flex", "Forearm=60", "--flex", "IndexProximal=20",
                                   "--method", "dqs", "-o", folder / "direct.nrrd"});
   INFO(direct.err);
   REQUIRE(direct.exit_code == 0);
 
   std::ofstream(folder / "job.json") << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
-    "flex": ["Forearm=60", "Hand=20"], "method": "dqs", "nearest": false, "output": "job.nrrd"})";
+    "flex": ["Forearm=60", "IndexProximal=20"], "method": "dqs", "nearest": false, "output": "job.nrrd"})";
   const auto job = run_limber({"job", folder / "job.json"});
   INFO(job.err);
   REQUIRE(job.exit_code == 0);
