@@ -185,6 +185,7 @@ void run(const Options& options) {
     report.seconds.report = comparing.seconds();
     report.seconds.total = total.seconds();
     outputs.write(options.report, [&] { write_report(report, options.report); });
+    print_report(std::cout, report);
   }
   outputs.complete();
 }
@@ -200,7 +201,7 @@ void add_resample(CLI::App& app) {
   command->add_option("--method", options->method, "lbs (linear) or dqs (dual quaternions)")->required()->check(CLI::IsMember({"lbs", "dqs"}));
   command->add_flag("--fit-joints", options->fit_joints, "first move each bent joint so that its bones do not collide");
   command->add_option("-o,--output", options->output, "the posed volume")->required();
-  command->add_option("--report", options->report, "what changed, as JSON");
+  command->add_option("--report", options->report, "what changed: JSON there, a table on stdout");
   command->add_option("--spacing", options->spacing, "of the output, mm (default: as the input)")->check(CLI::PositiveNumber);
   command->add_flag("--nearest", options->nearest, "labels of the nearest rest voxel");
   command->add_option("--with", options->grey, "a grey volume moved by the same map")->type_name("GREY=OUT");
