@@ -14,6 +14,7 @@
 #include "core/cmd/command.h"
 #include "core/cmd/pose_options.h"
 #include "core/report/report.h"
+#include "core/rig/bone_parts.h"
 #include "core/rig/fit_joint.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
@@ -42,45 +43,33 @@ GreyPaths grey_paths(const std::string& request) {
   return {request.substr(0, equals), request.substr(equals + 1)};
 }
 
-void check_folders(const Options& options) {
-  std::vector<std::string> outputs = {options.output, options.report, options.field, options.jacobian};
-  if (!options.grey.empty()) outputs.push_back(grey_paths(options.grey).to);
-  for (const std::string& output : outputs) {
-    const Path folder = Path(output).parent_path();
-    if (!folder.empty() && !std::filesystem::is_directory(folder))
-      throw Error("there is no such folder", folder.string(), "make it first, or write elsewhere");
-  }
+// Before anything is computed.
+void check_outputs(const Options& options) {
+  std::vector<std::string> volumes = {options.output, options.field, options.jacobian};
+  if (!options.grey.empty()) volumes.push_back(grey_paths(options.grey).to);
+  for (const std::string& volume : volumes)
+    if (!volume.empty()) check_writable(volume);
+  const Path folder = Path(options.report).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder))
+    throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
 }
 
-// Moves each joint that the pose bends so that its bones do not collide on the way.
-Armature fit_bent_joints(const Body& body, const TissueVoxels& tissue, const Options& options, Progress& progress) {
-  Armature rig = body.rig;
-  const Pose pose = read_pose_options(options.pose, rig);
-  const BoneParts parts = split_bones(body.file.volume, tissue, body.tissues, rig, progress);
-  for (int bone = 0; bone < std::ssize(rig.bones); ++bone) {
-    const glm::dquat& turn = pose.rotation[bone];
-    if (turn == glm::dquat(1, 0, 0, 0)) continue;
-    try {
-      const double degrees = glm::degrees(glm::angle(turn.w < 0 ? -turn : turn));
-      const bool bends = glm::dot(glm::dvec3(turn.x, turn.y, turn.z) * (turn.w < 0 ? -1.0 : 1.0), flex_axis(rig, bone)) >= 0;
-      const FitJoint range{bends ? 0 : -degrees, bends ? degrees : 0};
-      rig = fit_joint(body.file.volume, tissue, parts, rig, bone, range, progress).armature;
-    } catch (const Error& error) {
-      warn("joint not fitted: " + std::string(error.what()));
-    }
-  }
-  return rig;
+// Kept for the report, and shown at once.
+void note(Report& report, const std::vector<std::string>& warnings) {
+  warn(warnings);
+  report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
 }
 
-SkinWeights weights_of(const Body& body, const TissueVoxels& tissue, const Options& options, Progress& progress) {
+SkinWeights weights_of(const Body& body, const TissueVoxels& tissue, const BoneParts& parts, const Options& options,
+                       Report& report, Progress& progress) {
   if (!options.weights.empty()) {
     WeightsFile file = read_weights(options.weights, body.file.volume, tissue, body.rig);
-    warn(file.warnings);
+    note(report, file.warnings);
     return std::move(file.weights);
   }
-  WeightsReport report;
-  SkinWeights weights = diffuse_heat(body.file.volume, body.tissues, body.rig, {}, progress, &report);
-  warn(report.warnings);
+  WeightsReport heat;
+  SkinWeights weights = diffuse_heat(body.file.volume, tissue, body.tissues, body.rig, parts, {}, progress, &heat);
+  note(report, heat.warnings);
   return weights;
 }
 
@@ -138,10 +127,11 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });
 }
 
-void warn_of(const DeformReport& report, bool joints_fitted) {
-  if (report.bone_overlap_voxels && !joints_fitted)
-    warn(std::to_string(report.bone_overlap_voxels) + " voxels are claimed by two bones: the rig's joint is not the anatomical one: "
-         "add --fit-joints");
+void note_bone_overlap(Report& report, std::int64_t voxels, bool joints_fitted) {
+  if (voxels == 0) return;
+  note(report, {joints_fitted ? std::to_string(voxels) + " voxels are still claimed by two bones"
+                              : std::to_string(voxels) + " voxels are claimed by two bones: the rig's joint is not the anatomical one: "
+                                                         "add --fit-joints"});
 }
 
 void run(const Options& options) {
@@ -149,29 +139,36 @@ void run(const Options& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
-  check_folders(options);
+  check_outputs(options);
   Report report;
 
   const Stopwatch reading;
   Body body = read_body(options.body, progress);
+  Pose pose = read_pose_options(options.pose, body.rig);
   std::optional<GreyVolume> grey;
   if (!options.grey.empty()) grey = read_grey_volume(grey_paths(options.grey).from, progress);
   report.seconds.read = reading.seconds();
 
   const Stopwatch weighting;
   const TissueVoxels tissue(body.file.volume);
-  const SkinWeights weights = weights_of(body, tissue, options, progress);
-  if (options.fit_joints) body.rig = fit_bent_joints(body, tissue, options, progress);
+  BoneParts parts;
+  if (options.weights.empty() || options.fit_joints) parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress);
+  const SkinWeights weights = weights_of(body, tissue, parts, options, report, progress);
+  if (options.fit_joints) {
+    FittedPose fitted = fit_joints(body.file.volume, tissue, parts, body.rig, pose, progress);
+    note(report, fitted.warnings);
+    body.rig = std::move(fitted.armature);
+    pose = std::move(fitted.pose);
+  }
   report.seconds.weights = weighting.seconds();
 
-  const Pose pose = read_pose_options(options.pose, body.rig);
   const ResampleSettings settings{.nearest = options.nearest, .spacing = options.spacing,
                                   .displacement = !options.field.empty(), .jacobian = !options.jacobian.empty(),
                                   .grey = grey ? &*grey : nullptr};
   Posed posed = resample(body.file.volume, body.tissues, body.rig, weights, pose, method_of(options.method), settings, progress);
   report.seconds.deform = posed.report.seconds_deform;
   report.seconds.rasterize = posed.report.seconds_rasterize;
-  warn_of(posed.report, options.fit_joints);
+  note_bone_overlap(report, posed.report.bone_overlap_voxels, options.fit_joints);
 
   Outputs outputs;
   const Stopwatch writing;
