@@ -278,7 +278,7 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
 // bone than it would be alone.
 class Pieces {
  public:
-  Pieces(const BoneGraph& graph, const std::vector<float>& depth, const Hugging& hugging, const std::vector<std::int32_t>& basin)
+  Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging, const std::vector<std::int32_t>& basin)
       : bones_(hugging.bone_count()) {
     const auto members = members_of(basin);
     cluster_.resize(members.size());
@@ -286,7 +286,7 @@ class Pieces {
       Cluster& cluster = cluster_[p];
       cluster.parent = static_cast<std::int32_t>(p);
       cluster.voxels = std::ssize(members[p]);
-      for (std::int32_t i : members[p]) cluster.summit = std::max(cluster.summit, depth[i]);
+      for (std::int32_t i : members[p]) cluster.summit = std::max(cluster.summit, height[i]);
       if (members[p].empty()) continue;
       // 256 voxels spread evenly tell a mean distance to a few percent.
       const size_t stride = std::max<size_t>(1, members[p].size() / 256);
@@ -301,7 +301,7 @@ class Pieces {
     for (std::int32_t i = 0; i < graph.size(); ++i)
       for (std::int32_t n : graph.neighbour[i]) {
         if (n <= i || basin[n] == basin[i]) continue;
-        const float pass = std::min(depth[i], depth[n]);
+        const float pass = std::min(height[i], height[n]);
         touch(basin[i], basin[n], pass);
         touch(basin[n], basin[i], pass);
       }
@@ -371,7 +371,8 @@ class Pieces {
   int nearest_bone(std::int32_t p) const { return best(cluster_[root(p)]); }
 
  private:
-  // A pass this much shallower than the summit is a joint, not a waist.
+  // A pass this much lower than the summit is a joint, not a waist. Marrow runs through a bone and never across a joint,
+  // so its raised passes tell a condyle's own shaft from the bone it rolls on also where voxels are coarse.
   static constexpr float kWeakestContact = 0.35f;
 
   struct Cluster {
@@ -379,7 +380,7 @@ class Pieces {
     std::int64_t voxels = 0;
     float summit = 0;
     std::vector<float> distance;              // mean, mm, by rig bone
-    std::map<std::int32_t, float> contact;    // by cluster: depth of the deepest pass
+    std::map<std::int32_t, float> contact;    // by cluster: height of the highest pass
   };
 
   static bool above(const Armature& armature, int ancestor, int bone) {
@@ -411,8 +412,8 @@ class Pieces {
   }
 
   void touch(std::int32_t a, std::int32_t b, float pass) {
-    float& deepest = cluster_[a].contact[b];
-    deepest = std::max(deepest, pass);
+    float& highest = cluster_[a].contact[b];
+    highest = std::max(highest, pass);
   }
   static int best(const Cluster& c) {
     return static_cast<int>(std::min_element(c.distance.begin(), c.distance.end()) - c.distance.begin());
@@ -602,7 +603,7 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   }
   progress.update("bones", 0.8);
 
-  Pieces pieces(graph, depth, hugging, basin);
+  Pieces pieces(graph, height, hugging, basin);
   pieces.join();
   pieces.settle(armature);
   gather_parts(graph, hugging, basin, pieces, bones_of_basins(graph, tissue, volume, basin, pieces), result);
