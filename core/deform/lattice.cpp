@@ -52,16 +52,18 @@ class CornerWeights {
   void gather(const TissueVoxels::Brick& brick, const SkinWeights::Chunk& chunk, const glm::ivec3& step) {
     const glm::ivec3 first = first_of(step), last = last_of(step);
     const unsigned columns = (0xffu >> (7 - last.x)) & (0xffu << first.x);
-    int before = 0;  // tissue voxels of earlier slices
-    for (int z = 0; z <= last.z; before += std::popcount(brick.mask[z]), ++z) {
-      if (z < first.z) continue;
-      for (int y = first.y; y <= last.y; ++y) {
-        const unsigned row = brick.mask[z] >> (8 * y) & 0xff;
-        const int place = before + std::popcount(brick.mask[z] & ((std::uint64_t{1} << (8 * y)) - 1));
-        for (unsigned bits = row & columns; bits; bits &= bits - 1) {
-          const int x = std::countr_zero(bits);
-          const glm::ivec3 v = glm::ivec3(x, y, z) + step * TissueVoxels::kBrick + 1;
-          add(chunk[place + std::popcount(row & ((1u << x) - 1))], v.x + kHalo * (v.y + kHalo * v.z));
+    int place = 0;
+    for (int z = 0; z <= last.z; ++z) {
+      if (z < first.z) {
+        place += std::popcount(brick.mask[z]);
+        continue;
+      }
+      for (int y = 0; y < TissueVoxels::kBrick; ++y) {
+        const unsigned columns_here = y >= first.y && y <= last.y ? columns : 0;
+        for (unsigned bits = brick.mask[z] >> (8 * y) & 0xff; bits; bits &= bits - 1, ++place) {
+          if (!(bits & -bits & columns_here)) continue;
+          const glm::ivec3 v = glm::ivec3(std::countr_zero(bits), y, z) + step * TissueVoxels::kBrick + 1;
+          add(chunk[place], v.x + kHalo * (v.y + kHalo * v.z));
         }
       }
     }
@@ -94,8 +96,6 @@ class CornerWeights {
 };
 
 }  // namespace
-
-VoxelRange intersect(const VoxelRange& a, const VoxelRange& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
 
 PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                            const std::vector<RigidTransform>& posed_from_rest, Blend blend, const glm::dvec3& ratio,

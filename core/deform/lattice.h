@@ -34,7 +34,7 @@ struct VoxelRange {
 
   bool empty() const { return high.x < low.x || high.y < low.y || high.z < low.z; }
 };
-VoxelRange intersect(const VoxelRange& a, const VoxelRange& b);
+inline VoxelRange intersect(const VoxelRange& a, const VoxelRange& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
 
 // Between rest lattice and output lattice: output = (rest + 0.5) * ratio - 0.5 - base.
 struct OutputLattice {

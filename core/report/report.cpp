@@ -68,6 +68,7 @@ Json total(const Report& report) {
     row["new_hole_voxels"] = report.deform->new_hole_voxels;
     row["dropped_voxels"] = report.deform->dropped_voxels;
     row["bone_overlap_voxels"] = report.deform->bone_overlap_voxels;
+    row["mended_voxels"] = report.deform->mended_voxels;
   }
   return row;
 }
@@ -158,7 +159,7 @@ void print_report(std::ostream& out, const Report& report) {
   }
   if (report.deform) {
     const DeformReport& deform = *report.deform;
-    out << line("dropped %lld, new holes %lld, overlap %lld, bone in bone %lld voxels",
+    out << line("dropped %lld, new holes %lld, overlap %lld, bone in bone %lld, mended %lld voxels",
                 static_cast<long long>(deform.dropped_voxels), static_cast<long long>(deform.new_hole_voxels),
                 static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels));
     double worst = 0;

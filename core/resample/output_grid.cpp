@@ -34,7 +34,20 @@ VoxelRange posed_tissue(const PosedLattice& lattice, const RigidBones& bones) {
 
 VoxelRange rest_tissue(const TissueVoxels& tissue) {
   VoxelRange range;
-  tissue.for_each([&](std::int64_t, const glm::ivec3& v) { range = united(range, {v, v}); });
+  for (const TissueVoxels::Brick& brick : tissue.bricks()) {
+    std::uint64_t columns = 0;  // bit x + 8 y where any slice has tissue
+    int lowest = TissueVoxels::kBrick, highest = 0;
+    for (int z = 0; z < TissueVoxels::kBrick; ++z) {
+      if (!brick.mask[z]) continue;
+      columns |= brick.mask[z];
+      lowest = std::min(lowest, z);
+      highest = z;
+    }
+    unsigned row = 0;  // bit x where any row has tissue
+    for (int y = 0; y < TissueVoxels::kBrick; ++y) row |= columns >> (8 * y) & 0xff;
+    range = united(range, {brick.corner + glm::ivec3(std::countr_zero(row), std::countr_zero(columns) / 8, lowest),
+                           brick.corner + glm::ivec3(std::bit_width(row) - 1, (std::bit_width(columns) - 1) / 8, highest)});
+  }
   return range;
 }
 

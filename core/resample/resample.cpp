@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/deform/inverse_map.h"
+#include "core/resample/mend.h"
 #include "core/resample/output_grid.h"
 #include "core/rig/bone_parts.h"
 
@@ -173,10 +174,25 @@ class Resampling {
     progress.update("resample", 1);
   }
 
+  void mend_tears() {
+    InverseMap map;
+    const auto rest_point = [&](const glm::ivec3& voxel) {
+      fill(map, {output_.range.low + voxel, output_.range.low + voxel});
+      return glm::dvec3(map.rest[0]);
+    };
+    posed_.report.mended_voxels = mend(posed_.volume, volume_, labels_.soft, rest_point);
+  }
+
  private:
   static bool meet(const VoxelRange& a, const VoxelRange& b) { return !intersect(a, b).empty(); }
 
   void run_tile(const VoxelRange& range, TileCounts& counts) const {
+    thread_local InverseMap map;
+    if (fill(map, range) || settings_.grey) write(map, counts);
+  }
+
+  // False where no tissue reaches.
+  bool fill(InverseMap& map, const VoxelRange& range) const {
     std::vector<std::int64_t> bricks, pieces;
     for (std::int64_t b = 0; b < std::ssize(lattice_.tissue().bricks()); ++b) {
       const auto& box = lattice_.bounds(b);
@@ -184,13 +200,11 @@ class Resampling {
     }
     for (std::int64_t p = 0; p < std::ssize(bones_.pieces()); ++p)
       if (meet(bones_.pieces()[p].posed, range)) pieces.push_back(p);
-    if (bricks.empty() && pieces.empty() && !settings_.grey) return;
-
-    thread_local InverseMap map;
+    if (bricks.empty() && pieces.empty() && !settings_.grey) return false;
     map.reset(range);
     rasterize_cells(map, lattice_, bricks, labels_.priority, depth_);
     bones_.paint(map, pieces, sampler_, settings_.nearest, depth_);
-    write(map, counts);
+    return true;
   }
 
   void write(const InverseMap& map, TileCounts& counts) const {
@@ -331,7 +345,9 @@ Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Arma
   report.seconds_deform = seconds();
 
   const Seconds rasterize_seconds;
-  Resampling(volume, labels, lattice, bones, depth ? &*depth : nullptr, settings, output, posed).run(progress);
+  Resampling resampling(volume, labels, lattice, bones, depth ? &*depth : nullptr, settings, output, posed);
+  resampling.run(progress);
+  if (can_fold(motions) && !settings.nearest) resampling.mend_tears();
   std::erase_if(report.bones, [](const auto& bone) { return bone.voxels == 0; });
   report.seconds_rasterize = rasterize_seconds();
   return posed;

@@ -22,7 +22,7 @@ struct DualQuaternion {};
 using Method = std::variant<LinearBlend, DualQuaternion>;
 
 struct ResampleSettings {
-  bool nearest = false;                 // labels by the nearest rest voxel instead of the largest interpolated membership
+  bool nearest = false;                 // labels by the nearest rest voxel instead of the largest interpolated membership; no mending
   std::optional<double> spacing;        // mm, isotropic output spacing; none keeps the input's
   bool displacement = false;            // also return the displacement field
   bool jacobian = false;                // also return det of the posed-from-rest map
@@ -36,6 +36,7 @@ struct DeformReport {
   std::int64_t new_hole_voxels = 0;       // posed voxels inside the image of a tissue cell that carry no label
   std::int64_t overlap_voxels = 0;        // posed voxels claimed by cells that are no neighbours at rest
   std::int64_t bone_overlap_voxels = 0;   // posed voxels claimed by two rig bones' bone tissue
+  std::int64_t mended_voxels = 0;         // soft voxels given to a neighbouring tissue that the pose had torn there (mend.h)
   std::vector<std::int64_t> overlap_by_label;  // [65536], rest voxels that lost their place, by label
   struct BoneResidual {
     std::string name;

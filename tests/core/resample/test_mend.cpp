@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/mend.h"
+
+#include <algorithm>
+
+#include <doctest/doctest.h>
+
+#include "core/report/metrics.h"
+
+using namespace limber;
+
+namespace {
+
+constexpr Label kFlesh = 1, kStrand = 2, kHard = 3;
+
+const LabelSet& soft() {
+  static const LabelSet set = [] {
+    LabelSet all(65536, 1);
+    all[kHard] = 0;
+    return all;
+  }();
+  return set;
+}
+
+// A block of flesh in air with a square strand of 3 x 3 voxels along z.
+LabelVolume block_with_strand() {
+  LabelVolume volume;
+  volume.grid.size = {13, 13, 24};
+  volume.voxels.assign(volume.grid.voxel_count(), 0);
+  for (int z = 1; z < 23; ++z)
+    for (int y = 1; y < 12; ++y)
+      for (int x = 1; x < 12; ++x)
+        volume.at({x, y, z}) = std::abs(x - 6) <= 1 && std::abs(y - 6) <= 1 && z > 2 && z < 21 ? kStrand : kFlesh;
+  return volume;
+}
+
+// The strand's slices first .. last become `label`.
+void cut(LabelVolume& volume, int first, int last, Label label) {
+  for (int z = first; z <= last; ++z)
+    for (int y = 5; y <= 7; ++y)
+      for (int x = 5; x <= 7; ++x) volume.at({x, y, z}) = label;
+}
+
+std::int64_t mend_in_place(LabelVolume& posed, const LabelVolume& rest) {
+  return mend(posed, rest, soft(), [](const glm::ivec3& v) { return glm::dvec3(v); });
+}
+
+int parts(const LabelVolume& volume, Label label) { return take_census(volume, kSmallestPart).components[label]; }
+
+std::int64_t changes(const LabelVolume& a, const LabelVolume& b) {
+  std::int64_t count = 0;
+  for (size_t i = 0; i < a.voxels.size(); ++i) count += a.voxels[i] != b.voxels[i];
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("mend: a torn strand is rejoined by the fewest voxels, and nothing else changes") {
+  const LabelVolume rest = block_with_strand();
+  for (int gap = 1; gap <= 4; ++gap) {
+    LabelVolume posed = rest;
+    cut(posed, 11, 10 + gap, kFlesh);
+    const LabelVolume torn = posed;
+    REQUIRE(parts(torn, kStrand) == 2);
+    CHECK(mend_in_place(posed, rest) == gap);
+    CHECK(changes(posed, torn) == gap);
+    CHECK(parts(posed, kStrand) == 1);
+    CHECK(parts(posed, kFlesh) == 1);
+  }
+}
+
+TEST_CASE("mend: what is whole stays as it is") {
+  const LabelVolume rest = block_with_strand();
+  LabelVolume posed = rest;
+  CHECK(mend_in_place(posed, rest) == 0);
+  CHECK(posed.voxels == rest.voxels);
+}
+
+TEST_CASE("mend: pieces that were apart at rest, or lie too far apart, stay apart") {
+  LabelVolume rest = block_with_strand();
+  LabelVolume posed = rest;
+  cut(posed, 9, 13, kFlesh);
+  CHECK(mend_in_place(posed, rest) == 0);
+
+  // Two strands at rest; one of them vanished from between, and both now count once more for a third piece elsewhere.
+  cut(rest, 11, 11, kFlesh);
+  posed = rest;
+  for (int z = 3; z < 10; ++z)
+    for (int y = 9; y < 12; ++y)
+      for (int x = 9; x < 12; ++x) posed.at({x, y, z}) = kStrand;
+  const LabelVolume before = posed;
+  const auto elsewhere = [](const glm::ivec3& v) { return glm::dvec3(v.x > 8 ? glm::ivec3(100) : v); };
+  CHECK(mend(posed, rest, soft(), elsewhere) == 0);
+  CHECK(posed.voxels == before.voxels);
+}
+
+TEST_CASE("mend: bridges take neither bone, nor what lies beside air, nor what would split another tissue") {
+  const LabelVolume rest = block_with_strand();
+  LabelVolume walled = rest;
+  for (int y = 1; y < 12; ++y)
+    for (int x = 1; x < 12; ++x) walled.at({x, y, 11}) = kHard;
+  LabelVolume posed = walled;
+  CHECK(mend_in_place(posed, rest) == 0);
+  CHECK(posed.voxels == walled.voxels);
+
+  // The wall leaves only the outermost layer, which lies beside air.
+  for (int y = 1; y < 12; ++y)
+    for (int x = 1; x < 12; ++x)
+      if (x == 1 || x == 11 || y == 1 || y == 11) walled.at({x, y, 11}) = kFlesh;
+  posed = walled;
+  CHECK(mend_in_place(posed, rest) == 0);
+
+  // The only way is a hole in the wall, filled by a thin thread of another tissue that crosses it.
+  constexpr Label kThread = 4;
+  for (int z = 8; z < 15; ++z) walled.at({6, 6, z}) = kThread;
+  posed = walled;
+  CHECK(mend_in_place(posed, rest) == 0);
+  CHECK(posed.voxels == walled.voxels);
+}
