@@ -16,6 +16,12 @@ constexpr float kAttraction = 2;
 // than the bone is long: beyond kOwnReach of its length, distances to it count as kLastBone of what they are.
 constexpr float kOwnReach = 0.5f;
 constexpr float kLastBone = 0.65f;
+// A bone that only links a limb to the trunk (a collarbone) stands for less than itself: what lies below it on the chest
+// is the trunk's. A link is shorter than kLinkShare of the bone it leads to and turns aside where its parent forks.
+constexpr float kLink = 1 / kLastBone;
+constexpr double kLinkShare = 0.75;
+// Flesh beyond a joint is nearest to the joint itself when its distance is this share of the way to there.
+constexpr float kAtJoint = 0.75f;
 // Bone that is not drawn is taken to fill this share of the flesh around its axis, a voxel's diagonal at least.
 constexpr double kBoneShare = 0.5;
 }  // namespace
@@ -97,16 +103,93 @@ std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueV
   return held_by;
 }
 
+namespace {
+glm::dvec3 along(const Bone& bone) { return bone.tail - bone.head; }
+
+bool is_link(const Armature& armature, size_t b) {
+  const Bone& bone = armature.bones[b];
+  if (bone.parent < 0) return false;
+  const double length = glm::length(along(bone));
+  const glm::dvec3 before = along(armature.bones[bone.parent]);
+  bool forks = false, leads_on = false;
+  for (size_t other = 0; other < armature.bones.size(); ++other) {
+    forks |= other != b && armature.bones[other].parent == bone.parent;
+    leads_on |= armature.bones[other].parent == static_cast<int>(b) && length < kLinkShare * glm::length(along(armature.bones[other]));
+  }
+  return forks && leads_on && glm::dot(along(bone), before) < 0.5 * length * glm::length(before);
+}
+
+// How the way to a bone counts: as it is up to `reach`, beyond that by `share`.
+struct Count {
+  float reach = std::numeric_limits<float>::infinity();  // mm
+  float share = 1;
+  float operator()(float way) const { return way <= reach ? way : reach + share * (way - reach); }
+};
+
+std::vector<Count> counts_of_bones(const Armature& armature) {
+  std::vector<bool> last(armature.bones.size(), true);
+  for (const Bone& bone : armature.bones)
+    if (bone.parent >= 0) last[bone.parent] = false;
+  std::vector<Count> counts(armature.bones.size());
+  for (size_t b = 0; b < counts.size(); ++b) {
+    if (last[b]) counts[b] = {kOwnReach * static_cast<float>(glm::length(along(armature.bones[b]))), kLastBone};
+    if (is_link(armature, b)) counts[b] = {0, kLink};
+  }
+  return counts;
+}
+
+// Where exactly two bones meet, flesh nearest to the joint itself lies as near to the one as to the other, and goes
+// with the bone on whose side of the plane that halves their angle it lies: the heel with the foot, not with the shin.
+class Hinges {
+ public:
+  explicit Hinges(const Armature& armature) : ends_(armature.bones.size()) {
+    std::vector<bool> last(armature.bones.size(), true);
+    for (const Bone& bone : armature.bones)
+      if (bone.parent >= 0) last[bone.parent] = false;
+    for (size_t b = 0; b < ends_.size(); ++b)
+      for (int side = 0; side < 2 && !last[b]; ++side) ends_[b][side] = end_of(armature, b, side);
+  }
+
+  // The bone that flesh at `point` belongs to when `nearest` is its nearest bone, `distance` mm away.
+  std::uint16_t bone_at(const glm::vec3& point, std::uint16_t nearest, float distance) const {
+    for (const End& end : ends_[nearest]) {
+      if (end.other < 0) continue;
+      const glm::vec3 from_joint = point - end.joint;
+      if (glm::dot(from_joint, end.inward) < 0 && glm::dot(from_joint, end.parting) > 0 && distance >= kAtJoint * glm::length(from_joint))
+        return static_cast<std::uint16_t>(end.other);
+    }
+    return nearest;
+  }
+
+ private:
+  struct End {
+    int other = -1;  // the bone met there, -1 if none or several
+    glm::vec3 joint, inward, parting;
+  };
+  static End end_of(const Armature& armature, size_t b, int side) {
+    auto joint = [](const Bone& bone, int at) { return at ? bone.tail : bone.head; };
+    auto inward = [](const Bone& bone, int at) { return glm::normalize(at ? -along(bone) : along(bone)); };
+    const Bone& bone = armature.bones[b];
+    const double length = glm::length(along(bone));
+    End end;
+    int met = 0;
+    for (size_t o = 0; o < armature.bones.size(); ++o)
+      for (int at = 0; at < 2; ++at) {
+        const Bone& other = armature.bones[o];
+        const double near = 0.05 * std::min(length, glm::length(along(other)));
+        if (o == b || !(near > 0) || glm::distance(joint(bone, side), joint(other, at)) > near) continue;
+        ++met;
+        end = {static_cast<int>(o), joint(bone, side), inward(bone, side), inward(other, at) - inward(bone, side)};
+      }
+    return met == 1 ? end : End();
+  }
+  std::vector<std::array<End, 2>> ends_;
+};
+}  // namespace
+
 NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                          const std::vector<std::uint16_t>& held_by) {
-  std::vector<float> reach;  // mm, from where distances shrink
-  for (const Bone& bone : armature.bones) reach.push_back(kOwnReach * static_cast<float>(glm::length(bone.tail - bone.head)));
-  for (const Bone& bone : armature.bones)
-    if (bone.parent >= 0) reach[bone.parent] = std::numeric_limits<float>::infinity();
-  auto counted = [&](float distance, std::uint16_t bone) {
-    return distance <= reach[bone] ? distance : reach[bone] + kLastBone * (distance - reach[bone]);
-  };
-
+  const std::vector<Count> counts = counts_of_bones(armature);
   NearestBone nearest{held_by, std::vector<float>(tissue.size(), std::numeric_limits<float>::infinity())};
   TissueFront front(volume, tissue);
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
@@ -116,11 +199,18 @@ NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, 
   });
   front.spread([&](std::int64_t from, std::int64_t to, float way) {
     if (held_by[to] != kSoft) return false;
-    const float distance = counted(way, nearest.bone[from]);
+    const float distance = counts[nearest.bone[from]](way);
     if (distance >= nearest.distance[to]) return false;
     nearest.distance[to] = distance;
     nearest.bone[to] = nearest.bone[from];
     return true;
+  });
+
+  const Hinges hinges(armature);
+  const AffineTransform from_voxel = world_from_voxel(volume.grid);
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    if (held_by[place] == kSoft && nearest.bone[place] != kSoft)
+      nearest.bone[place] = hinges.bone_at(glm::vec3(from_voxel * glm::dvec3(v)), nearest.bone[place], nearest.distance[place]);
   });
   return nearest;
 }

@@ -36,7 +36,9 @@ std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueV
                                         const Armature& armature);
 
 // For every soft voxel the bone nearest to it and how far it is, found by spreading through tissue: a bone across an air
-// gap does not count. Held voxels have distance 0; kSoft and infinity where no held voxel is reached.
+// gap does not count. The last bone of a chain counts as nearer than it is, a mere link of a limb as further off, and
+// flesh around a joint goes by the plane that halves its angle. Held voxels have distance 0; kSoft and infinity where no
+// held voxel is reached.
 struct NearestBone {
   std::vector<std::uint16_t> bone;
   std::vector<float> distance;  // mm, between voxel centres
