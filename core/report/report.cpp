@@ -161,7 +161,8 @@ void print_report(std::ostream& out, const Report& report) {
     const DeformReport& deform = *report.deform;
     out << line("dropped %lld, new holes %lld, overlap %lld, bone in bone %lld, mended %lld voxels",
                 static_cast<long long>(deform.dropped_voxels), static_cast<long long>(deform.new_hole_voxels),
-                static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels));
+                static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels),
+                static_cast<long long>(deform.mended_voxels));
     double worst = 0;
     for (const auto& bone : deform.bones) worst = std::max(worst, bone.rigid_residual_mm);
     if (!deform.bones.empty())

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/base/parallel.h"
+#include "core/base/sparse_zeros.h"
 #include "core/deform/inverse_map.h"
 #include "core/resample/mend.h"
 #include "core/resample/output_grid.h"
@@ -151,9 +152,9 @@ class Resampling {
         output_(output), posed_(posed), sampler_(volume), world_from_rest_(world_from_voxel(volume.grid)) {
     posed.volume.grid = output.grid;
     const std::int64_t voxels = output.grid.voxel_count();
-    posed.volume.voxels.resize(voxels);
-    if (settings.displacement) posed.displacement.assign(voxels, glm::vec3(0));
-    if (settings.jacobian) posed.jacobian.assign(voxels, 0);
+    posed.volume.voxels = sparse_zeros<Label>(voxels);
+    if (settings.displacement) posed.displacement = sparse_zeros<glm::vec3>(voxels);
+    if (settings.jacobian) posed.jacobian = sparse_zeros<float>(voxels);
     if (settings.grey) start_grey();
   }
 
