@@ -77,12 +77,17 @@ std::string read_file(const Path& path, std::uint64_t limit) {
   return bytes;
 }
 
-void write_atomically(const Path& path, const std::function<void(const Path&)>& write) {
+void check_place(const Path& path) {
   std::error_code error;
   const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
   if (!fs::is_directory(folder, error)) throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
   if (fs::is_directory(path, error)) throw Error("a folder stands where the file should go", path.string(), "choose another name");
+}
 
+void write_atomically(const Path& path, const std::function<void(const Path&)>& write) {
+  check_place(path);
+  std::error_code error;
+  const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
   const Path name = folder / (".limber-" + std::to_string(::getpid()) + "-" + path.filename().string());
   Temporary temporary{open_nameless(folder), {}};
   if (temporary.descriptor >= 0) {
@@ -133,6 +138,7 @@ std::string sha256_of_file(const Path& path) {
   }
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
+  if (!fs::is_regular_file(path)) throw Error("this is not a regular file", path.string(), "name a file on disk");
   std::vector<char> block(1 << 16);
   while (in.read(block.data(), std::ssize(block)) || in.gcount() > 0) hash.add(block.data(), in.gcount());
   return hash.hex();

@@ -25,6 +25,12 @@ void add_resample(CLI::App& app);
 void add_skin_points(CLI::App& app);
 void add_weights(CLI::App& app);
 
+// Throws Error when two of the outputs are the same file; "" is none.
+void check_distinct(const std::vector<std::string>& outputs);
+
+// The text without control characters, which could break a message into two.
+std::string one_line(std::string text);
+
 // One line on stderr: "limber: warning: ...".
 void warn(const std::string& line);
 void warn(const std::vector<std::string>& lines);

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/cmd/command.h"
-#include "core/rig/armature_io.h"
+#include "core/cmd/convert_rig.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/volume_io.h"
 
@@ -35,17 +35,11 @@ void convert_volume(const Options& options) {
   write_volume(file.volume, options.out, file.tissues, file.type);
 }
 
-void convert_rig(const Options& options) {
-  const ArmatureFile file = read_armature_file(options.in);
-  warn(file.warnings);
-  write_armature(file.armature, options.out);
-}
-
 void convert(const Options& options) {
   const Path in = options.in;
   if (is_volume_path(in)) return convert_volume(options);
   if (is_tissue_table(in)) return write_tissue_table(read_tissue_table(in), options.out);
-  return convert_rig(options);
+  convert_rig_or_motion(in, options.out);
 }
 }  // namespace
 

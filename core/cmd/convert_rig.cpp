@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/cmd/command.h"
-#include "core/cmd/info_rig.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bvh.h"
 
@@ -18,12 +17,8 @@ std::string extension_of(const Path& path) {
 }
 }  // namespace
 
-bool converts_rig_or_motion(const Path& in, const Path& out) {
-  const std::string to = extension_of(out);
-  return (to == ".json" || to == ".vtk" || to == ".bvh") && is_rig_or_motion(in);
-}
-
 void convert_rig_or_motion(const Path& in, const Path& out) {
+  check_armature_writable(out);
   if (extension_of(in) == ".bvh" && extension_of(out) == ".bvh") {
     const Motion motion = read_bvh(in);
     warn(motion.warnings);

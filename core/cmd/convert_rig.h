@@ -6,9 +6,6 @@
 
 namespace limber::cmd {
 
-// True when `in` is a rig or a motion and `out` is named as one (.json, .vtk, .bvh).
-bool converts_rig_or_motion(const Path& in, const Path& out);
-
 // A motion to a .bvh keeps its frames; to another name, and for any rig, the rest pose is written. Warnings go to stderr.
 void convert_rig_or_motion(const Path& in, const Path& out);
 

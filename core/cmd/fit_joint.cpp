@@ -26,6 +26,7 @@ void run(const Options& options) {
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
 
+  check_armature_writable(options.output);
   const ArmatureFile rig = read_armature_file(options.rig);
   warn(rig.warnings);
   const int bone = require_bone(rig.armature, options.bone);

@@ -32,13 +32,14 @@ int main(int argc, char** argv) {
   } catch (const Cancelled&) {
     return 3;
   } catch (const Error& error) {
-    std::fprintf(stderr, "limber: %s\n", error.what());
+    std::fprintf(stderr, "limber: %s\n", cmd::one_line(error.what()).c_str());
     return 1;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "limber: there is not enough memory: this request: use a coarser spacing or a smaller volume\n");
     return 1;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "limber: a mistake of the program itself: %s: please report it with the command that shows it\n", error.what());
+    std::fprintf(stderr, "limber: a mistake of the program itself: %s: please report it with the command that shows it\n",
+                 cmd::one_line(error.what()).c_str());
     return 1;
   }
 }

@@ -62,6 +62,9 @@ void prepare(const Options& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
+  check_writable(options.out);
+  if (!options.statistics.empty()) check_place(options.statistics);
+  check_distinct({options.out, options.statistics});
   VolumeFile file = read_volume(options.in, progress);
   warn(file.warnings);
   TissueTable user;

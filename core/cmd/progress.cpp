@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <set>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "core/base/file.h"
 #include "core/cmd/command.h"
 
 namespace limber::cmd {
@@ -15,7 +18,20 @@ volatile std::sig_atomic_t interrupted = 0;
 void on_interrupt(int) { interrupted = 1; }
 }  // namespace
 
-void warn(const std::string& line) { std::fprintf(stderr, "limber: warning: %s\n", line.c_str()); }
+void check_distinct(const std::vector<std::string>& outputs) {
+  std::set<Path> places;
+  for (const std::string& output : outputs)
+    if (!output.empty() && !places.insert(std::filesystem::weakly_canonical(output)).second)
+      throw Error("two outputs would be the same file", output, "give each a name of its own");
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  return text;
+}
+
+void warn(const std::string& line) { std::fprintf(stderr, "limber: warning: %s\n", one_line(line).c_str()); }
 void warn(const std::vector<std::string>& lines) {
   for (const auto& line : lines) warn(line);
 }

@@ -45,13 +45,14 @@ GreyPaths grey_paths(const std::string& request) {
 
 // Before anything is computed.
 void check_outputs(const Options& options) {
-  std::vector<std::string> volumes = {options.output, options.field, options.jacobian};
-  if (!options.grey.empty()) volumes.push_back(grey_paths(options.grey).to);
-  for (const std::string& volume : volumes)
+  check_writable(options.output);
+  std::vector<std::string> outputs = {options.output, options.field, options.jacobian};
+  if (!options.grey.empty()) outputs.push_back(grey_paths(options.grey).to);
+  for (const std::string& volume : outputs)
     if (!volume.empty()) check_writable(volume);
-  const Path folder = Path(options.report).parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder))
-    throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
+  if (!options.report.empty()) check_place(options.report);
+  outputs.push_back(options.report);
+  check_distinct(outputs);
 }
 
 // Kept for the report, and shown at once.
@@ -199,7 +200,7 @@ void add_resample(CLI::App& app) {
   command->add_flag("--fit-joints", options->fit_joints, "first move each bent joint so that its bones do not collide");
   command->add_option("-o,--output", options->output, "the posed volume")->required();
   command->add_option("--report", options->report, "what changed: JSON there, a table on stdout");
-  command->add_option("--spacing", options->spacing, "of the output, mm (default: as the input)")->check(CLI::PositiveNumber);
+  command->add_option("--spacing", options->spacing, "of the output, mm (default: as the input)")->check(CLI::Range(1e-9, 1e6));
   command->add_flag("--nearest", options->nearest, "labels of the nearest rest voxel");
   command->add_option("--with", options->grey, "a grey volume moved by the same map")->type_name("GREY=OUT");
   command->add_option("--field", options->field, "displacement at each posed voxel, mm");

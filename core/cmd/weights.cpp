@@ -39,6 +39,7 @@ void make_weights(const Options& options) {
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
 
+  check_weights_writable(options.output);
   VolumeFile file = read_volume(options.volume, progress);
   warn(file.warnings);
   std::optional<TissueTable> user;
@@ -56,8 +57,8 @@ void make_weights(const Options& options) {
       : options.method == "geodesic" ? bind_geodesic(file.volume, tissue, rig.armature, parts, {}, progress, &report)
                                      : diffuse_heat(file.volume, tissue, tissues, rig.armature, parts, {}, progress, &report);
   warn(report.warnings);
-  write_weights(weights, file.volume, tissue, options.output);
   if (!options.bender_folder.empty()) write_bender_weights(weights, file.volume, tissue, options.bender_folder);
+  write_weights(weights, file.volume, tissue, options.output);
 
   std::printf("tissue: %lld voxels, table: %s\n", static_cast<long long>(tissue.size()), tissues.source.c_str());
   print_table(parts, rig.armature);

@@ -221,13 +221,20 @@ ArmatureFile read_armature_file(const Path& path) {
   throw Error("this is no kind of rig", path.string(), "use .json, .vtk, .arm, .bvh, .gltf or .glb");
 }
 
+void check_armature_writable(const Path& path) {
+  const std::string extension = extension_of(path);
+  if (extension != ".json" && extension != ".vtk" && extension != ".bvh")
+    throw Error("rigs are not written in this format", path.string(), "use .json, .vtk or .bvh");
+  check_place(path);
+}
+
 void write_armature(const Armature& armature, const Path& path) {
+  check_armature_writable(path);
   check_armature(armature, path.string());
   const std::string extension = extension_of(path);
   if (extension == ".json") return write_file_atomically(path, armature_json_text(armature));
   if (extension == ".vtk") return write_file_atomically(path, bender_vtk_text(armature));
-  if (extension == ".bvh") return write_bvh(motion_of(armature), path);
-  throw Error("rigs are not written in this format", path.string(), "use .json, .vtk or .bvh");
+  write_bvh(motion_of(armature), path);
 }
 
 }  // namespace limber

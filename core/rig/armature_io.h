@@ -37,5 +37,7 @@ Armature parse_armature_json(const std::string& text, const std::string& where);
 // By extension: .json keeps everything; .vtk keeps names, parents, heads and tails; .bvh the same, with tails as the first
 // child's offset or as an End Site. Throws Error for another extension.
 void write_armature(const Armature& armature, const Path& path);
+// Throws Error when no rig can be written under this name.
+void check_armature_writable(const Path& path);
 
 }  // namespace limber

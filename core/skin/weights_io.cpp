@@ -256,8 +256,13 @@ WeightsFile read_weights(const Path& path, const LabelVolume& volume, const Tiss
   return {parse_weights(read_file(path, kHeaderLimit + tissue.size() * sizeof(Influence)), path.string(), volume, tissue, armature), {}};
 }
 
-void write_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue, const Path& path) {
+void check_weights_writable(const Path& path) {
   if (path.extension() != ".nrrd") throw Error("weights are written as .nrrd", path.string(), "choose a name that ends in .nrrd");
+  check_place(path);
+}
+
+void write_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue, const Path& path) {
+  check_weights_writable(path);
   const nlohmann::json names = weights.bones();
   const std::string header = "NRRD0005\ntype: unsigned short\ndimension: 2\nsizes: 8 " + std::to_string(tissue.size()) +
                              "\nendian: little\nencoding: raw\nlimber_bones:=" + names.dump() + "\nlimber_size:=" + text_of(volume.grid.size) +

@@ -22,6 +22,8 @@ struct WeightsFile {
 
 // Throws Error when the file is damaged, does not belong to this tissue or names a bone that the rig lacks.
 WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature);
+// Throws Error when no weights can be written under this name.
+void check_weights_writable(const Path& path);
 void write_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue, const Path& path);
 // The folder is made if need be.
 void write_bender_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,

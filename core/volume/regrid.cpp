@@ -13,6 +13,7 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kMostVoxels = (std::int64_t{1} << 31) - 1;
+constexpr double kLargestSpacing = 1e6;  // mm: what reading a volume believes
 // Shares closer than this part of a voxel's volume are equal: they come from sums of products of lengths.
 constexpr double kTie = 1e-9;
 // Insertions ripple: a voxel given to skin may now part others. In practice two rounds settle.
@@ -316,8 +317,8 @@ LabelVolume regrid(const LabelVolume& volume, const glm::dvec3& spacing, Progres
   Grid grid = volume.grid;
   double count = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]))
-      throw Error("a spacing must be a positive number of millimetres", asked.str(), "choose for example --spacing 2");
+    if (!(spacing[axis] > 0) || spacing[axis] > kLargestSpacing)
+      throw Error("a spacing must be a positive number of millimetres, a million at most", asked.str(), "choose for example --spacing 2");
     const double extent = volume.grid.size[axis] * volume.grid.spacing[axis] / spacing[axis];
     count *= std::max(1.0, std::ceil(extent - kTie));
     if (!(count <= static_cast<double>(kMostVoxels)))

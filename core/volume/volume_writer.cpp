@@ -351,9 +351,7 @@ VoxelType type_that_holds(double lowest, double highest, std::optional<VoxelType
 
 void check_writable(const Path& path) {
   checked_writer(path);
-  std::error_code error;
-  const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
-  if (!std::filesystem::is_directory(folder, error)) throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
+  check_place(path);
 }
 
 void write_volume(const LabelVolume& volume, const Path& path, const TissueTable& tissues, const FileType& type) {
