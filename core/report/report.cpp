@@ -2,6 +2,7 @@
 #include "core/report/report.h"
 
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 #include <ostream>
 
@@ -89,11 +90,14 @@ Json seconds_of(const StageSeconds& seconds) {
 }
 
 // One line of a table: text formatted as printf does, without a length to get wrong.
-template <class... Values>
-std::string line(const char* format, Values... values) {
-  const int length = std::snprintf(nullptr, 0, format, values...);
-  std::string text(static_cast<size_t>(length) + 1, '\0');
-  std::snprintf(text.data(), text.size(), format, values...);
+[[gnu::format(printf, 1, 2)]] std::string line(const char* format, ...) {
+  std::va_list values, again;
+  va_start(values, format);
+  va_copy(again, values);
+  std::string text(static_cast<size_t>(std::vsnprintf(nullptr, 0, format, values)) + 1, '\0');
+  std::vsnprintf(text.data(), text.size(), format, again);
+  va_end(again);
+  va_end(values);
   text.back() = '\n';
   return text;
 }
