@@ -11,8 +11,8 @@
 namespace limber {
 
 namespace {
-// A bone this many times further than the nearest has less than a hundredth of its weight.
-constexpr float kFurthest = 4;
+// A bone this many times further than the nearest has less than a fiftieth of its weight.
+constexpr float kFurthest = 7;
 constexpr float kUnit = 100;  // mm
 }  // namespace
 

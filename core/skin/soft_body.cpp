@@ -187,9 +187,9 @@ class Hinges {
 };
 }  // namespace
 
-NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
-                         const std::vector<std::uint16_t>& held_by) {
-  const std::vector<Count> counts = counts_of_bones(armature);
+namespace {
+NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<std::uint16_t>& held_by,
+                              const std::vector<Count>& counts) {
   NearestBone nearest{held_by, std::vector<float>(tissue.size(), std::numeric_limits<float>::infinity())};
   TissueFront front(volume, tissue);
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
@@ -205,7 +205,18 @@ NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, 
     nearest.bone[to] = nearest.bone[from];
     return true;
   });
+  return nearest;
+}
+}  // namespace
 
+NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
+                         const std::vector<std::uint16_t>& held_by) {
+  return spread_from_bones(volume, tissue, held_by, std::vector<Count>(armature.bones.size()));
+}
+
+NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
+                            const std::vector<std::uint16_t>& held_by) {
+  NearestBone nearest = spread_from_bones(volume, tissue, held_by, counts_of_bones(armature));
   const Hinges hinges(armature);
   const AffineTransform from_voxel = world_from_voxel(volume.grid);
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {

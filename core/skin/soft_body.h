@@ -4,10 +4,10 @@
 // counts: a face conducts area / distance times the harmonic mean of the two conductivities; towards a held voxel only
 // the soft half of the way resists.
 //
-// A soft voxel is also warmed from afar, by the bone nearest to it through the tissue, with a strength that falls with
-// the square of the distance [Baran & Popovic 2007, 4]. Without it a small bone loses the flesh beyond it to a larger
-// neighbour (fingertips to the palm), and the two sides of a joint mix over the whole thickness of the limb; the law is
-// free of scale, so a finger and a thigh blend alike.
+// A soft voxel is also warmed from afar, by one bone (attracting_bone), the nearest through the tissue, with a strength
+// that falls with the square of the distance [Baran & Popovic 2007, 4]. Without it a small bone loses the flesh beyond it
+// to a larger neighbour (fingertips to the palm), and the two sides of a joint mix over the whole thickness of the limb;
+// the law is free of scale, so a finger and a thigh blend alike.
 //
 // Conductivities are the thermal ones of living tissue relative to muscle. They matter where layers differ: fat
 // conducts half as much, so skin over a limb follows the limb all around instead of the nearest bit of bone.
@@ -36,15 +36,17 @@ std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueV
                                         const Armature& armature);
 
 // For every soft voxel the bone nearest to it and how far it is, found by spreading through tissue: a bone across an air
-// gap does not count. The last bone of a chain counts as nearer than it is, a mere link of a limb as further off, and
-// flesh around a joint goes by the plane that halves its angle. Held voxels have distance 0; kSoft and infinity where no
-// held voxel is reached.
+// gap does not count. Held voxels have distance 0; kSoft and infinity where no held voxel is reached.
 struct NearestBone {
   std::vector<std::uint16_t> bone;
   std::vector<float> distance;  // mm, between voxel centres
 };
 NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                          const std::vector<std::uint16_t>& held_by);
+// The same by what the bones stand for: the last bone of a chain counts as nearer than it is, a mere link to a limb as
+// further off, and flesh around a joint goes by the plane that halves its angle.
+NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
+                            const std::vector<std::uint16_t>& held_by);
 
 // Heat flowing from a bone into a cell, through a face or from afar.
 struct HeldFace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/skin/weights_io.h"
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 
@@ -9,7 +10,10 @@
 
 #include "core/base/error.h"
 #include "core/skin/heat_diffusion.h"
+#include "core/rig/armature_io.h"
+#include "core/volume/volume_io.h"
 #include "tests/core/skin/small_body.h"
+#include "tests/support/shared_data.h"
 
 using namespace limber;
 using namespace limber::test;
@@ -67,4 +71,41 @@ TEST_CASE("weights io: damaged weights and weights of another volume or rig are 
   Armature renamed = made.body.armature;
   renamed.bones[1].name = "Tail";
   CHECK_THROWS_WITH_AS(parse_weights(whole, "w.nrrd", made.body.volume, made.tissue, renamed), doctest::Contains("Lower"), Error);
+}
+
+TEST_CASE("weights io: Bender's series of weight_NN.mha is written and read again") {
+  const Folder folder;
+  const Made made;
+  const Path series = folder.path / "series";
+  write_bender_weights(made.weights, made.body.volume, made.tissue, series);
+  const WeightsFile back = read_weights(series, made.body.volume, made.tissue, made.body.armature);
+  CHECK(back.warnings.empty());
+  for (std::int64_t c = 0; c < made.weights.chunk_count(); ++c)
+    for (size_t i = 0; i < made.weights.chunk(c).size(); ++i)
+      for (int bone = 0; bone < 2; ++bone) CHECK(std::abs(back.weights.chunk(c)[i].of(bone) - made.weights.chunk(c)[i].of(bone)) < 2e-5);
+
+  std::filesystem::remove(series / "weight_01.mha");
+  CHECK_THROWS_WITH_AS(read_weights(series, made.body.volume, made.tissue, made.body.armature), doctest::Contains("1 files"), Error);
+}
+
+TEST_CASE("weights io: Bender's skin map makes each voxel rigid with the bone it names") {
+  NEEDS_SHARED("data/bender/man-arm-2mm-skinned.mha");
+  const VolumeFile file = read_volume(shared_path("data/bender/man-arm-2mm.mha"));
+  const Armature armature = read_armature(shared_path("data/bender/man-arm-2mm-armature.vtk"));
+  const VolumeFile map = read_volume(shared_path("data/bender/man-arm-2mm-skinned.mha"));
+  const TissueVoxels tissue(file.volume);
+  const SkinWeights weights = read_weights(shared_path("data/bender/man-arm-2mm-skinned.mha"), file.volume, tissue, armature).weights;
+  std::int64_t named = 0, wrong = 0;
+  for (std::int64_t b = 0; b < weights.chunk_count(); ++b)
+    tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& v) {
+      const Influence& influence = weights.chunk(b)[place - tissue.bricks()[b].first];
+      wrong += influence.weight[0] != kFullWeight;
+      const Tissue* value = map.tissues.find(map.volume.at(v));
+      if (!value || value->file_value < 2) return;
+      ++named;
+      wrong += influence.bone[0] + 2 != value->file_value;
+    });
+  MESSAGE(named, " of ", tissue.size(), " tissue voxels are named");
+  CHECK(wrong == 0);
+  CHECK(named > tissue.size() * 9 / 10);
 }

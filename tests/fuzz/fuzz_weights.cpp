@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Whatever a W.nrrd holds: it is read into weights that sum to one over bones of the rig, or refused with Error.
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/skin/weights_io.h"
+
+namespace {
+// The bar the seeds belong to: 9 x 2 x 2 voxels, all tissue, two bones.
+struct Bar {
+  limber::LabelVolume volume;
+  limber::Armature armature;
+  limber::TissueVoxels tissue;
+  Bar() {
+    volume.grid.size = {9, 2, 2};
+    volume.voxels.assign(volume.grid.voxel_count(), 1);
+    for (const char* name : {"Upper", "Lower"}) {
+      limber::Bone bone;
+      bone.name = name;
+      bone.parent = armature.bones.empty() ? -1 : 0;
+      bone.tail = {4, 1, 1};
+      armature.bones.push_back(bone);
+    }
+    tissue = limber::TissueVoxels(volume);
+  }
+};
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Bar bar;
+  try {
+    const limber::SkinWeights weights =
+        limber::parse_weights(std::string(reinterpret_cast<const char*>(data), size), "f", bar.volume, bar.tissue, bar.armature);
+    if (weights.size() != bar.tissue.size()) std::abort();
+    for (std::int64_t c = 0; c < weights.chunk_count(); ++c)
+      for (const limber::Influence& influence : weights.chunk(c)) {
+        int sum = 0;
+        for (int k = 0; k < 4; ++k) {
+          sum += influence.weight[k];
+          if (influence.bone[k] >= weights.bones().size()) std::abort();
+        }
+        if (sum != limber::kFullWeight) std::abort();
+      }
+  } catch (const limber::Error&) {
+  }
+  return 0;
+}
