@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/sparse_zeros.h"
+
 namespace limber {
 
 namespace {
@@ -131,7 +133,7 @@ void RigidBones::find_pieces() {
       const VoxelRange reach{range.low - 1, range.high + 1};
       const auto [low, high] = posed_box(bone, range);
       const auto [lowest, highest] = posed_box(bone, reach);
-      pieces_.push_back({bone, reach, {glm::ivec3(glm::floor(lowest)), glm::ivec3(glm::ceil(highest))},
+      pieces_.push_back({bone, brick, reach, {glm::ivec3(glm::floor(lowest)), glm::ivec3(glm::ceil(highest))},
                          {glm::ivec3(glm::ceil(low)), glm::ivec3(glm::floor(high))}});
     }
   }
@@ -165,6 +167,22 @@ int RigidBones::owner(const glm::ivec3& voxel) const {
   const TissueVoxels& tissue = lattice_->tissue();
   const int brick = tissue.brick_at(voxel);
   return weights_->chunk(brick)[tissue.index_of(voxel) - tissue.bricks()[brick].first].bone[0];
+}
+
+LabelVolume RigidBones::numbered() const {
+  const LabelVolume& volume = lattice_->volume();
+  LabelVolume result{volume.grid, sparse_zeros<Label>(volume.grid.voxel_count())};
+  const TissueVoxels& tissue = lattice_->tissue();
+  for (std::int64_t last = -1; const Piece& piece : pieces_) {
+    if (piece.brick == last) continue;
+    last = piece.brick;
+    auto influence = weights_->chunk(last).begin();
+    tissue.for_each(last, last + 1, [&](std::int64_t, const glm::ivec3& v) {
+      if ((*is_bone_)[volume.at(v)]) result.at(v) = static_cast<Label>(influence->bone[0] + 1);
+      ++influence;
+    });
+  }
+  return result;
 }
 
 bool RigidBones::has(int bone, const glm::dvec3& rest, const LabelSampler& sampler, bool nearest) const {

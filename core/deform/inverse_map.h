@@ -57,6 +57,7 @@ class RigidBones {
   // Where a rig bone's bone tissue lies in one brick, grown by one voxel: as far as its membership reaches.
   struct Piece {
     int bone;
+    std::int64_t brick;
     VoxelRange rest;
     VoxelRange posed;          // voxels of the posed lattice that its image can reach
     VoxelRange posed_centres;  // voxels whose centres lie in the box of the image of the bone voxels themselves
@@ -74,6 +75,8 @@ class RigidBones {
   double residual(int bone, const glm::dvec3& rest, const glm::dvec3& posed) const;
   // The rig bone of a voxel of bone tissue, -1 elsewhere.
   int owner(const glm::ivec3& voxel) const;
+  // 1 + the rig bone of every voxel of bone tissue at rest, 0 elsewhere.
+  LabelVolume numbered() const;
   // Whether bone tissue of this rig bone is what the rest volume has there.
   bool has(int bone, const glm::dvec3& rest, const LabelSampler& sampler, bool nearest) const;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 
 namespace limber {
 
@@ -134,6 +135,29 @@ Label LabelSampler::nearest_of(const glm::dvec3& point, const LabelSet& allowed,
         }
       }
   }
+  return best;
+}
+
+Label LabelSampler::prevailing(const glm::dvec3& point, const LabelSet& allowed, int reach) const {
+  const glm::dvec3 held = glm::clamp(point, glm::dvec3(-1), glm::dvec3(volume_->grid.size));
+  const glm::ivec3 centre(round_down(held.x + 0.5), round_down(held.y + 0.5), round_down(held.z + 0.5));
+  std::map<Label, int> voxels;
+  int last = reach;
+  for (int shell = 0; shell <= last; ++shell) {
+    const bool none_before = voxels.empty();
+    for (int z = -shell; z <= shell; ++z)
+      for (int y = -shell; y <= shell; ++y) {
+        const bool face = std::abs(z) == shell || std::abs(y) == shell;
+        for (int x = -shell; x <= shell; x += face || shell == 0 ? 1 : 2 * shell) {
+          const Label label = volume_->at_or_air(centre + glm::ivec3(x, y, z));
+          if (label && allowed[label]) ++voxels[label];
+        }
+      }
+    if (none_before && !voxels.empty()) last = shell + 2;
+  }
+  Label best = 0;
+  for (const auto& [label, count] : voxels)
+    if (!best || count > voxels[best]) best = label;
   return best;
 }
 

@@ -43,6 +43,10 @@ class LabelSampler {
   // there is none.
   Label nearest_of(const glm::dvec3& point, const LabelSet& allowed, int reach) const;
 
+  // The allowed tissue with most voxels about the point, up to two voxels further than the nearest one: what lies around
+  // a bone, and not the thin layer that clings to it. The smaller label on a tie; 0 when none is within `reach`.
+  Label prevailing(const glm::dvec3& point, const LabelSet& allowed, int reach) const;
+
  private:
   struct Neighbours;
   bool neighbours(const glm::dvec3& point, Neighbours& out) const;

@@ -104,20 +104,21 @@ bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel) {
 
 class Mending {
  public:
-  Mending(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft, const RestPoint& rest_point)
-      : posed_(posed), rest_(rest), soft_(soft), rest_point_(rest_point), of_posed_(connected_components(posed)),
+  // `posed` may be `tissue` itself.
+  Mending(LabelVolume& posed, const LabelVolume& rest, const LabelVolume& tissue, const LabelSet& soft, const RestPoint& rest_point)
+      : posed_(posed), rest_(rest), tissue_(tissue), soft_(soft), in_tissue_(&posed == &tissue), rest_point_(rest_point), of_posed_(connected_components(posed)),
         of_rest_(connected_components(rest)), joined_(of_posed_.voxels.size()) {
     std::iota(joined_.begin(), joined_.end(), 0);
   }
 
-  std::int64_t run() {
+  std::vector<glm::ivec3> run() {
     const auto before = large_parts(of_rest_);
     for (const auto& [label, parts] : large_parts(of_posed_)) {
       const auto was = before.find(label);
-      if (soft_[label] && was != before.end() && parts.size() > was->second.size())
+      if ((!in_tissue_ || soft_[label]) && was != before.end() && parts.size() > was->second.size())
         mend(label, parts, parts.size() - was->second.size());
     }
-    return std::ssize(taken_);
+    return std::move(bridges_);
   }
 
  private:
@@ -176,6 +177,7 @@ class Mending {
     const int own = joined(part);
     std::unordered_map<std::int64_t, std::int64_t> came_from;  // of voxels outside the part
     std::vector<glm::ivec3> layer = voxels_of(own);
+    const size_t own_voxels = layer.size();
     for (int length = 0; length <= kLongestBridge && !layer.empty(); ++length) {
       std::vector<glm::ivec3> next;
       for (size_t i = 0; i < layer.size(); ++i) {
@@ -184,7 +186,8 @@ class Mending {
           const glm::ivec3 to = from + step;
           if (!posed_.grid.contains(to)) continue;
           const Label there = posed_.at(to);
-          if (!there || !soft_[there]) continue;
+          const bool within = there == label && length == 0 && i < own_voxels;
+          if (within) continue;
           const std::int64_t at = posed_.grid.index(to);
           if (there == label) {
             const int component = joined(component_of(to));
@@ -230,8 +233,9 @@ class Mending {
   }
 
   bool can_take(const glm::ivec3& v) const {
-    const int component = component_of(v);
-    return !barred_.contains(posed_.grid.index(v)) && of_posed_.voxels[component] != kSmallestPart && can_spare(posed_, v);
+    const Label label = tissue_.at(v);
+    if (!label || !soft_[label] || barred_.contains(posed_.grid.index(v)) || !can_spare(tissue_, v)) return false;
+    return !in_tissue_ || of_posed_.voxels[component_of(v)] != kSmallestPart;
   }
 
   glm::ivec3 voxel(std::int64_t at) const {
@@ -296,34 +300,42 @@ class Mending {
         for (const auto& [undone, was] : changed) {
           posed_.at(undone) = was;
           taken_.erase(posed_.grid.index(undone));
-          ++of_posed_.voxels[component_of(undone)];
+          if (was) ++of_posed_.voxels[component_of(undone)];
         }
         return false;
       }
       changed.emplace_back(v, posed_.at(v));
-      --of_posed_.voxels[component_of(v)];
+      if (posed_.at(v)) --of_posed_.voxels[component_of(v)];
       posed_.at(v) = label;
       taken_[posed_.grid.index(v)] = joined(part);
     }
     joined_[joined(bridge.other)] = joined(part);
+    bridges_.insert(bridges_.end(), bridge.voxels.begin(), bridge.voxels.end());
     return true;
   }
 
   LabelVolume& posed_;
-  const LabelVolume& rest_;
+  const LabelVolume &rest_, &tissue_;
   const LabelSet& soft_;
+  const bool in_tissue_;  // voxels are taken from the parts' own volume
   const RestPoint& rest_point_;
   Components of_posed_, of_rest_;                 // as they were before the first bridge, but for the parts' sizes
   std::map<int, std::vector<Stretch>> stretches_; // of the present label's parts
   std::vector<int> joined_;                       // component it was joined to; itself where it was not
   std::unordered_map<std::int64_t, int> taken_;   // component of voxels in bridges
+  std::vector<glm::ivec3> bridges_;
   std::unordered_set<std::int64_t> barred_;       // voxels that the present part's bridges may not take
 };
 
 }  // namespace
 
 std::int64_t mend(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft, const RestPoint& rest_point) {
-  return Mending(posed, rest, soft, rest_point).run();
+  return std::ssize(Mending(posed, rest, posed, soft, rest_point).run());
+}
+
+std::vector<glm::ivec3> mend_bones(LabelVolume& posed_bones, const LabelVolume& rest_bones, const LabelVolume& tissue,
+                                   const LabelSet& soft, const RestPoint& rest_point) {
+  return Mending(posed_bones, rest_bones, tissue, soft, rest_point).run();
 }
 
 }  // namespace limber

@@ -18,7 +18,7 @@ namespace limber {
 namespace {
 
 constexpr glm::ivec3 kTile{64, 64, 32};  // output voxels: 3 MB of map a thread
-constexpr int kSoftReach = 8;            // voxels: as far as soft tissue is looked for where a joint opens between bones
+constexpr int kReach = 8;                // voxels: as far as soft tissue is looked for where a joint opens between bones
 
 class Seconds {
  public:
@@ -147,12 +147,13 @@ struct TileCounts {
 class Resampling {
  public:
   Resampling(const LabelVolume& volume, const LabelSets& labels, const PosedLattice& lattice, const RigidBones& bones,
-             const TissueDepth* depth, const ResampleSettings& settings, const OutputGrid& output, Posed& posed)
+             const TissueDepth* depth, const ResampleSettings& settings, const OutputGrid& output, bool mends, Posed& posed)
       : volume_(volume), labels_(labels), lattice_(lattice), bones_(bones), depth_(depth), settings_(settings),
-        output_(output), posed_(posed), sampler_(volume), world_from_rest_(world_from_voxel(volume.grid)) {
+        output_(output), mends_(mends), posed_(posed), sampler_(volume), world_from_rest_(world_from_voxel(volume.grid)) {
     posed.volume.grid = output.grid;
     const std::int64_t voxels = output.grid.voxel_count();
     posed.volume.voxels = sparse_zeros<Label>(voxels);
+    if (mends) posed_bones_ = {output.grid, sparse_zeros<Label>(voxels)};
     if (settings.displacement) posed.displacement = sparse_zeros<glm::vec3>(voxels);
     if (settings.jacobian) posed.jacobian = sparse_zeros<float>(voxels);
     if (settings.grey) start_grey();
@@ -177,17 +178,29 @@ class Resampling {
 
   void mend_tears() {
     InverseMap map;
+    const auto of_bone = [&](const glm::ivec3& voxel) {
+      return bones_.rest_point(posed_bones_.at(voxel) - 1, glm::dvec3(output_.range.low + voxel));
+    };
+    const auto bridges = mend_bones(posed_bones_, bones_.numbered(), posed_.volume, labels_.soft, of_bone);
+    for (const glm::ivec3& voxel : bridges) {
+      map.reset({output_.range.low + voxel, output_.range.low + voxel});
+      map.bone[0] = static_cast<std::uint16_t>(posed_bones_.at(voxel) - 1);
+      map.rest[0] = of_bone(voxel);
+      TileCounts counts;
+      write(map, counts);
+      add(counts);
+    }
     const auto rest_point = [&](const glm::ivec3& voxel) {
       fill(map, {output_.range.low + voxel, output_.range.low + voxel});
       return glm::dvec3(map.rest[0]);
     };
-    posed_.report.mended_voxels = mend(posed_.volume, volume_, labels_.soft, rest_point);
+    posed_.report.mended_voxels = std::ssize(bridges) + mend(posed_.volume, volume_, labels_.soft, rest_point);
   }
 
  private:
   static bool meet(const VoxelRange& a, const VoxelRange& b) { return !intersect(a, b).empty(); }
 
-  void run_tile(const VoxelRange& range, TileCounts& counts) const {
+  void run_tile(const VoxelRange& range, TileCounts& counts) {
     thread_local InverseMap map;
     if (fill(map, range) || settings_.grey) write(map, counts);
   }
@@ -208,7 +221,7 @@ class Resampling {
     return true;
   }
 
-  void write(const InverseMap& map, TileCounts& counts) const {
+  void write(const InverseMap& map, TileCounts& counts) {
     counts.lost = map.lost;
     std::int64_t i = 0;
     glm::ivec3 v;
@@ -221,6 +234,7 @@ class Resampling {
           if (!covered) continue;
           const Label label = label_of(map, i);
           posed_.volume.voxels[at] = label;
+          if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
           write_fields(map, i, v, at);
           count(map, i, v, label, counts);
         }
@@ -230,14 +244,14 @@ class Resampling {
     const glm::dvec3 rest = map.rest[i];
     if (map.bone[i] != InverseMap::kNoBone) {
       const Label label = settings_.nearest ? sampler_.nearest(rest) : sampler_.tissue(rest, labels_.bone);
-      return labels_.bone[label] ? label : sampler_.nearest_of(rest, labels_.bone, 1);
+      return labels_.bone[label] ? label : sampler_.nearest_of(rest, labels_.bone, kReach);
     }
     const Label own = volume_.voxels[map.cell[i]];
     Label label = settings_.nearest ? own : sampler_.tissue(rest);
     if (label == 0) label = own;  // a rest point on the tissue's outer border
     if (!labels_.bone[label]) return label;
     Label soft = settings_.nearest ? Label{0} : sampler_.tissue(rest, labels_.soft);
-    if (soft == 0) soft = sampler_.nearest_of(rest, labels_.soft, kSoftReach);
+    if (soft == 0) soft = sampler_.prevailing(rest, labels_.soft, kReach);
     return soft ? soft : label;
   }
 
@@ -301,7 +315,9 @@ class Resampling {
   const TissueDepth* depth_;
   const ResampleSettings& settings_;
   const OutputGrid& output_;
+  const bool mends_;
   Posed& posed_;
+  LabelVolume posed_bones_;  // 1 + the rig bone of each voxel that a bone paints
   LabelSampler sampler_;
   AffineTransform world_from_rest_;
   std::optional<GreySampler> grey_;
@@ -346,9 +362,10 @@ Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Arma
   report.seconds_deform = seconds();
 
   const Seconds rasterize_seconds;
-  Resampling resampling(volume, labels, lattice, bones, depth ? &*depth : nullptr, settings, output, posed);
+  const bool mends = can_fold(motions) && !settings.nearest;
+  Resampling resampling(volume, labels, lattice, bones, depth ? &*depth : nullptr, settings, output, mends, posed);
   resampling.run(progress);
-  if (can_fold(motions) && !settings.nearest) resampling.mend_tears();
+  if (mends) resampling.mend_tears();
   std::erase_if(report.bones, [](const auto& bone) { return bone.voxels == 0; });
   report.seconds_rasterize = rasterize_seconds();
   return posed;

@@ -88,6 +88,28 @@ TEST_CASE("label sampler: the allowed tissue nearest to a point is the one found
   }
 }
 
+TEST_CASE("label sampler: inside a bone the tissue that prevails around it is answered, not the thin layer on it") {
+  constexpr Label kBone = 1, kLayer = 2, kFlesh = 3;
+  LabelVolume volume;
+  volume.grid.size = {19, 19, 19};
+  volume.voxels.resize(volume.grid.voxel_count());
+  for (int z = 0; z < 19; ++z)
+    for (int y = 0; y < 19; ++y)
+      for (int x = 0; x < 19; ++x) {
+        const double r = glm::length(glm::dvec3(x, y, z) - 9.0);
+        volume.at({x, y, z}) = r < 4 ? kBone : r < 5 ? kLayer : kFlesh;
+      }
+  LabelSet soft(65536, 1);
+  soft[kBone] = 0;
+  const LabelSampler sampler(volume);
+  CHECK(sampler.nearest_of({9, 9, 9}, soft, 8) == kLayer);
+  CHECK(sampler.prevailing({9, 9, 9}, soft, 8) == kFlesh);
+  CHECK(sampler.prevailing({9, 9, 9}, soft, 2) == 0);
+  LabelSet layer(65536, 0);
+  layer[kLayer] = 1;
+  CHECK(sampler.prevailing({9, 9, 9}, layer, 8) == kLayer);
+}
+
 TEST_CASE("label sampler: a point that is not a number, or far away, is air") {
   const LabelVolume volume = random_volume({3, 3, 3}, 2, 8);
   const LabelSampler sampler(volume);

@@ -82,7 +82,7 @@ TEST_CASE("mend: pieces that were apart at rest, or lie too far apart, stay apar
   cut(posed, 9, 13, kFlesh);
   CHECK(mend_in_place(posed, rest) == 0);
 
-  // Two strands at rest; one of them vanished from between, and both now count once more for a third piece elsewhere.
+  // Two strands at rest, and one piece more that comes from elsewhere.
   cut(rest, 11, 11, kFlesh);
   posed = rest;
   for (int z = 3; z < 10; ++z)
@@ -116,4 +116,28 @@ TEST_CASE("mend: bridges take neither bone, nor what lies beside air, nor what w
   posed = walled;
   CHECK(mend_in_place(posed, rest) == 0);
   CHECK(posed.voxels == walled.voxels);
+}
+
+TEST_CASE("mend: a bone that comes apart is rejoined through soft tissue, one that was two pieces at rest is not") {
+  LabelVolume tissue = block_with_strand();
+  cut(tissue, 3, 20, kHard);
+  LabelVolume rest = tissue;
+  for (Label& label : rest.voxels) label = label == kHard ? 9 : 0;
+  LabelVolume posed = rest;
+  cut(tissue, 11, 12, kFlesh);
+  cut(posed, 11, 12, 0);
+  const auto same_place = [](const glm::ivec3& v) { return glm::dvec3(v); };
+
+  LabelVolume apart = rest, still = posed;
+  cut(apart, 11, 11, 0);
+  CHECK(mend_bones(still, apart, tissue, soft(), same_place).empty());
+  CHECK(still.voxels == posed.voxels);
+
+  const auto bridge = mend_bones(posed, rest, tissue, soft(), same_place);
+  REQUIRE(bridge.size() == 2);
+  for (const glm::ivec3& voxel : bridge) {
+    CHECK(posed.at(voxel) == 9);
+    CHECK(tissue.at(voxel) == kFlesh);
+  }
+  CHECK(parts(posed, 9) == 1);
 }
