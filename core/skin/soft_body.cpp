@@ -45,6 +45,12 @@ namespace {
 double flesh_around(const Bone& bone, const LabelVolume& volume) {
   const AffineTransform from_world = voxel_from_world(volume.grid);
   const double step = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
+  const glm::dvec3 size(volume.grid.size);
+  // A rig may lie farther from the volume than whole numbers reach.
+  auto is_air = [&](const glm::dvec3& at) {
+    const bool inside = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, size));
+    return !inside || volume.at(glm::ivec3(at)) == 0;
+  };
   constexpr int kPoints = 9;
   std::vector<double> depths;
   for (int k = 0; k < kPoints; ++k) {
@@ -56,7 +62,7 @@ double flesh_around(const Bone& bone, const LabelVolume& volume) {
           if (x == 0 && y == 0 && z == 0) continue;
           const glm::dvec3 along = glm::normalize(glm::dvec3(x, y, z)) * step;
           for (int n = 0; n * step < shortest; ++n)
-            if (volume.at_or_air(glm::ivec3(glm::floor(from_world * (at + double(n) * along) + 0.5))) == 0) shortest = n * step;
+            if (is_air(from_world * (at + double(n) * along) + 0.5)) shortest = n * step;
         }
     depths.push_back(shortest);
   }
