@@ -278,8 +278,8 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
 // bone than it would be alone.
 class Pieces {
  public:
-  Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging, const std::vector<std::int32_t>& basin)
-      : bones_(hugging.bone_count()) {
+  Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging, const std::vector<std::int32_t>& basin, double voxel)
+      : bones_(hugging.bone_count()), surface_(static_cast<float>(voxel / 2)) {
     const auto members = members_of(basin);
     cluster_.resize(members.size());
     for (size_t p = 0; p < members.size(); ++p) {
@@ -311,7 +311,7 @@ class Pieces {
     using Entry = std::tuple<float, std::int32_t, std::int32_t>;
     std::priority_queue<Entry> queue;
     auto offer = [&](std::int32_t a, std::int32_t b, float pass) {
-      const float strength = pass / std::min(cluster_[a].summit, cluster_[b].summit);
+      const float strength = (pass - surface_) / (std::min(cluster_[a].summit, cluster_[b].summit) - surface_);
       if (strength >= kWeakestContact) queue.push({strength, std::max(a, b), std::min(a, b)});
     };
     for (std::int32_t a = 0; a < std::ssize(cluster_); ++a)
@@ -454,6 +454,7 @@ class Pieces {
   }
 
   int bones_;
+  float surface_;  // mm: depths are counted to the next voxel's centre, which lies this much outside the bone
   std::vector<Cluster> cluster_;
   std::vector<int> bone_;  // by cluster
 };
@@ -603,7 +604,7 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   }
   progress.update("bones", 0.8);
 
-  Pieces pieces(graph, height, hugging, basin);
+  Pieces pieces(graph, height, hugging, basin, voxel);
   pieces.join();
   pieces.settle(armature);
   gather_parts(graph, hugging, basin, pieces, bones_of_basins(graph, tissue, volume, basin, pieces), result);
