@@ -13,6 +13,8 @@
 namespace limber::cmd {
 
 namespace {
+constexpr const char* kErase = "\r\033[K";  // the line of a terminal
+
 // A signal handler can reach nothing but a global.
 volatile std::sig_atomic_t interrupted = 0;
 void on_interrupt(int) { interrupted = 1; }
@@ -31,7 +33,10 @@ std::string one_line(std::string text) {
   return text;
 }
 
-void warn(const std::string& line) { std::fprintf(stderr, "limber: warning: %s\n", one_line(line).c_str()); }
+void warn(const std::string& line) {
+  if (::isatty(STDERR_FILENO)) std::fputs(kErase, stderr);  // a bar may stand there
+  std::fprintf(stderr, "limber: warning: %s\n", one_line(line).c_str());
+}
 void warn(const std::vector<std::string>& lines) {
   for (const auto& line : lines) warn(line);
 }
@@ -43,7 +48,7 @@ CommandProgress::CommandProgress(const std::string& mode)
 }
 
 CommandProgress::~CommandProgress() {
-  if (mode_ == Mode::Bar && !stage_.empty()) std::fprintf(stderr, "\r\033[K");
+  if (mode_ == Mode::Bar && !stage_.empty()) std::fputs(kErase, stderr);
   std::fflush(stderr);
 }
 
@@ -61,6 +66,7 @@ void CommandProgress::on_update(std::string_view stage, double fraction) {
     const int full = static_cast<int>(fraction * kWidth + 0.5);
     std::fprintf(stderr, "\r\033[K%-12s [%s%s] %3.0f %%", stage_.c_str(), std::string(full, '#').c_str(),
                  std::string(kWidth - full, ' ').c_str(), fraction * 100);
+    if (fraction >= 1) std::fputs(kErase, stderr);
     std::fflush(stderr);
   }
 }

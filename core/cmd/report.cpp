@@ -40,7 +40,8 @@ void run(const Options& options) {
   const Stopwatch total;
   Report report;
   report.inputs = {describe_input(options.before), describe_input(options.after)};
-  VolumeFile before = read_volume(options.before), after = read_volume(options.after);
+  CommandProgress progress("");
+  VolumeFile before = read_volume(options.before, progress), after = read_volume(options.after, progress);
   std::optional<TissueTable> user;
   if (!options.tissues.empty()) {
     user = read_tissue_table(options.tissues);
@@ -56,6 +57,7 @@ void run(const Options& options) {
     }
 
   report.metrics = compare(before.volume, after.volume, tissues);
+  progress.update("report", 1);
   report.seconds.total = total.seconds();
   if (options.json)
     std::cout << to_json(report);
