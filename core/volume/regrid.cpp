@@ -50,9 +50,9 @@ struct Span {
 
 Span span(double low, double high, int size) {
   // A box that ends where a voxel ends does not touch the next one, whatever rounding says.
-  const int first = static_cast<int>(std::floor(low + kTie)), end = static_cast<int>(std::ceil(high - kTie));
-  const int inside = std::clamp(end, 0, size);
-  return {low, high, std::clamp(first, 0, size), inside, end > inside ? inside + 1 : inside};
+  const double first = std::clamp(std::floor(low + kTie), 0.0, double(size)), end = std::ceil(high - kTie);
+  const int inside = static_cast<int>(std::clamp(end, 0.0, double(size)));
+  return {low, high, static_cast<int>(first), inside, end > inside ? inside + 1 : inside};
 }
 
 class Regrid {

@@ -108,6 +108,18 @@ TEST_CASE("prepare: a volume written over itself is prepared, and its labels sta
   CHECK(std::filesystem::file_size(statistics) > 0);
 }
 
+TEST_CASE("prepare: a voxel may become larger than the volume by more than whole numbers can tell") {
+  const Arm arm;
+  const std::string small = arm.folder / "small.nrrd", coarse = arm.folder / "coarse.nrrd";
+  CHECK(run_limber({"prepare", arm.volume, "-o", small, "--spacing", "2000"}).exit_code == 0);
+  std::string text = bytes_of(small);
+  const size_t directions = text.find("space directions: "), end = text.find('\n', directions);
+  REQUIRE(end != std::string::npos);
+  std::ofstream(small, std::ios::binary) << text.replace(directions, end - directions, "space directions: (1e-8,0,0) (0,1e-8,0) (0,0,1e-8)");
+  CHECK(run_limber({"prepare", small, "-o", coarse, "--spacing", "30"}).exit_code == 0);
+  CHECK(info_of(coarse)["size"] == nlohmann::json({1, 1, 1}));
+}
+
 TEST_CASE("fit-joint: a rig is written whose forearm turns freely") {
   const Arm arm;
   const std::string rig = arm.folder / "fitted.json";
