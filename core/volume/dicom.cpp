@@ -8,6 +8,7 @@
 
 #include <dlfcn.h>
 
+#include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/volume/dicom_codec.h"
 #include "core/volume/header_text.h"
@@ -60,13 +61,36 @@ const Codec& codec(const Path& path) {
 
 // The elements that describe an image, as text or as a 16-bit number.
 class Elements {
+  // An element as it comes from the child, its bytes behind it.
+  struct Head {
+    std::uint16_t group, element;
+    std::uint32_t size;
+  };
+  static constexpr std::size_t kLongest = 1024;          // of what is asked for below
+  static constexpr std::size_t kMostElements = 4 << 20;  // bytes of a whole header
+
  public:
   explicit Elements(const Path& path) {
-    const auto keep = [](void* context, std::uint16_t group, std::uint16_t element, const char* bytes, std::size_t size) {
-      constexpr std::size_t kLongest = 1024;  // of what is asked for below
-      if (size <= kLongest) static_cast<Elements*>(context)->values_[{group, element}] = std::string(bytes, size);
-    };
-    if (codec(path).elements(path.c_str(), keep, this) != 0) throw Error("the DICOM header is damaged", path.string(), "export the series again");
+    const Codec& library = codec(path);
+    const auto sent = run_in_child(
+        [&](const Send& send) {
+          const auto pass_on = [](void* context, std::uint16_t group, std::uint16_t element, const char* bytes, std::size_t size) {
+            if (size > kLongest) return;
+            const Head head{group, element, static_cast<std::uint32_t>(size)};
+            const Send& send_on = *static_cast<const Send*>(context);
+            send_on(&head, sizeof head);
+            send_on(bytes, size);
+          };
+          return library.elements(path.c_str(), pass_on, const_cast<Send*>(&send)) == 0;
+        },
+        kMostElements);
+    if (!sent) throw Error("the DICOM header is damaged", path.string(), "export the series again");
+    for (std::size_t at = 0; at + sizeof(Head) <= sent->size();) {
+      Head head;
+      std::memcpy(&head, sent->data() + at, sizeof head);
+      values_[{head.group, head.element}] = sent->substr(at + sizeof head, head.size);
+      at += sizeof head + head.size;
+    }
   }
 
   std::string text(std::uint16_t group, std::uint16_t element) const {
@@ -219,7 +243,16 @@ class DicomSource final : public VoxelSource {
     const auto damaged = [&] { return Error("the pixels of the DICOM image are missing or damaged", slice.path.string(), "export the series again"); };
     if (slice.bytes() > PlainFile(slice.path).size() * kCodecMost) throw damaged();
     buffer_.resize(static_cast<std::size_t>(slice.bytes()));
-    if (codec(slice.path).pixels(slice.path.c_str(), buffer_.data(), buffer_.size()) != 0) throw damaged();
+    const Codec& library = codec(slice.path);
+    const auto sent = run_in_child(
+        [&](const Send& send) {
+          if (library.pixels(slice.path.c_str(), buffer_.data(), buffer_.size()) != 0) return false;
+          send(buffer_.data(), buffer_.size());
+          return true;
+        },
+        buffer_.size());
+    if (!sent || sent->size() != buffer_.size()) throw damaged();
+    std::memcpy(buffer_.data(), sent->data(), sent->size());
     if (scale_) to_float(slice);
     place_ = 0;
   }

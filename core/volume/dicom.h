@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // DICOM images: a folder with one series, or a single file, plain or compressed (JPEG, JPEG 2000, RLE). Slices are
 // ordered along their normal and must be evenly spaced. The pixels are decoded by GDCM, the DICOM library that ITK itself
-// wraps, behind dicom_codec.
+// wraps, behind dicom_codec, in a child process: GDCM ends the process on some damaged files.
 #pragma once
 
 #include "core/volume/voxel_source.h"
