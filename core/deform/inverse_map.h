@@ -20,7 +20,7 @@
 #include "core/deform/depth.h"
 #include "core/deform/lattice.h"
 #include "core/deform/rasterize.h"
-#include "core/resample/label_sampler.h"
+#include "core/volume/label_sampler.h"
 
 namespace limber {
 

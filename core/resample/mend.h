@@ -12,7 +12,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/resample/label_sampler.h"
+#include "core/volume/label_sampler.h"
 
 namespace limber {
 

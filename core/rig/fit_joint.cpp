@@ -13,8 +13,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/resample/label_sampler.h"
 #include "core/volume/distance.h"
+#include "core/volume/label_sampler.h"
 
 namespace limber {
 

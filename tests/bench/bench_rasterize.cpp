@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/deform/rasterize.h"
-#include "core/resample/label_sampler.h"
+#include "core/volume/label_sampler.h"
 #include "tests/bench/bench.h"
 
 namespace limber::bench {

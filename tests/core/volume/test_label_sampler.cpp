@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/resample/label_sampler.h"
+#include "core/volume/label_sampler.h"
 
 #include <array>
 #include <cmath>
