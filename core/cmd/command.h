@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The command line's subcommands: one file each, one function each, gathered in main.cpp. A function adds its
+// The command line's subcommands: one file each, one function each, gathered in run.cpp. A function adds its
 // subcommand with its options to the app and sets a callback that does the work; errors are thrown, never printed there.
 // Exit codes: 0 done, 1 the input or the request is wrong, 2 usage, 3 cancelled.
 #pragma once
@@ -24,6 +24,11 @@ void add_report(CLI::App& app);
 void add_resample(CLI::App& app);
 void add_skin_points(CLI::App& app);
 void add_weights(CLI::App& app);
+
+// Every subcommand above, and --version.
+void add_commands(CLI::App& app);
+// Parses and runs; prints an error as one line and returns the exit code. The program's only place that catches.
+int run(CLI::App& app, int argc, char** argv);
 
 // Throws Error when two of the outputs are the same file; "" is none.
 void check_distinct(const std::vector<std::string>& outputs);

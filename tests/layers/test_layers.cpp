@@ -58,10 +58,12 @@ const std::vector<Door> kDoors = {
     {"TBB", {"tbb/", "oneapi/"}, {"core/base/parallel.cpp"}},
     {"SQLite", {"sqlite3"}, {"core/project/"}},
     {"zstd", {"zstd"}, {"core/project/"}},
-    {"CLI11", {"CLI/"}, {"core/cmd/"}},
+    {"CLI11", {"CLI/"}, {"core/cmd/", "editor/main.cpp", "editor/commands/"}},
     {"Expat", {"expat"}, {"core/rig/bender_armature.cpp"}},
     {"OpenSSL", {"openssl/"}, {"core/base/file.cpp"}},
     {"GLFW", {"GLFW/"}, {"editor/window.cpp"}},
+    {"libpng", {"png"}, {"render/image_io.cpp"}},
+    {"FreeType", {"ft2build", "freetype"}, {"editor/"}},
     {"OpenGL", {"epoxy/", "GL/", "EGL/"}, {"render/", "editor/"}},
     {"Dear ImGui", {"imgui"}, {"editor/"}},
 };

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/cmd/command.h"
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "core/base/error.h"
+
+namespace limber::cmd {
+
+void add_commands(CLI::App& app) {
+  app.set_version_flag("--version", LIMBER_VERSION);
+  add_convert(app);
+  add_fit_joint(app);
+  add_fk(app);
+  add_info(app);
+  add_job(app);
+  add_phantom(app);
+  add_prepare(app);
+  add_report(app);
+  add_resample(app);
+  add_skin_points(app);
+  add_weights(app);
+}
+
+int run(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const Cancelled&) {
+    return 3;
+  } catch (const Error& error) {
+    std::fprintf(stderr, "limber: %s\n", one_line(error.what()).c_str());
+    return 1;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "limber: there is not enough memory: this request: use a coarser spacing or a smaller volume\n");
+    return 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "limber: a mistake of the program itself: %s: please report it with the command that shows it\n",
+                 one_line(error.what()).c_str());
+    return 1;
+  }
+}
+
+}  // namespace limber::cmd

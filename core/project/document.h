@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the user works on, as a value: shared immutable parts. An operator copies the document (a few pointers), replaces
+// the parts it changes, and commits the copy to the History; nobody writes an undo. Equal pointers mean unchanged parts:
+// that tells what to upload, to save and what has become stale.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "core/pose/pose.h"
+#include "core/rig/armature.h"
+#include "core/rig/bvh.h"
+#include "core/skin/skin_weights.h"
+#include "core/volume/label_volume.h"
+#include "core/volume/tissue_table.h"
+#include "core/volume/volume_io.h"
+
+namespace limber {
+
+// How one tissue is shown. A label without an entry is shown as it is.
+struct TissueLook {
+  bool visible = true;
+  float opacity = 1;  // [0, 1], in the X-ray and tissue displays
+
+  bool operator==(const TissueLook&) const = default;
+};
+
+// The part of the volume that is shown, in voxel coordinates of the volume's grid (faces at whole numbers - 0.5).
+struct ClipBox {
+  bool enabled = false;
+  glm::dvec3 low{0}, high{0};
+
+  bool operator==(const ClipBox&) const = default;
+};
+
+// What lies on the side that the normal points to is hidden.
+struct ClipPlane {
+  bool enabled = false;
+  glm::dvec3 point{0}, normal{0, 0, 1};  // world, mm; unit
+
+  bool operator==(const ClipPlane&) const = default;
+};
+
+// What of the body is shown. Edits of it are undone like any other.
+struct Visibility {
+  std::map<Label, TissueLook> looks;
+  ClipBox clip_box;
+  ClipPlane clip_plane;
+
+  bool operator==(const Visibility&) const = default;
+};
+
+// A posed volume that a resampling made, with what it was made from, to tell when it has become stale.
+struct Result {
+  std::string name;    // unique among the results
+  std::string method;  // "lbs", "dqs"
+  std::shared_ptr<const LabelVolume> volume;
+  std::string report;  // limber-report/1, JSON
+  std::shared_ptr<const LabelVolume> from_volume;
+  std::shared_ptr<const TissueTable> from_tissues;
+  std::shared_ptr<const Armature> from_armature;
+  std::shared_ptr<const SkinWeights> from_weights;
+  std::shared_ptr<const Pose> from_pose;
+};
+
+// Any part may be absent (null); weights, pose and results need the volume or armature they belong to.
+struct Document {
+  std::shared_ptr<const LabelVolume> volume;
+  std::shared_ptr<const TissueTable> tissues;
+  std::shared_ptr<const FileType> volume_type;  // what the volume's file was
+  std::shared_ptr<const Armature> armature;
+  std::shared_ptr<const SkinWeights> weights;
+  std::shared_ptr<const Pose> pose;
+  std::shared_ptr<const Motion> motion;
+  std::shared_ptr<const Visibility> visibility;
+  std::vector<std::shared_ptr<const Result>> results;
+
+  bool operator==(const Document&) const = default;  // the same parts: pointers, not contents
+};
+
+}  // namespace limber

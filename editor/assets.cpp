@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/assets.h"
+
+#include <filesystem>
+
+#include "core/base/error.h"
+
+namespace limber::editor {
+
+namespace fs = std::filesystem;
+
+Path asset(const std::string& name) {
+  std::error_code failed;
+  const Path program = fs::read_symlink("/proc/self/exe", failed);
+  for (const Path& folder : {program.parent_path().parent_path() / "share/limber", Path(LIMBER_SOURCE_ASSETS)})
+    if (fs::exists(folder / name, failed)) return folder / name;
+  throw Error("a file of the program itself is missing", name, "install Limber again");
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What is to be drawn, as a value: the editor and the command line fill one for each picture, the passes draw it. Parts
+// are shared with the document; equal pointers mean that nothing needs to be uploaded again.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "core/base/rigid_transform.h"
+#include "core/rig/armature.h"
+#include "core/volume/label_volume.h"
+
+namespace limber::render {
+
+enum class Display {
+  Solid,   // the outermost visible tissue, opaque
+  XRay,    // skin and flesh as a ghost (fresnel), bone solid inside
+  Tissue,  // every visible tissue with its own opacity, front to back
+};
+
+// How a label is drawn.
+struct LabelLook {
+  glm::vec3 colour{0.7f};  // sRGB
+  float opacity = 1;
+  bool visible = true;
+  bool bone = false;       // stays solid in X-ray
+
+  bool operator==(const LabelLook&) const = default;
+};
+using LabelLooks = std::vector<LabelLook>;  // by label; beyond its end: invisible
+
+struct BoneLook {
+  bool selected = false, active = false, hovered = false;
+};
+enum class BoneShape { Octahedron, Stick, None };
+
+// Half-spaces and a box that cut the volume open; a cut face shows the tissues unshaded.
+struct Clip {
+  std::optional<std::array<glm::dvec3, 2>> box;    // low, high corner in voxel coordinates of the volume
+  std::optional<std::array<glm::dvec3, 2>> plane;  // point and unit normal, world; hidden is the normal's side
+};
+
+struct Scene {
+  std::shared_ptr<const LabelVolume> volume;
+  std::shared_ptr<const LabelLooks> looks;
+  Display display = Display::Solid;
+  Clip clip;
+  std::optional<Label> outlined;  // tissue with a selection outline
+
+  std::shared_ptr<const Armature> armature;
+  std::vector<RigidTransform> posed_from_rest;  // #bones; empty: at rest
+  std::vector<BoneLook> bones;                  // #bones; empty: none selected
+  BoneShape bone_shape = BoneShape::Octahedron;
+  bool bones_in_front = false;                  // X-ray: drawn on top
+
+  bool grid = true;                             // ground grid
+  bool dark_background = true;                  // the dark theme's gradient, else the light theme's
+  bool transparent_background = false;          // for pictures
+};
+
+}  // namespace limber::render

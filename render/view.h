@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// One picture of a scene: 3D or a slice, drawn into a texture of its own that the editor shows and the command line saves.
+// Everything here needs a current OpenGL 3.3 core context. Volumes are uploaded once and shared by all views.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <glm/glm.hpp>
+
+#include "core/volume/label_volume.h"
+#include "render/camera.h"
+#include "render/image_io.h"
+#include "render/scene.h"
+
+namespace limber::render {
+
+// Textures of the volumes in use, programs, meshes: one for a context.
+class Renderer {
+ public:
+  // Throws Error when the context is older than OpenGL 3.3.
+  //   largest_texture  texels per axis of a 3D texture; 0: what the driver allows. Larger volumes are bricked
+  explicit Renderer(int largest_texture = 0);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  // What the user should know of the last upload ("shown at half resolution: ..."), or empty.
+  const std::string& note() const;
+
+  struct Parts;
+  Parts& parts() { return *parts_; }
+
+ private:
+  std::unique_ptr<Parts> parts_;
+};
+
+// What lies under a pixel.
+struct Hit {
+  Label label = 0;
+  glm::ivec3 voxel{0};
+  glm::dvec3 point{0};   // world, mm
+  glm::dvec3 normal{0};  // world, unit; zero on a cut face or slice
+};
+
+// A 3D picture, refined over calls: coarse while something moves, full at rest.
+class View3D {
+ public:
+  explicit View3D(Renderer& renderer);
+  ~View3D();
+
+  // Draws as much as fits the budget; call again while !complete().
+  //   scale  1: full resolution; n: every n-th pixel each way. 0: chosen so that a frame takes at most ~33 ms while moving,
+  //          full resolution once the scene has rested for 100 ms
+  //   now    seconds, of any steady clock
+  void draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, double now, int scale = 0);
+  bool complete() const;
+  unsigned texture() const;  // RGBA8, `size` pixels, top row first when drawn with uv (0, 1) to (1, 0)
+  Image read() const;        // the finished picture
+
+  // From the buffers of the last picture; pixel from the top left corner.
+  std::optional<Hit> pick(const glm::ivec2& pixel) const;
+  std::optional<int> pick_bone(const glm::ivec2& pixel) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+enum class SliceAxis { Sagittal, Coronal, Axial };  // normal x, y, z of the world, by the grid axis nearest to it
+enum class SliceDisplay { Labels, Outline };
+
+// Where a slice is cut and what part of it is seen.
+struct SliceCamera {
+  SliceAxis axis = SliceAxis::Axial;
+  glm::dvec3 centre{0};            // world point in the picture's middle; the slice goes through it
+  double millimetres_per_pixel = 1;
+};
+
+// World axes of a slice picture: radiological convention (axial seen from the feet, the patient's right on the left).
+struct SliceFrame {
+  glm::dvec3 right, down, normal;
+};
+SliceFrame frame_of(SliceAxis axis);
+
+class SliceView {
+ public:
+  explicit SliceView(Renderer& renderer);
+  ~SliceView();
+  void draw(const Scene& scene, const SliceCamera& camera, SliceDisplay display, const glm::ivec2& size);
+  unsigned texture() const;
+  Image read() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace limber::render
