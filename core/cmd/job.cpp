@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/cmd/command.h"
+#include "core/project/worker.h"
 
 namespace limber::cmd {
 
@@ -55,8 +56,18 @@ Json read_job(const Path& path) {
   return job;
 }
 
-void run(const Path& path) {
-  std::vector<std::string> words = words_of(read_job(path), path);
+struct Options {
+  std::string file;
+  std::string progress;
+  int memory_limit = 0, parent = 0;
+};
+
+void run(const Options& options) {
+  become_worker(options.memory_limit, options.parent);
+  const Path path = options.file;
+  Json job = read_job(path);
+  if (!options.progress.empty()) job["progress"] = options.progress;
+  std::vector<std::string> words = words_of(job, path);
   const Path where = std::filesystem::absolute(path);
   std::filesystem::current_path(where.parent_path());
 
@@ -74,9 +85,12 @@ void run(const Path& path) {
 
 void add_job(CLI::App& app) {
   auto* command = app.add_subcommand("job", "a resampling described in a file");
-  auto path = std::make_shared<std::string>();
-  command->add_option("JOB", *path, "JSON: {\"command\": \"resample\", \"volume\", \"rig\", ... as the command's options}")->required();
-  command->callback([path] { run(*path); });
+  auto options = std::make_shared<Options>();
+  command->add_option("JOB", options->file, "JSON: {\"command\": \"resample\", \"volume\", \"rig\", ... as the command's options}")->required();
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  command->add_option("--memory-limit", options->memory_limit, "MB of memory it may take")->check(CLI::Range(1, 1 << 30));
+  command->add_option("--parent", options->parent, "the process that it must not outlive");
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace limber::cmd

@@ -55,11 +55,26 @@ SkinWeights::SkinWeights(std::vector<std::string> bones, const TissueVoxels& tis
     chunks_.push_back(std::make_shared<const Chunk>(brick.count(), rigid_influence(0)));
 }
 
-void SkinWeights::set_chunk(std::int64_t brick, Chunk chunk) {
-  if (chunk.size() != chunks_[brick]->size()) throw std::logic_error("SkinWeights: a chunk's length may not change");
+namespace {
+void check_sums(const SkinWeights::Chunk& chunk) {
   for (const Influence& influence : chunk)
     if (influence.weight[0] + influence.weight[1] + influence.weight[2] + influence.weight[3] != kFullWeight)
       throw std::logic_error("SkinWeights: an influence does not sum to one");
+}
+}  // namespace
+
+SkinWeights::SkinWeights(std::vector<std::string> bones, std::vector<std::shared_ptr<const Chunk>> chunks)
+    : bones_(std::move(bones)), chunks_(std::move(chunks)) {
+  for (const auto& chunk : chunks_) {
+    if (!chunk) throw std::logic_error("SkinWeights: a chunk is missing");
+    check_sums(*chunk);
+    size_ += std::ssize(*chunk);
+  }
+}
+
+void SkinWeights::set_chunk(std::int64_t brick, Chunk chunk) {
+  if (chunk.size() != chunks_[brick]->size()) throw std::logic_error("SkinWeights: a chunk's length may not change");
+  check_sums(chunk);
   chunks_[brick] = std::make_shared<const Chunk>(std::move(chunk));
 }
 

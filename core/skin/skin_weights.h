@@ -43,12 +43,16 @@ class SkinWeights {
   SkinWeights() = default;
   // Every tissue voxel of `tissue` on bone 0.
   SkinWeights(std::vector<std::string> bones, const TissueVoxels& tissue);
+  // Shares the chunks. Throws std::logic_error if one is null or a sum is not exact.
+  SkinWeights(std::vector<std::string> bones, std::vector<std::shared_ptr<const Chunk>> chunks);
 
   const std::vector<std::string>& bones() const { return bones_; }
   std::int64_t size() const { return size_; }
 
   // `brick` as in TissueVoxels::bricks().
   const Chunk& chunk(std::int64_t brick) const { return *chunks_[brick]; }
+  // Copies of weights share the chunks that are equal in both, unless they were set.
+  const std::shared_ptr<const Chunk>& shared_chunk(std::int64_t brick) const { return chunks_[brick]; }
   std::int64_t chunk_count() const { return std::ssize(chunks_); }
   // Clones the chunk if it is shared. Throws std::logic_error if `chunk`'s length differs or a sum is not exact.
   void set_chunk(std::int64_t brick, Chunk chunk);

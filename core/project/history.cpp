@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/project/history.h"
+
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+namespace limber {
+
+namespace {
+
+// What the heap adds to a block, and a shared_ptr's counts.
+constexpr std::int64_t kBlock = 32;
+
+template <class T>
+std::int64_t heap_bytes(const std::vector<T>& values) {
+  return values.capacity() == 0 ? 0 : static_cast<std::int64_t>(values.capacity() * sizeof(T)) + kBlock;
+}
+std::int64_t heap_bytes(const std::string& text) { return static_cast<std::int64_t>(text.capacity()) + kBlock; }
+
+std::int64_t own_bytes(const LabelVolume& volume) { return heap_bytes(volume.voxels); }
+std::int64_t own_bytes(const TissueTable& table) {
+  std::int64_t bytes = heap_bytes(table.tissues) + heap_bytes(table.source);
+  for (const Tissue& tissue : table.tissues) bytes += heap_bytes(tissue.name);
+  return bytes;
+}
+std::int64_t own_bytes(const FileType& type) { return heap_bytes(type.format) + heap_bytes(type.voxel_type); }
+std::int64_t own_bytes(const Armature& armature) {
+  std::int64_t bytes = heap_bytes(armature.bones);
+  for (const Bone& bone : armature.bones) bytes += heap_bytes(bone.name);
+  return bytes;
+}
+std::int64_t own_bytes(const SkinWeights& weights) {  // without its chunks, which are shared
+  std::int64_t bytes = kBlock + weights.chunk_count() * std::int64_t{sizeof(std::shared_ptr<const SkinWeights::Chunk>)};
+  for (const std::string& bone : weights.bones()) bytes += heap_bytes(bone) + std::int64_t{sizeof bone};
+  return bytes;
+}
+std::int64_t own_bytes(const SkinWeights::Chunk& chunk) { return heap_bytes(chunk); }
+std::int64_t own_bytes(const Pose& pose) { return heap_bytes(pose.rotation); }
+std::int64_t own_bytes(const Motion& motion) {
+  std::int64_t bytes = heap_bytes(motion.joints) + heap_bytes(motion.values) + heap_bytes(motion.warnings);
+  for (const BvhJoint& joint : motion.joints) bytes += heap_bytes(joint.name) + heap_bytes(joint.channels);
+  for (const std::string& warning : motion.warnings) bytes += heap_bytes(warning);
+  return bytes;
+}
+std::int64_t own_bytes(const Visibility& visibility) {
+  return static_cast<std::int64_t>(visibility.looks.size()) * (kBlock + std::int64_t{sizeof(std::pair<Label, TissueLook>)} + 32);
+}
+std::int64_t own_bytes(const Result& result) {
+  return heap_bytes(result.name) + heap_bytes(result.method) + heap_bytes(result.report);
+}
+
+}  // namespace
+
+// How often each part stands in the line. A part is entered by its address; what is inside of it (a weights' chunks, what
+// a result was made from) is visited when it comes for the first time and when it goes for good.
+class History::Ledger {
+ public:
+  void add(const Document& document) { visit(document, +1); }
+  void remove(const Document& document) { visit(document, -1); }
+  std::int64_t bytes() const { return bytes_; }
+
+ private:
+  // True when the part came for the first time, or went for good.
+  template <class T>
+  bool count(const std::shared_ptr<const T>& part, int step) {
+    if (!part) return false;
+    std::int64_t& uses = uses_[part.get()];
+    const bool edge = step > 0 ? uses == 0 : uses == 1;
+    uses += step;
+    if (edge) bytes_ += step * (static_cast<std::int64_t>(sizeof(T)) + kBlock + own_bytes(*part));
+    if (uses == 0) uses_.erase(part.get());
+    return edge;
+  }
+
+  void visit(const std::shared_ptr<const SkinWeights>& weights, int step) {
+    if (!count(weights, step)) return;
+    for (std::int64_t brick = 0; brick < weights->chunk_count(); ++brick) count(weights->shared_chunk(brick), step);
+  }
+
+  void visit(const std::shared_ptr<const Result>& result, int step) {
+    if (!count(result, step)) return;
+    count(result->volume, step);
+    count(result->from_volume, step);
+    count(result->from_tissues, step);
+    count(result->from_armature, step);
+    visit(result->from_weights, step);
+    count(result->from_pose, step);
+  }
+
+  void visit(const Document& document, int step) {
+    count(document.volume, step);
+    count(document.tissues, step);
+    count(document.volume_type, step);
+    count(document.armature, step);
+    visit(document.weights, step);
+    count(document.pose, step);
+    count(document.motion, step);
+    count(document.visibility, step);
+    for (const auto& result : document.results) visit(result, step);
+    bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results));
+  }
+
+  std::unordered_map<const void*, std::int64_t> uses_;
+  std::int64_t bytes_ = 0;
+};
+
+History::History(Document first, std::string label, std::int64_t limit_bytes) : limit_(limit_bytes) {
+  reset(std::move(first), std::move(label));
+}
+
+History::~History() = default;
+
+bool History::commit(std::string label, Document next) {
+  if (next == current()) return false;
+  for (; can_redo(); steps_.pop_back()) ledger_->remove(steps_.back().document);
+  ledger_->add(next);
+  steps_.push_back({std::move(label), std::move(next), next_revision_++});
+  ++position_;
+  keep_within_limit();
+  return true;
+}
+
+void History::reset(Document first, std::string label) {
+  steps_.clear();
+  position_ = dropped_ = 0;
+  saved_ = next_revision_++;
+  ledger_ = std::make_unique<Ledger>();
+  ledger_->add(first);
+  steps_.push_back({std::move(label), std::move(first), saved_});
+}
+
+bool History::undo() {
+  if (!can_undo()) return false;
+  --position_;
+  return true;
+}
+
+bool History::redo() {
+  if (!can_redo()) return false;
+  ++position_;
+  return true;
+}
+
+void History::jump(std::int64_t step) { position_ = std::clamp<std::int64_t>(step, 0, std::ssize(steps_) - 1); }
+
+std::int64_t History::bytes() const { return ledger_->bytes(); }
+std::int64_t History::current_bytes() const { return bytes_of(current()); }
+
+std::int64_t bytes_of(const Document& document) {
+  History alone(document);
+  return alone.bytes();
+}
+
+void History::set_limit(std::int64_t bytes) {
+  limit_ = bytes;
+  keep_within_limit();
+}
+
+// Undo's oldest states go first; when none is left, redo's last.
+void History::keep_within_limit() {
+  if (bytes() <= limit_) return;
+  const std::int64_t most = std::max(limit_, current_bytes() + limit_ / 2);
+  std::int64_t front = 0;
+  for (; bytes() > most && front < position_; ++front) ledger_->remove(steps_[front].document);
+  steps_.erase(steps_.begin(), steps_.begin() + front);
+  position_ -= front;
+  dropped_ += front;
+  for (; bytes() > most && can_redo(); ++dropped_) {
+    ledger_->remove(steps_.back().document);
+    steps_.pop_back();
+  }
+}
+
+std::string History::note() const {
+  if (dropped_ == 0) return "";
+  const std::string steps = dropped_ == 1 ? "The oldest step was" : "The " + std::to_string(dropped_) + " oldest steps were";
+  return steps + " dropped to keep undo within " + std::to_string(limit_ >> 20) + " MB.";
+}
+
+}  // namespace limber

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/project/worker.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+
+extern char** environ;
+
+namespace limber {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kPollMilliseconds = 20;
+constexpr std::size_t kMostOutput = std::size_t{16} << 20;
+constexpr std::size_t kLongestLine = std::size_t{1} << 16;
+constexpr std::size_t kMostWarnings = 1000;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// A pipe whose ends do not pass to programs that are started meanwhile.
+struct Pipe {
+  int read_end = -1, write_end = -1;
+  Pipe() {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw Error("a worker cannot be started", "pipe", std::strerror(errno));
+    read_end = ends[0];
+    write_end = ends[1];
+    ::fcntl(read_end, F_SETFL, O_NONBLOCK);
+  }
+  ~Pipe() {
+    close_write();
+    if (read_end >= 0) ::close(read_end);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  void close_write() {
+    if (write_end >= 0) ::close(std::exchange(write_end, -1));
+  }
+  // Hands on what is there; false at the end.
+  template <class Take>
+  bool drain(const Take& take) const {
+    std::array<char, 1 << 14> block;
+    for (;;) {
+      const ssize_t got = ::read(read_end, block.data(), block.size());
+      if (got > 0)
+        take(block.data(), static_cast<std::size_t>(got));
+      else if (got == 0)
+        return false;
+      else if (errno != EINTR)
+        return errno == EAGAIN;
+    }
+  }
+};
+
+// The worker in a process group of its own, so that its own children end with it. Ended and waited for when this goes.
+class Process {
+ public:
+  Process(const Path& program, const std::vector<std::string>& arguments, const Pipe& out, const Pipe& err) {
+    std::vector<std::string> words{"limber"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&files, out.write_end, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&files, err.write_end, STDERR_FILENO);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t none, defaults;
+    sigemptyset(&none);
+    sigemptyset(&defaults);
+    for (int signal : {SIGINT, SIGTERM, SIGPIPE, SIGHUP}) sigaddset(&defaults, signal);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setsigdefault(&attributes, &defaults);
+    posix_spawnattr_setpgroup(&attributes, 0);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+    const int failure = ::posix_spawn(&id_, program.c_str(), &files, &attributes, argv.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&files);
+    if (failure != 0) throw Error("a worker cannot be started", program.string(), std::strerror(failure));
+  }
+  ~Process() {
+    if (ended_) return;
+    send(SIGKILL);
+    while (::waitpid(id_, &status_, 0) < 0 && errno == EINTR) {
+    }
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void send(int signal) const { ::kill(-id_, signal); }
+  // Ends what it may have left behind, before its name can be given to another.
+  bool has_ended() {
+    siginfo_t info{};
+    if (ended_ || ::waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != id_) return ended_;
+    send(SIGKILL);
+    while (::waitpid(id_, &status_, 0) < 0 && errno == EINTR) {
+    }
+    return ended_ = true;
+  }
+  int status() const { return status_; }
+
+ private:
+  pid_t id_ = -1;
+  int status_ = 0;
+  bool ended_ = false;
+};
+
+// What the worker says on its error stream, line by line.
+class Listener {
+ public:
+  explicit Listener(Progress& progress) : progress_(progress) {}
+  void take(const char* bytes, std::size_t size) {
+    for (const char* end = bytes + size; bytes < end;) {
+      const char* line_end = std::find(bytes, end, '\n');
+      line_.append(bytes, std::min<std::size_t>(line_end - bytes, kLongestLine - std::min(kLongestLine, line_.size())));
+      if (line_end == end) return;
+      on_line();
+      line_.clear();
+      bytes = line_end + 1;
+    }
+  }
+  std::vector<std::string> warnings;
+  std::string complaint;  // its last line that is neither progress nor a warning
+
+ private:
+  void on_line() {
+    constexpr std::string_view kWarning = "limber: warning: ", kName = "limber: ";
+    if (line_.starts_with('{')) {
+      const auto json = nlohmann::json::parse(line_, nullptr, false);
+      if (!json.is_object() || !json.contains("stage") || !json["stage"].is_string()) return;
+      if (!json.contains("fraction") || !json["fraction"].is_number()) return;
+      if (!progress_.cancelled()) progress_.update(json["stage"].get<std::string>(), json["fraction"].get<double>());
+    } else if (line_.starts_with(kWarning)) {
+      if (warnings.size() < kMostWarnings) warnings.push_back(line_.substr(kWarning.size()));
+    } else if (!line_.empty()) {
+      complaint = line_.starts_with(kName) ? line_.substr(kName.size()) : line_;
+    }
+  }
+  Progress& progress_;
+  std::string line_;
+};
+
+// A message of the worker's own, "what: where: what to do", as an Error of ours.
+Error relay(const std::string& line, const Path& job) {
+  const std::size_t first = line.find(": "), last = line.rfind(": ");
+  if (first == std::string::npos || first == last) return {"the worker failed", job.string(), line.empty() ? "it gave no reason" : line};
+  return {line.substr(0, first), line.substr(first + 2, last - first - 2), line.substr(last + 2)};
+}
+
+Error death(int signal, const Path& job) {
+  if (signal == SIGKILL)
+    return {"the worker was ended by the system, most likely for lack of memory", job.string(), "use a coarser spacing, or close other programs"};
+  return {"the worker crashed", job.string() + ", " + ::strsignal(signal), "try other settings, and please report it with the job's files"};
+}
+
+}  // namespace
+
+WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSettings& settings) {
+  if (progress.cancelled()) throw Cancelled();
+  std::vector<std::string> arguments{"job", job_file.string(), "--progress", "json", "--parent", std::to_string(::getpid())};
+  if (settings.memory_limit_mb > 0) arguments.insert(arguments.end(), {"--memory-limit", std::to_string(settings.memory_limit_mb)});
+
+  Pipe out, err;
+  Process process(settings.program, arguments, out, err);
+  out.close_write();
+  err.close_write();
+
+  WorkerOutput output;
+  Listener listener(progress);
+  const auto take_out = [&](const char* bytes, std::size_t size) {
+    output.text.append(bytes, std::min(size, kMostOutput - std::min(kMostOutput, output.text.size())));
+  };
+  const auto take_err = [&](const char* bytes, std::size_t size) { listener.take(bytes, size); };
+
+  enum class Stop { None, Cancel, Time } stop = Stop::None;
+  const auto started = Clock::now();
+  Clock::time_point asked;
+  bool out_open = true, err_open = true;
+  while (!process.has_ended()) {
+    pollfd ends[2] = {{out_open ? out.read_end : -1, POLLIN, 0}, {err_open ? err.read_end : -1, POLLIN, 0}};
+    ::poll(ends, 2, kPollMilliseconds);
+    if (out_open && ends[0].revents) out_open = out.drain(take_out);
+    if (err_open && ends[1].revents) err_open = err.drain(take_err);
+    if (stop == Stop::None) {
+      if (progress.cancelled()) stop = Stop::Cancel;
+      if (settings.time_limit > 0 && seconds_since(started) > settings.time_limit) stop = Stop::Time;
+      if (stop == Stop::None) continue;
+      asked = Clock::now();
+      process.send(SIGTERM);
+    } else if (seconds_since(asked) > settings.patience) {
+      process.send(SIGKILL);
+    }
+  }
+  out.drain(take_out);
+  err.drain(take_err);
+  output.warnings = std::move(listener.warnings);
+
+  if (stop == Stop::Cancel || progress.cancelled()) throw Cancelled();
+  if (stop == Stop::Time)
+    throw Error("the worker took longer than " + std::to_string(static_cast<long>(settings.time_limit)) + " s", job_file.string(),
+                "raise the time limit, or use a coarser spacing");
+  const int status = process.status();
+  if (WIFSIGNALED(status)) throw death(WTERMSIG(status), job_file);
+  if (WEXITSTATUS(status) == 3) throw Cancelled();
+  if (WEXITSTATUS(status) != 0) throw relay(listener.complaint, job_file);
+  return output;
+}
+
+void become_worker(std::int64_t memory_limit_mb, int parent) {
+  if (parent > 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) std::_Exit(3);  // it died before
+  }
+  if (memory_limit_mb > 0) {
+    const rlim_t bytes = static_cast<rlim_t>(memory_limit_mb) << 20;
+    const rlimit limit{bytes, bytes};
+    if (::setrlimit(RLIMIT_AS, &limit) != 0) throw Error("the memory limit cannot be set", std::to_string(memory_limit_mb) + " MB", std::strerror(errno));
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Work that may crash, hang or eat all memory, in a process of its own: the same program runs `limber job FILE`, the file a
+// cluster node would get. Its progress lines go on to a Progress, a cancel ends it at once, and whatever happens to it
+// (a crash, the system's lack of memory, a limit of ours) is one clear Error here. It dies with the thread that runs it,
+// and with the program.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/file.h"
+#include "core/base/progress.h"
+
+namespace limber {
+
+struct WorkerSettings {
+  std::int64_t memory_limit_mb = 0;  // of address space; 0: none
+  double time_limit = 0;             // seconds; 0: none
+  double patience = 0.05;            // seconds between asking it to end and ending it
+  Path program = "/proc/self/exe";
+};
+
+struct WorkerOutput {
+  std::string text;                   // what it printed, at most 16 MB of it
+  std::vector<std::string> warnings;  // one line each
+};
+
+// Runs the job to its end; blocks, so it belongs into a Job. throws Error with what went wrong, Cancelled after a cancel.
+WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSettings& settings = {});
+
+// In the worker, before it starts: limits its memory, and lets it die with `parent`, the process that started it (0: none).
+void become_worker(std::int64_t memory_limit_mb, int parent);
+
+}  // namespace limber

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/project/worker.h"
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/support/program.h"
+
+using namespace limber;
+using namespace limber::test;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A program that stands in for the worker.
+Path script(const TemporaryFolder& folder, const std::string& text) {
+  const Path path = folder / "worker";
+  std::ofstream(path) << "#!/bin/sh\n" << text;
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  return path;
+}
+
+std::string message_of(const TemporaryFolder& folder, const std::string& text, WorkerSettings settings = {}) {
+  settings.program = script(folder, text);
+  Progress quiet;
+  try {
+    run_worker("job.json", quiet, settings);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct Seen final : Progress {
+  std::string last;
+  double fraction = -1;
+  void on_update(std::string_view stage, double at) override {
+    last = stage;
+    fraction = at;
+  }
+};
+
+// Running, and not merely unburied.
+bool alive(const Path& pid_file) {
+  std::ifstream in(pid_file);
+  pid_t id = 0;
+  if (!(in >> id)) return false;
+  std::ifstream stat("/proc/" + std::to_string(id) + "/stat");
+  std::string number, name, state;
+  return stat >> number >> name >> state && state != "Z" && state != "X";
+}
+
+// An arm to be bent; at 0.8 mm that takes long and needs much memory.
+void write_job(const TemporaryFolder& folder, const std::string& spacing = "8") {
+  REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
+  std::ofstream(folder / "job.json") << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
+    "flex": ["Forearm=60"], "method": "dqs", "threads": 1, "output": "posed.nrrd", "spacing": )" << spacing << "}";
+}
+
+}  // namespace
+
+TEST_CASE("worker: a job file is run by the program itself in a process of its own, with its progress") {
+  const TemporaryFolder folder;
+  write_job(folder);
+  Seen progress;
+  run_worker(folder / "job.json", progress, {.program = LIMBER_PROGRAM});
+  CHECK(std::filesystem::exists(folder / "posed.nrrd"));
+  CHECK_FALSE(progress.last.empty());
+  CHECK(progress.fraction == 1);
+}
+
+TEST_CASE("worker: its own error comes through word for word") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "job.json") << R"({"command": "resample", "volume": "no-such.nrrd", "rig": "rig.json", "output": "posed.nrrd", "method": "dqs"})";
+  const auto direct = run_limber({"job", folder / "job.json"});
+  Progress quiet;
+  std::string message;
+  try {
+    run_worker(folder / "job.json", quiet, {.program = LIMBER_PROGRAM});
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  CHECK("limber: " + message + "\n" == direct.err);
+}
+
+TEST_CASE("worker: output, warnings and progress are told apart") {
+  const TemporaryFolder folder;
+  Seen progress;
+  const auto output = run_worker("job.json", progress, {.program = script(folder, R"(echo "$1 $2 $3 $4"
+echo '{"stage": "solve", "fraction": 0.5}' >&2
+echo 'limber: warning: thin: skin: look' >&2
+echo '{"stage": 3}' >&2
+echo '{not json' >&2)")});
+  CHECK(output.text == "job job.json --progress json\n");
+  CHECK(output.warnings == std::vector<std::string>{"thin: skin: look"});
+  CHECK(progress.last == "solve");
+  CHECK(progress.fraction == 0.5);
+}
+
+TEST_CASE("worker: a crash, a kill and a failure without a word become clear messages") {
+  const TemporaryFolder folder;
+  CHECK(message_of(folder, "kill -SEGV $$") == "the worker crashed: job.json, Segmentation fault: try other settings, and please report it with the job's files");
+  CHECK(message_of(folder, "kill -ABRT $$").find("Aborted") != std::string::npos);
+  CHECK(message_of(folder, "kill -KILL $$").find("lack of memory") != std::string::npos);
+  CHECK(message_of(folder, "exit 1") == "the worker failed: job.json: it gave no reason");
+  CHECK(message_of(folder, "echo 'limber: a: b: c' >&2; exit 1") == "a: b: c");
+  CHECK(message_of(folder, "sleep 60", {.time_limit = 0.1}).starts_with("the worker took longer than"));
+  Progress quiet;
+  CHECK_THROWS_AS(run_worker("job.json", quiet, {.program = "/no/such/program"}), Error);
+}
+
+TEST_CASE("worker: a job that wants more memory than it may have ends with a message") {
+  const TemporaryFolder folder;
+  write_job(folder, "0.8");
+  Progress quiet;
+  std::string message;
+  try {
+    run_worker(folder / "job.json", quiet, {.memory_limit_mb = 200, .program = LIMBER_PROGRAM});
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  INFO(message);
+  CHECK(message.find("memory") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "posed.nrrd"));
+}
+
+TEST_CASE("worker: a cancel ends it within a moment, also when it does not listen, and its children with it") {
+  const TemporaryFolder folder;
+  const std::string pid = folder / "pid", child = folder / "child";
+  const Path program = script(folder, "trap '' TERM\nsleep 60 & echo $! > " + child + "\necho $$ > " + pid + "\nwhile true; do sleep 1; done");
+  Progress progress;
+  std::atomic<bool> cancelled = false;
+  std::thread waiting([&] {
+    try {
+      run_worker("job.json", progress, {.program = program});
+    } catch (const Cancelled&) {
+      cancelled = true;
+    }
+  });
+  while (!alive(pid) || !alive(child)) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const auto asked = Clock::now();
+  progress.cancel();
+  waiting.join();
+  CHECK(Clock::now() - asked < std::chrono::seconds(2));  // a tenth of one on a quiet machine
+  CHECK(cancelled);
+  CHECK_FALSE(alive(pid));
+  for (int i = 0; i < 200 && alive(child); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  CHECK_FALSE(alive(child));
+  CHECK(::waitpid(-1, nullptr, WNOHANG) == -1);  // nothing unburied
+}
+
+TEST_CASE("worker: it does not outlive the program that started it") {
+  const TemporaryFolder folder;
+  write_job(folder, "0.8");
+  const std::string pid = folder / "pid";
+  const pid_t parent = ::fork();
+  REQUIRE(parent >= 0);
+  if (parent == 0) {
+    const std::string id = std::to_string(::getpid()), job = folder / "job.json";
+    if (::fork() == 0) {
+      std::ofstream(pid) << ::getpid() << std::flush;
+      ::execl(LIMBER_PROGRAM, "limber", "job", job.c_str(), "--parent", id.c_str(), nullptr);
+      ::_exit(1);
+    }
+    for (;;) ::pause();
+  }
+  for (int i = 0; i < 1000 && !alive(pid); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  CHECK(alive(pid));
+  ::kill(parent, SIGKILL);
+  ::waitpid(parent, nullptr, 0);
+  for (int i = 0; i < 1000 && alive(pid); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  CHECK_FALSE(alive(pid));
+}

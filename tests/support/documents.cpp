@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "tests/support/documents.h"
+
+#include <bit>
+#include <cmath>
+
+namespace limber::test {
+
+namespace {
+
+template <class T>
+std::shared_ptr<const T> shared(T value) {
+  return std::make_shared<const T>(std::move(value));
+}
+
+// Bits, so that 0 and -0 differ and equal NaNs do not.
+bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+bool same(const glm::dvec3& a, const glm::dvec3& b) { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
+bool same(const glm::dquat& a, const glm::dquat& b) { return same(a.w, b.w) && same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
+
+bool equal(const LabelVolume& a, const LabelVolume& b) { return a.grid == b.grid && a.voxels == b.voxels; }
+bool equal(const Tissue& a, const Tissue& b) {
+  return a.label == b.label && same(a.file_value, b.file_value) && a.name == b.name && a.colour == b.colour && a.kind == b.kind &&
+         same(a.density, b.density) && same(a.young_modulus, b.young_modulus) && same(a.poisson_ratio, b.poisson_ratio) &&
+         a.priority == b.priority;
+}
+bool equal(const TissueTable& a, const TissueTable& b) {
+  if (a.source != b.source || a.tissues.size() != b.tissues.size()) return false;
+  for (std::size_t i = 0; i < a.tissues.size(); ++i)
+    if (!equal(a.tissues[i], b.tissues[i])) return false;
+  return true;
+}
+bool equal(const FileType& a, const FileType& b) { return a.format == b.format && a.voxel_type == b.voxel_type && a.compressed == b.compressed; }
+bool equal(const Armature& a, const Armature& b) { return a == b; }
+bool equal(const SkinWeights& a, const SkinWeights& b) { return a == b; }
+bool equal(const Pose& a, const Pose& b) {
+  if (a.rotation.size() != b.rotation.size() || !same(a.root_translation, b.root_translation)) return false;
+  for (std::size_t i = 0; i < a.rotation.size(); ++i)
+    if (!same(a.rotation[i], b.rotation[i])) return false;
+  return true;
+}
+bool equal(const Motion& a, const Motion& b) {
+  return a.joints == b.joints && a.channel_count == b.channel_count && a.frame_count == b.frame_count && same(a.frame_time, b.frame_time) &&
+         a.values == b.values && a.warnings == b.warnings;
+}
+bool equal(const Visibility& a, const Visibility& b) { return a == b; }
+
+template <class T>
+bool equal(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>& b);
+
+bool equal(const Result& a, const Result& b) {
+  return a.name == b.name && a.method == b.method && a.report == b.report && equal(a.volume, b.volume) && equal(a.from_volume, b.from_volume) &&
+         equal(a.from_tissues, b.from_tissues) && equal(a.from_armature, b.from_armature) && equal(a.from_weights, b.from_weights) &&
+         equal(a.from_pose, b.from_pose);
+}
+
+template <class T>
+bool equal(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>& b) {
+  if (!a || !b) return !a && !b;
+  return a == b || equal(*a, *b);
+}
+
+int below(std::mt19937& random, int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); }
+double unit(std::mt19937& random) { return static_cast<double>(random()) / 4294967296.0; }
+
+Influence random_influence(std::mt19937& random, int bones) {
+  return quantize({{below(random, bones), unit(random) + 0.01}, {bones, unit(random)}});
+}
+
+LabelVolume bar() {
+  LabelVolume volume;
+  volume.grid.size = {24, 10, 9};
+  volume.grid.spacing = {2, 2, 2.5};
+  volume.grid.origin = {-1.5, 0.1, 1e-7};
+  volume.voxels.assign(volume.grid.voxel_count(), 0);
+  for (int z = 1; z < 8; ++z)
+    for (int y = 1; y < 9; ++y)
+      for (int x = 1; x < 23; ++x) volume.at({x, y, z}) = y > 3 && y < 6 && z > 2 && z < 5 ? 2 : 1;
+  return volume;
+}
+
+TissueTable two_tissues() {
+  TissueTable table;
+  table.source = "names in the file";
+  table.tissues.resize(2);
+  table.tissues[0] = {.label = 1, .file_value = 17, .name = "flesh", .kind = TissueKind::Muscle};
+  table.tissues[1] = {.label = 2, .file_value = 9007199254740991.0, .name = "bone \xff not UTF-8", .kind = TissueKind::Bone, .priority = 9};
+  return table;
+}
+
+Armature two_bones() {
+  Armature armature;
+  armature.bones.push_back({.name = "Upper", .tail = {22, 8, 9}});
+  armature.bones.push_back({.name = "Lower", .parent = 0, .head = {22, 8, 9}, .tail = {44, 8, 9}, .roll = 0.3});
+  armature.bones[1].limits = {.type = JointLimits::Type::Hinge, .axis = {0, 0, 1}, .minimum = -0.1, .maximum = 2};
+  return armature;
+}
+
+Motion short_motion() {
+  Motion motion;
+  motion.joints.push_back({.name = "Hips", .channels = {BvhChannel::Xposition, BvhChannel::Zrotation}, .end_site = glm::dvec3(0, 1, 0)});
+  motion.channel_count = 2;
+  motion.frame_count = 3;
+  motion.values = {0, 1, 2, 3, 4, -0.0f};
+  motion.warnings = {"the last line was cut"};
+  return motion;
+}
+
+Result result_of(const Document& document, std::mt19937& random) {
+  LabelVolume posed = *document.volume;
+  for (int i = 0; i < 20; ++i) posed.voxels[random() % posed.voxels.size()] = static_cast<Label>(below(random, 3));
+  return {"Result " + std::to_string(random()), "dqs", shared(std::move(posed)), "{\"schema\": \"limber-report/1\"}",
+          document.volume, document.tissues, document.armature, document.weights, document.pose};
+}
+
+}  // namespace
+
+bool same_contents(const Document& a, const Document& b) {
+  if (!equal(a.volume, b.volume) || !equal(a.tissues, b.tissues) || !equal(a.volume_type, b.volume_type) || !equal(a.armature, b.armature) ||
+      !equal(a.weights, b.weights) || !equal(a.pose, b.pose) || !equal(a.motion, b.motion) || !equal(a.visibility, b.visibility) ||
+      a.results.size() != b.results.size())
+    return false;
+  for (std::size_t i = 0; i < a.results.size(); ++i)
+    if (!equal(a.results[i], b.results[i])) return false;
+  return true;
+}
+
+Document small_document() {
+  std::mt19937 random(7);
+  Document document;
+  document.volume = shared(bar());
+  document.tissues = shared(two_tissues());
+  document.volume_type = shared(FileType{"NRRD", "uint8", true});
+  document.armature = shared(two_bones());
+  document.weights = shared(SkinWeights({"Upper", "Lower"}, TissueVoxels(*document.volume)));
+  document.pose = shared(rest_pose(*document.armature));
+  document.motion = shared(short_motion());
+  document.visibility = shared(Visibility{.looks = {{2, {.visible = false, .opacity = 0.25f}}}});
+  document.results.push_back(shared(result_of(document, random)));
+  return document;
+}
+
+Document random_edit(const Document& document, std::mt19937& random) {
+  Document next = document;
+  switch (below(random, 8)) {
+    case 0: {
+      TissueTable table = *document.tissues;
+      table.tissues[random() % table.tissues.size()].name = "tissue " + std::to_string(random());
+      next.tissues = shared(std::move(table));
+      break;
+    }
+    case 1: {
+      Armature armature = *document.armature;
+      armature.bones[1].tail += glm::dvec3(unit(random), unit(random), -unit(random));
+      next.armature = shared(std::move(armature));
+      break;
+    }
+    case 2: {
+      Visibility looks = document.visibility ? *document.visibility : Visibility{};
+      looks.looks[static_cast<Label>(below(random, 4))].opacity = static_cast<float>(unit(random));
+      looks.clip_box = {true, {0, 0, 0}, {unit(random), 1, 1}};
+      next.visibility = shared(std::move(looks));
+      break;
+    }
+    case 3:
+      if (document.results.size() > 3)
+        next.results.erase(next.results.begin());
+      else
+        next.results.push_back(shared(result_of(document, random)));
+      break;
+    case 4:
+    case 5: {
+      SkinWeights weights = *document.weights;
+      const auto brick = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(weights.chunk_count()));
+      SkinWeights::Chunk chunk = weights.chunk(brick);
+      for (int i = 0; i < 10; ++i) chunk[random() % chunk.size()] = random_influence(random, 1);
+      weights.set_chunk(brick, std::move(chunk));
+      next.weights = shared(std::move(weights));
+      break;
+    }
+    default: {
+      Pose pose = *document.pose;
+      const double angle = unit(random);
+      pose.rotation[random() % pose.rotation.size()] = glm::dquat(std::cos(angle), 0, std::sin(angle), 0);
+      next.pose = shared(std::move(pose));
+    }
+  }
+  return next;
+}
+
+Document large_document(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  Document document;
+  LabelVolume volume;
+  volume.grid.size = {64, 32, 32};
+  volume.voxels.assign(volume.grid.voxel_count(), 1);
+  SkinWeights weights({"Upper", "Lower"}, TissueVoxels(volume));
+  for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
+    SkinWeights::Chunk chunk = weights.chunk(brick);
+    for (Influence& influence : chunk) influence = random_influence(random, 1);
+    weights.set_chunk(brick, std::move(chunk));
+  }
+  document.volume = shared(std::move(volume));
+  document.weights = shared(std::move(weights));
+  return document;
+}
+
+}  // namespace limber::test
