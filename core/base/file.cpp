@@ -117,6 +117,12 @@ void write_file_atomically(const Path& path, const std::string& bytes) {
   });
 }
 
+std::array<std::uint8_t, 32> sha256(const void* bytes, std::size_t size) {
+  std::array<std::uint8_t, 32> digest;
+  EVP_Digest(bytes, size, digest.data(), nullptr, EVP_sha256(), nullptr);
+  return digest;
+}
+
 std::string sha256_of_bytes(const void* bytes, std::size_t size) {
   Sha256 hash;
   hash.add(bytes, size);

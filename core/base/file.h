@@ -2,6 +2,7 @@
 // Files whole or not at all.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -27,6 +28,7 @@ void write_file_atomically(const Path& path, const std::string& bytes);
 
 // Lower-case hexadecimal SHA-256 of a file's bytes; of a folder, of its files' hashes in name order.
 std::string sha256_of_file(const Path& path);
+std::array<std::uint8_t, 32> sha256(const void* bytes, std::size_t size);
 std::string sha256_of_bytes(const void* bytes, std::size_t size);
 
 }  // namespace limber

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/memory.h"
 #include "core/volume/dicom.h"
 #include "core/volume/header_text.h"
 #include "core/volume/label_decoder.h"
@@ -17,24 +17,6 @@ namespace limber {
 
 namespace {
 constexpr std::size_t kChunkVoxels = 1 << 14;  // small enough to stay in cache between decoding and storing
-
-std::int64_t number_in_file(const char* path, std::string_view key) {
-  std::ifstream in(path);
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with(key))
-      if (const auto words = words_of(std::string_view(line).substr(key.size())); !words.empty())
-        return number_of<std::int64_t>(words[0]).value_or(-1);
-  return -1;
-}
-
-// Bytes this process may still take, by the machine and by its control group.
-std::int64_t available_memory() {
-  std::int64_t available = std::numeric_limits<std::int64_t>::max();
-  if (const std::int64_t kib = number_in_file("/proc/meminfo", "MemAvailable:"); kib >= 0) available = kib * 1024;
-  const std::int64_t most = number_in_file("/sys/fs/cgroup/memory.max", ""), used = number_in_file("/sys/fs/cgroup/memory.current", "");
-  if (most > 0 && used >= 0) available = std::min(available, std::max<std::int64_t>(0, most - used));
-  return available;
-}
 
 void check_memory(const Grid& grid, std::int64_t bytes_per_voxel, const Path& path) {
   // A tenth is left for everything else.

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Values as bytes and back, bit for bit: numbers little-endian as they lie in memory, texts and lists behind their length.
+// The reader believes nothing: it never reads past the end, and a list's length is checked against the bytes that are
+// there before anything is allocated.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace limber {
+
+static_assert(std::endian::native == std::endian::little, "project files are little-endian");
+
+class ByteWriter {
+ public:
+  template <class T>
+  void put(T value) {
+    static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void flag(bool value) { put(static_cast<std::uint8_t>(value)); }
+  void count(std::size_t value) { put(static_cast<std::uint32_t>(value)); }
+  void text(std::string_view value) {
+    count(value.size());
+    bytes_ += value;
+  }
+  void raw(const void* bytes, std::size_t size) { bytes_.append(static_cast<const char*>(bytes), size); }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+class ByteReader {
+ public:
+  // `damaged` is called, and must throw, when the bytes are not what they should be.
+  ByteReader(std::string_view bytes, std::function<void()> damaged) : bytes_(bytes), damaged_(std::move(damaged)) {}
+
+  template <class T>
+  T get() {
+    static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>);
+    T value;
+    std::memcpy(&value, raw(sizeof value).data(), sizeof value);
+    return value;
+  }
+  bool flag() { return get_below<std::uint8_t>(2) == 1; }
+  // One of [0, end).
+  template <class T>
+  T get_below(std::uint64_t end) {
+    const T value = get<T>();
+    require(static_cast<std::uint64_t>(value) < end);
+    return value;
+  }
+  // A list's length, when each of its parts takes `least` bytes or more.
+  std::size_t count(std::size_t least) {
+    const std::size_t value = get<std::uint32_t>();
+    require(value <= bytes_.size() / least);
+    return value;
+  }
+  std::string text() { return std::string(raw(count(1))); }
+  std::string_view raw(std::size_t size) {
+    require(size <= bytes_.size());
+    const std::string_view part = bytes_.substr(0, size);
+    bytes_.remove_prefix(size);
+    return part;
+  }
+  std::string_view rest() { return raw(bytes_.size()); }
+  void require(bool holds) const {
+    if (!holds) damaged_();
+  }
+  void end() const { require(bytes_.empty()); }
+
+ private:
+  std::string_view bytes_;
+  std::function<void()> damaged_;
+};
+
+}  // namespace limber

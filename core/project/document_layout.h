@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the writer and the reader of documents agree upon. A change of it is a new kDocumentLayout.
+#pragma once
+
+#include <cstdint>
+
+#include "core/project/document.h"
+
+namespace limber {
+
+constexpr std::uint32_t kDocumentLayout = 1;
+
+// A part's first byte.
+enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result };
+
+template <class T>
+struct PartKindOf;
+// clang-format off
+template <> struct PartKindOf<LabelVolume> { static constexpr PartKind kKind = PartKind::Volume;     static constexpr const char* kName = "volume"; };
+template <> struct PartKindOf<TissueTable> { static constexpr PartKind kKind = PartKind::Tissues;    static constexpr const char* kName = "tissues"; };
+template <> struct PartKindOf<FileType>    { static constexpr PartKind kKind = PartKind::VolumeType; static constexpr const char* kName = "volume's file type"; };
+template <> struct PartKindOf<Armature>    { static constexpr PartKind kKind = PartKind::Armature;   static constexpr const char* kName = "rig"; };
+template <> struct PartKindOf<SkinWeights> { static constexpr PartKind kKind = PartKind::Weights;    static constexpr const char* kName = "weights"; };
+template <> struct PartKindOf<Pose>        { static constexpr PartKind kKind = PartKind::Pose;       static constexpr const char* kName = "pose"; };
+template <> struct PartKindOf<Motion>      { static constexpr PartKind kKind = PartKind::Motion;     static constexpr const char* kName = "motion"; };
+template <> struct PartKindOf<Visibility>  { static constexpr PartKind kKind = PartKind::Visibility; static constexpr const char* kName = "visibility"; };
+template <> struct PartKindOf<Result>      { static constexpr PartKind kKind = PartKind::Result;     static constexpr const char* kName = "result"; };
+// clang-format on
+
+constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;  // voxels and long texts
+constexpr std::int64_t kGroupBricks = 32;                   // of weights in one leaf: 256 KB at most
+constexpr std::size_t kInlineBytes = std::size_t{64} << 10;  // a part's bytes that its node holds itself
+
+}  // namespace limber

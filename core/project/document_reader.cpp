@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/base/error.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/sparse_zeros.h"
+#include "core/project/bytes.h"
+#include "core/project/document_codec.h"
+#include "core/project/document_layout.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::uint32_t kMostResults = 100'000;
+constexpr std::int32_t kLongestAxis = 1 << 20;
+constexpr std::int64_t kBatch = 32;  // leaves unpacked together
+
+glm::dvec3 get_vector(ByteReader& in) {
+  glm::dvec3 v;
+  for (int i = 0; i < 3; ++i) v[i] = in.get<double>();
+  return v;
+}
+glm::dquat get_rotation(ByteReader& in) {
+  glm::dquat q;
+  for (double* value : {&q.w, &q.x, &q.y, &q.z}) *value = in.get<double>();
+  return q;
+}
+std::vector<std::string> get_texts(ByteReader& in) {
+  std::vector<std::string> texts(in.count(4));
+  for (std::string& text : texts) text = in.text();
+  return texts;
+}
+
+void get(ByteReader& in, TissueTable& table) {
+  table.source = in.text();
+  table.tissues.resize(in.count(40));
+  for (Tissue& tissue : table.tissues) {
+    tissue.label = in.get<Label>();
+    tissue.file_value = in.get<double>();
+    tissue.name = in.text();
+    for (int i = 0; i < 3; ++i) tissue.colour[i] = in.get<float>();
+    tissue.kind = static_cast<TissueKind>(in.get_below<std::uint8_t>(static_cast<int>(TissueKind::Nail) + 1));
+    for (double* value : {&tissue.density, &tissue.young_modulus, &tissue.poisson_ratio}) *value = in.get<double>();
+    tissue.priority = in.get<std::int32_t>();
+  }
+}
+
+void get(ByteReader& in, FileType& type) {
+  type.format = in.text();
+  type.voxel_type = in.text();
+  type.compressed = in.flag();
+}
+
+void get(ByteReader& in, Armature& armature) {
+  armature.bones.resize(in.count(100));
+  for (int b = 0; b < std::ssize(armature.bones); ++b) {
+    Bone& bone = armature.bones[b];
+    bone.name = in.text();
+    bone.parent = in.get<std::int32_t>();
+    in.require(bone.parent >= -1 && bone.parent < b);
+    bone.head = get_vector(in);
+    bone.tail = get_vector(in);
+    bone.roll = in.get<double>();
+    JointLimits& limits = bone.limits;
+    limits.type = static_cast<JointLimits::Type>(in.get_below<std::uint8_t>(static_cast<int>(JointLimits::Type::Ball) + 1));
+    limits.axis = get_vector(in);
+    for (double* value : {&limits.minimum, &limits.maximum, &limits.cone, &limits.twist_minimum, &limits.twist_maximum}) *value = in.get<double>();
+  }
+}
+
+void get(ByteReader& in, Pose& pose) {
+  pose.rotation.resize(in.count(32));
+  for (glm::dquat& rotation : pose.rotation) rotation = get_rotation(in);
+  pose.root_translation = get_vector(in);
+}
+
+void get(ByteReader& in, Motion& motion) {
+  motion.joints.resize(in.count(40));
+  std::int64_t last_channel = 0;
+  for (int j = 0; j < std::ssize(motion.joints); ++j) {
+    BvhJoint& joint = motion.joints[j];
+    joint.name = in.text();
+    joint.parent = in.get<std::int32_t>();
+    in.require(joint.parent >= -1 && joint.parent < j);
+    joint.offset = get_vector(in);
+    joint.channels.resize(in.count(1));
+    for (BvhChannel& channel : joint.channels)
+      channel = static_cast<BvhChannel>(in.get_below<std::uint8_t>(static_cast<int>(BvhChannel::Zrotation) + 1));
+    joint.first_channel = in.get<std::int32_t>();
+    in.require(joint.first_channel >= 0);
+    last_channel = std::max(last_channel, joint.first_channel + std::ssize(joint.channels));
+    const bool has_end = in.flag();
+    const glm::dvec3 end = get_vector(in);
+    if (has_end) joint.end_site = end;
+  }
+  motion.channel_count = in.get<std::int32_t>();
+  motion.frame_count = in.get<std::int32_t>();
+  motion.frame_time = in.get<double>();
+  motion.warnings = get_texts(in);
+  motion.values.resize(in.count(sizeof(float)));
+  const std::string_view values = in.raw(motion.values.size() * sizeof(float));
+  if (!values.empty()) std::memcpy(motion.values.data(), values.data(), values.size());
+  in.require(motion.channel_count >= last_channel && motion.frame_count >= 0 &&
+             std::int64_t{motion.channel_count} * motion.frame_count == std::ssize(motion.values));
+}
+
+void get(ByteReader& in, Visibility& visibility) {
+  const std::size_t count = in.count(7);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto label = in.get<Label>();
+    TissueLook& look = visibility.looks[label];
+    look.visible = in.flag();
+    look.opacity = in.get<float>();
+  }
+  visibility.clip_box.enabled = in.flag();
+  visibility.clip_box.low = get_vector(in);
+  visibility.clip_box.high = get_vector(in);
+  visibility.clip_plane.enabled = in.flag();
+  visibility.clip_plane.point = get_vector(in);
+  visibility.clip_plane.normal = get_vector(in);
+}
+
+bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// Whether the weights' bricks are the volume's.
+bool fits(const SkinWeights& weights, const LabelVolume& volume) {
+  const TissueVoxels tissue(volume);
+  if (std::ssize(tissue.bricks()) != weights.chunk_count()) return false;
+  for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick)
+    if (tissue.bricks()[brick].count() != std::ssize(weights.chunk(brick))) return false;
+  return true;
+}
+
+class Reading {
+ public:
+  Reading(ChunkSource& source, const std::string& where, std::vector<std::string>& warnings, const ReadLimits& limits, Progress& progress)
+      : source_(source), where_(where), warnings_(warnings), limits_(limits), progress_(progress),
+        bytes_left_(limits.most_bytes > 0 ? limits.most_bytes : available_memory() / 10 * 9) {}
+
+  Document document(const ChunkHash& root) {
+    const Node node = this->node(root, "contents");
+    ByteReader in(node.bytes, [this] { throw damaged("contents"); });
+    if (in.get<std::uint32_t>() != kDocumentLayout)
+      throw Error("the document was written by a newer version of Limber", where_, "open it with that version");
+    Document document;
+    std::size_t next = 0;
+    const auto part = [&](auto& pointer) {
+      if (!in.flag()) return;
+      in.require(next < node.nodes.size());
+      read_or_leave_out(node.nodes[next++], pointer);
+    };
+    part(document.volume);
+    part(document.tissues);
+    part(document.volume_type);
+    part(document.armature);
+    part(document.weights);
+    part(document.pose);
+    part(document.motion);
+    part(document.visibility);
+    const auto results = in.get_below<std::uint32_t>(kMostResults);
+    in.require(node.nodes.size() - next == results);
+    for (; next < node.nodes.size(); ++next) {
+      std::shared_ptr<const Result> result;
+      read_or_leave_out(node.nodes[next], result);
+      if (result) document.results.push_back(std::move(result));
+    }
+    in.end();
+    leave_out_what_does_not_fit(document);
+    progress_.update("open", 1);
+    return document;
+  }
+
+ private:
+  Error damaged(const std::string& what) const {
+    return {"the " + what + " in the project cannot be read: it is damaged or incomplete", where_,
+            "open an earlier copy, or keep what is whole: limber project " + where_ + " recover -o OUT.limber"};
+  }
+
+  std::string chunk(const ChunkHash& hash, const std::string& what) {
+    const auto packed = source_.find(hash);
+    auto chunk = packed ? unpack(*packed, hash) : std::nullopt;
+    if (!chunk) throw damaged(what);
+    return std::move(*chunk);
+  }
+  Node node(const ChunkHash& hash, const std::string& what) {
+    auto node = to_node(chunk(hash, what));
+    if (!node) throw damaged(what);
+    return std::move(*node);
+  }
+
+  // take(i, bytes) for each leaf, in order.
+  template <class Take>
+  void for_leaves(const std::vector<ChunkHash>& leaves, std::size_t first, const std::string& what, const Take& take) {
+    const std::int64_t count = std::ssize(leaves) - static_cast<std::int64_t>(first);
+    for (std::int64_t begin = 0; begin < count; begin += kBatch) {
+      progress_.update("open", static_cast<double>(begin) / static_cast<double>(count));
+      const std::int64_t batch = std::min(kBatch, count - begin);
+      std::vector<std::string> bytes(batch);
+      std::vector<std::uint8_t> whole(batch);
+      for (std::int64_t i = 0; i < batch; ++i)
+        if (auto packed = source_.find(leaves[first + begin + i])) {
+          bytes[i] = std::move(*packed);
+          whole[i] = 1;
+        }
+      parallel_for(batch, 1, [&](std::int64_t from, std::int64_t end) {
+        for (std::int64_t i = from; i < end; ++i) {
+          auto chunk = whole[i] ? unpack(bytes[i], leaves[first + begin + i]) : std::nullopt;
+          whole[i] = chunk.has_value();
+          if (chunk) bytes[i] = std::move(*chunk);
+        }
+      });
+      for (std::int64_t i = 0; i < batch; ++i) {
+        if (!whole[i]) throw damaged(what);
+        take(begin + i, bytes[i]);
+      }
+    }
+  }
+
+  void take_memory(std::int64_t bytes, const std::string& what) {
+    if (bytes > bytes_left_)
+      throw Error("the " + what + " in the project needs " + std::to_string(bytes / 1'000'000) + " MB of memory, " +
+                      std::to_string(bytes_left_ / 1'000'000) + " MB are free",
+                  where_, "close other programs, or use a larger machine");
+    bytes_left_ -= bytes;
+  }
+
+  // Equal parts become one.
+  template <class T>
+  std::shared_ptr<const T> read(const ChunkHash& hash) {
+    const std::string what = PartKindOf<T>::kName;
+    const auto known = parts_.find(hash.bytes);
+    if (known != parts_.end()) {
+      if (known->second.kind != PartKindOf<T>::kKind) throw damaged(what);
+      return std::static_pointer_cast<const T>(known->second.part);
+    }
+    const Node node = this->node(hash, what);
+    ByteReader in(node.bytes, [&] { throw damaged(what); });
+    in.require(in.get<std::uint8_t>() == static_cast<std::uint8_t>(PartKindOf<T>::kKind));
+    auto part = std::make_shared<const T>(read_part(node, in, static_cast<const T*>(nullptr)));
+    parts_[hash.bytes] = {PartKindOf<T>::kKind, part};
+    return part;
+  }
+
+  template <class T>
+  void read_or_leave_out(const ChunkHash& hash, std::shared_ptr<const T>& part) {
+    if (!limits_.leave_out_damaged) {
+      part = read<T>(hash);
+      return;
+    }
+    try {
+      part = read<T>(hash);
+    } catch (const Error&) {
+      warnings_.push_back(std::string("the ") + PartKindOf<T>::kName + " is damaged and was left out");
+    }
+  }
+
+  template <class T>
+  T read_part(const Node& node, ByteReader& in, const T*) {
+    const std::string what = PartKindOf<T>::kName;
+    T part;
+    if (node.leaves.empty()) {
+      get(in, part);
+      in.end();
+      return part;
+    }
+    in.end();
+    std::string bytes;
+    for_leaves(node.leaves, 0, what, [&](std::int64_t, const std::string& leaf) {
+      take_memory(2 * std::ssize(leaf), what);
+      bytes += leaf;
+    });
+    ByteReader from_leaves(bytes, [&] { throw damaged(what); });
+    get(from_leaves, part);
+    from_leaves.end();
+    return part;
+  }
+
+  LabelVolume read_part(const Node& node, ByteReader& in, const LabelVolume*) {
+    LabelVolume volume;
+    Grid& grid = volume.grid;
+    for (int i = 0; i < 3; ++i) grid.size[i] = static_cast<int>(in.get_below<std::uint32_t>(kLongestAxis + 1));
+    grid.spacing = get_vector(in);
+    grid.origin = get_vector(in);
+    for (int i = 0; i < 3; ++i) grid.direction[i] = get_vector(in);
+    in.end();
+    in.require(is_finite(grid.spacing) && is_finite(grid.origin) && glm::all(glm::greaterThan(grid.spacing, glm::dvec3(0))));
+    for (int i = 0; i < 3; ++i) in.require(is_finite(grid.direction[i]));
+
+    const std::int64_t bytes = checked_voxel_bytes(grid, in);
+    in.require(std::ssize(node.leaves) == (bytes + kLeafBytes - 1) / kLeafBytes);
+    take_memory(bytes, "volume");
+    volume.voxels = sparse_zeros<Label>(grid.voxel_count());
+    char* to = reinterpret_cast<char*>(volume.voxels.data());
+    for_leaves(node.leaves, 0, "volume", [&](std::int64_t i, const std::string& leaf) {
+      in.require(std::ssize(leaf) == std::min(kLeafBytes, bytes - i * kLeafBytes));
+      std::memcpy(to + i * kLeafBytes, leaf.data(), leaf.size());
+    });
+    return volume;
+  }
+
+  static std::int64_t checked_voxel_bytes(const Grid& grid, const ByteReader& in) {
+    const std::int64_t slice = std::int64_t{grid.size.x} * grid.size.y;  // at most 2^40
+    in.require(slice == 0 || grid.size.z <= (std::int64_t{1} << 42) / slice);
+    return slice * grid.size.z * std::int64_t{sizeof(Label)};
+  }
+
+  SkinWeights read_part(const Node& node, ByteReader& in, const SkinWeights*) {
+    std::vector<std::string> bones = get_texts(in);
+    in.end();
+    in.require(!node.leaves.empty());
+    const std::string lengths_bytes = chunk(node.leaves[0], "weights");
+    in.require(lengths_bytes.size() % sizeof(std::uint16_t) == 0);
+    std::vector<std::uint16_t> lengths(lengths_bytes.size() / sizeof(std::uint16_t));
+    if (!lengths.empty()) std::memcpy(lengths.data(), lengths_bytes.data(), lengths_bytes.size());
+    const std::int64_t bricks = std::ssize(lengths);
+    in.require(std::ssize(node.leaves) - 1 == (bricks + kGroupBricks - 1) / kGroupBricks);
+
+    std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
+    for_leaves(node.leaves, 1, "weights", [&](std::int64_t group, const std::string& leaf) {
+      const auto first = lengths.begin() + group * kGroupBricks;
+      const std::vector<std::uint16_t> counts(first, first + std::min(kGroupBricks, bricks - group * kGroupBricks));
+      // Two weights with the same group share its bricks.
+      auto& known = groups_[node.leaves[group + 1].bytes];
+      const bool shared = std::equal(known.begin(), known.end(), counts.begin(), counts.end(),
+                                     [](const auto& brick, std::uint16_t count) { return brick->size() == count; });
+      if (!shared || known.empty()) known = read_group(leaf, counts, in);
+      for (const auto& brick : known)
+        for (const Influence& influence : *brick)
+          for (int k = 0; k < 4; ++k) in.require(influence.bone[k] < std::max<std::size_t>(1, bones.size()));
+      chunks.insert(chunks.end(), known.begin(), known.end());
+    });
+    return {std::move(bones), std::move(chunks)};
+  }
+
+  std::vector<std::shared_ptr<const SkinWeights::Chunk>> read_group(const std::string& leaf, const std::vector<std::uint16_t>& counts,
+                                                                    const ByteReader& in) {
+    std::size_t count = 0;
+    for (std::uint16_t one : counts) count += one;
+    in.require(leaf.size() == count * sizeof(Influence));
+    take_memory(std::ssize(leaf), "weights");
+    std::vector<std::uint16_t> planes(count * 8);
+    if (count > 0) std::memcpy(planes.data(), leaf.data(), leaf.size());
+
+    std::vector<std::shared_ptr<const SkinWeights::Chunk>> bricks;
+    std::size_t place = 0;
+    for (std::uint16_t length : counts) {
+      SkinWeights::Chunk brick(length);
+      for (Influence& influence : brick) {
+        int sum = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+          influence.bone[k] = planes[k * count + place];
+          influence.weight[k] = planes[(k + 4) * count + place];
+          sum += influence.weight[k];
+        }
+        in.require(sum == kFullWeight);
+        ++place;
+      }
+      bricks.push_back(std::make_shared<const SkinWeights::Chunk>(std::move(brick)));
+    }
+    return bricks;
+  }
+
+  Result read_part(const Node& node, ByteReader& in, const Result*) {
+    Result result;
+    std::size_t next = 0;
+    const auto part = [&]<class T>(std::shared_ptr<const T>& pointer) {
+      if (!in.flag()) return;
+      in.require(next < node.nodes.size());
+      pointer = read<T>(node.nodes[next++]);
+    };
+    if (!node.leaves.empty()) return with_text_from_leaves(node, in);
+    part(result.volume);
+    part(result.from_volume);
+    part(result.from_tissues);
+    part(result.from_armature);
+    part(result.from_weights);
+    part(result.from_pose);
+    in.require(next == node.nodes.size());
+    result.name = in.text();
+    result.method = in.text();
+    result.report = in.text();
+    in.end();
+    return result;
+  }
+
+  // A long report: the same bytes, from leaves.
+  Result with_text_from_leaves(const Node& node, ByteReader& in) {
+    in.end();
+    std::string bytes;
+    for_leaves(node.leaves, 0, "result", [&](std::int64_t, const std::string& leaf) {
+      take_memory(2 * std::ssize(leaf), "result");
+      bytes += leaf;
+    });
+    ByteReader from_leaves(bytes, [this] { throw damaged("result"); });
+    const Node whole{node.nodes, {}, {}};
+    return read_part(whole, from_leaves, static_cast<const Result*>(nullptr));
+  }
+
+  void leave_out_what_does_not_fit(Document& document) {
+    if (document.weights && (!document.volume || !fits(*document.weights, *document.volume))) {
+      warnings_.push_back("the weights do not belong to the volume and were left out");
+      document.weights = nullptr;
+    }
+    if (document.pose && (!document.armature || document.pose->rotation.size() != document.armature->bones.size())) {
+      warnings_.push_back("the pose does not belong to the rig and was left out");
+      document.pose = nullptr;
+    }
+  }
+
+  struct Known {
+    PartKind kind;
+    std::shared_ptr<const void> part;
+  };
+  ChunkSource& source_;
+  const std::string& where_;
+  std::vector<std::string>& warnings_;
+  const ReadLimits& limits_;
+  Progress& progress_;
+  std::int64_t bytes_left_;
+  std::map<std::array<std::uint8_t, 32>, Known> parts_;
+  std::map<std::array<std::uint8_t, 32>, std::vector<std::shared_ptr<const SkinWeights::Chunk>>> groups_;
+};
+
+}  // namespace
+
+Document read_document(const ChunkHash& root, ChunkSource& source, const std::string& where, std::vector<std::string>& warnings,
+                       const ReadLimits& limits, Progress& progress) {
+  return Reading(source, where, warnings, limits, progress).document(root);
+}
+
+}  // namespace limber

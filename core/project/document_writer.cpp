@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+
+#include "core/base/parallel.h"
+#include "core/project/bytes.h"
+#include "core/project/document_codec.h"
+#include "core/project/document_layout.h"
+
+namespace limber {
+
+namespace {
+
+void put(ByteWriter& out, const glm::dvec3& v) {
+  for (int i = 0; i < 3; ++i) out.put(v[i]);
+}
+void put(ByteWriter& out, const glm::dquat& q) {
+  for (double value : {q.w, q.x, q.y, q.z}) out.put(value);
+}
+void put(ByteWriter& out, const std::vector<std::string>& texts) {
+  out.count(texts.size());
+  for (const std::string& text : texts) out.text(text);
+}
+
+void put(ByteWriter& out, const TissueTable& table) {
+  out.text(table.source);
+  out.count(table.tissues.size());
+  for (const Tissue& tissue : table.tissues) {
+    out.put(tissue.label);
+    out.put(tissue.file_value);
+    out.text(tissue.name);
+    for (int i = 0; i < 3; ++i) out.put(tissue.colour[i]);
+    out.put(static_cast<std::uint8_t>(tissue.kind));
+    for (double value : {tissue.density, tissue.young_modulus, tissue.poisson_ratio}) out.put(value);
+    out.put(static_cast<std::int32_t>(tissue.priority));
+  }
+}
+
+void put(ByteWriter& out, const FileType& type) {
+  out.text(type.format);
+  out.text(type.voxel_type);
+  out.flag(type.compressed);
+}
+
+void put(ByteWriter& out, const Armature& armature) {
+  out.count(armature.bones.size());
+  for (const Bone& bone : armature.bones) {
+    out.text(bone.name);
+    out.put(static_cast<std::int32_t>(bone.parent));
+    put(out, bone.head);
+    put(out, bone.tail);
+    out.put(bone.roll);
+    const JointLimits& limits = bone.limits;
+    out.put(static_cast<std::uint8_t>(limits.type));
+    put(out, limits.axis);
+    for (double value : {limits.minimum, limits.maximum, limits.cone, limits.twist_minimum, limits.twist_maximum}) out.put(value);
+  }
+}
+
+void put(ByteWriter& out, const Pose& pose) {
+  out.count(pose.rotation.size());
+  for (const glm::dquat& rotation : pose.rotation) put(out, rotation);
+  put(out, pose.root_translation);
+}
+
+void put(ByteWriter& out, const Motion& motion) {
+  out.count(motion.joints.size());
+  for (const BvhJoint& joint : motion.joints) {
+    out.text(joint.name);
+    out.put(static_cast<std::int32_t>(joint.parent));
+    put(out, joint.offset);
+    out.count(joint.channels.size());
+    for (BvhChannel channel : joint.channels) out.put(static_cast<std::uint8_t>(channel));
+    out.put(static_cast<std::int32_t>(joint.first_channel));
+    out.flag(joint.end_site.has_value());
+    put(out, joint.end_site.value_or(glm::dvec3(0)));
+  }
+  out.put(static_cast<std::int32_t>(motion.channel_count));
+  out.put(static_cast<std::int32_t>(motion.frame_count));
+  out.put(motion.frame_time);
+  put(out, motion.warnings);
+  out.count(motion.values.size());
+  out.raw(motion.values.data(), motion.values.size() * sizeof(float));
+}
+
+void put(ByteWriter& out, const Visibility& visibility) {
+  out.count(visibility.looks.size());
+  for (const auto& [label, look] : visibility.looks) {
+    out.put(label);
+    out.flag(look.visible);
+    out.put(look.opacity);
+  }
+  out.flag(visibility.clip_box.enabled);
+  put(out, visibility.clip_box.low);
+  put(out, visibility.clip_box.high);
+  out.flag(visibility.clip_plane.enabled);
+  put(out, visibility.clip_plane.point);
+  put(out, visibility.clip_plane.normal);
+}
+
+// The influences of a group of bricks, first bones then weights, each in a plane of its own: it packs better.
+std::string group_bytes(const SkinWeights& weights, std::int64_t group) {
+  const std::int64_t first = group * kGroupBricks, end = std::min(weights.chunk_count(), first + kGroupBricks);
+  std::vector<std::uint16_t> planes;
+  std::int64_t count = 0;
+  for (std::int64_t brick = first; brick < end; ++brick) count += std::ssize(weights.chunk(brick));
+  planes.resize(static_cast<std::size_t>(count) * 8);
+  std::int64_t place = 0;
+  for (std::int64_t brick = first; brick < end; ++brick)
+    for (const Influence& influence : weights.chunk(brick)) {
+      for (int k = 0; k < 4; ++k) {
+        planes[k * count + place] = influence.bone[k];
+        planes[(k + 4) * count + place] = influence.weight[k];
+      }
+      ++place;
+    }
+  return {reinterpret_cast<const char*>(planes.data()), planes.size() * sizeof(std::uint16_t)};
+}
+
+}  // namespace
+
+// One document on its way into one sink.
+class DocumentWriter::Writing {
+ public:
+  Writing(DocumentWriter& memory, ChunkSink& sink, Packing packing, Progress& progress)
+      : memory_(memory), sink_(sink), packing_(packing), progress_(progress) {}
+
+  ChunkHash document(const Document& document) {
+    Node root;
+    ByteWriter out;
+    out.put(kDocumentLayout);
+    const auto part = [&](const auto& pointer) {
+      out.flag(pointer != nullptr);
+      if (pointer) root.nodes.push_back(write(pointer));
+    };
+    progress_.update("save", 0);
+    part(document.volume);
+    progress_.update("save", 0.5);
+    part(document.tissues);
+    part(document.volume_type);
+    part(document.armature);
+    part(document.weights);
+    progress_.update("save", 0.75);
+    part(document.pose);
+    part(document.motion);
+    part(document.visibility);
+    out.count(document.results.size());
+    for (const auto& result : document.results) root.nodes.push_back(write(result));
+    root.bytes = out.take();
+    const ChunkHash hash = put_chunk(to_chunk(root));
+    progress_.update("save", 1);
+    return hash;
+  }
+
+ private:
+  // The node of a part, written unless the sink has it.
+  template <class T>
+  ChunkHash write(const std::shared_ptr<const T>& part) {
+    const auto known = memory_.parts_.find(part.get());
+    if (known != memory_.parts_.end() && !known->second.part.expired() && sink_.has(known->second.hash)) return known->second.hash;
+    Node node;
+    ByteWriter out;
+    out.put(static_cast<std::uint8_t>(PartKindOf<T>::kKind));
+    fill(node, out, *part);
+    std::string bytes = out.take();
+    if (bytes.size() > kInlineBytes && node.leaves.empty()) {  // a long motion, a long report: its bytes go into leaves
+      node.bytes.assign(1, bytes[0]);
+      append_leaves(node, static_cast<std::int64_t>(bytes.size() - 1), [&](std::int64_t begin, std::int64_t end) {
+        return bytes.substr(1 + static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+      });
+    } else {
+      node.bytes = std::move(bytes);
+    }
+    const ChunkHash hash = put_chunk(to_chunk(node));
+    memory_.parts_[part.get()] = {part, hash};
+    return hash;
+  }
+
+  template <class T>
+  void fill(Node&, ByteWriter& out, const T& part) {
+    put(out, part);
+  }
+
+  void fill(Node& node, ByteWriter& out, const LabelVolume& volume) {
+    const Grid& grid = volume.grid;
+    for (int i = 0; i < 3; ++i) out.put(static_cast<std::int32_t>(grid.size[i]));
+    put(out, grid.spacing);
+    put(out, grid.origin);
+    for (int i = 0; i < 3; ++i) put(out, grid.direction[i]);
+    const char* voxels = reinterpret_cast<const char*>(volume.voxels.data());
+    append_leaves(node, std::ssize(volume.voxels) * std::int64_t{sizeof(Label)},
+                  [&](std::int64_t begin, std::int64_t end) { return std::string(voxels + begin, voxels + end); });
+  }
+
+  void fill(Node& node, ByteWriter& out, const SkinWeights& weights) {
+    put(out, weights.bones());
+    const std::int64_t bricks = weights.chunk_count(), groups = (bricks + kGroupBricks - 1) / kGroupBricks;
+    std::vector<std::uint16_t> lengths(bricks);
+    for (std::int64_t brick = 0; brick < bricks; ++brick) lengths[brick] = static_cast<std::uint16_t>(weights.chunk(brick).size());
+    // As a leaf: they stay while weights change.
+    node.leaves.push_back(put_chunk({reinterpret_cast<const char*>(lengths.data()), lengths.size() * sizeof(std::uint16_t)}));
+
+    LastWeights& last = memory_.last_weights_;
+    const bool comparable = std::ssize(last.bricks) == bricks;
+    std::vector<ChunkHash> hashes(groups);
+    std::vector<std::int64_t> changed;
+    for (std::int64_t group = 0; group < groups; ++group) {
+      if (comparable && same_bricks(weights, group) && sink_.has(last.groups[group]))
+        hashes[group] = last.groups[group];
+      else
+        changed.push_back(group);
+    }
+    const auto written = put_all(std::ssize(changed), [&](std::int64_t i) { return group_bytes(weights, changed[i]); });
+    for (std::size_t i = 0; i < changed.size(); ++i) hashes[changed[i]] = written[i];
+    node.leaves.insert(node.leaves.end(), hashes.begin(), hashes.end());
+
+    last.bricks.resize(bricks);
+    for (std::int64_t brick = 0; brick < bricks; ++brick) last.bricks[brick] = weights.shared_chunk(brick);
+    last.groups = std::move(hashes);
+  }
+
+  bool same_bricks(const SkinWeights& weights, std::int64_t group) const {
+    const std::int64_t first = group * kGroupBricks, end = std::min(weights.chunk_count(), first + kGroupBricks);
+    for (std::int64_t brick = first; brick < end; ++brick)
+      if (memory_.last_weights_.bricks[brick].lock() != weights.shared_chunk(brick)) return false;
+    return true;
+  }
+
+  void fill(Node& node, ByteWriter& out, const Result& result) {
+    const auto part = [&](const auto& pointer) {
+      out.flag(pointer != nullptr);
+      if (pointer) node.nodes.push_back(write(pointer));
+    };
+    part(result.volume);
+    part(result.from_volume);
+    part(result.from_tissues);
+    part(result.from_armature);
+    part(result.from_weights);
+    part(result.from_pose);
+    out.text(result.name);
+    out.text(result.method);
+    out.text(result.report);
+  }
+
+  template <class Bytes>
+  void append_leaves(Node& node, std::int64_t size, const Bytes& bytes) {
+    const auto written = put_all((size + kLeafBytes - 1) / kLeafBytes, [&](std::int64_t leaf) {
+      return bytes(leaf * kLeafBytes, std::min(size, (leaf + 1) * kLeafBytes));
+    });
+    node.leaves.insert(node.leaves.end(), written.begin(), written.end());
+  }
+
+  // Hashes and packs in parallel, puts in order.
+  template <class Chunk>
+  std::vector<ChunkHash> put_all(std::int64_t count, const Chunk& chunk) {
+    constexpr std::int64_t kBatch = 32;  // megabytes at most in memory
+    std::vector<ChunkHash> hashes(count);
+    for (std::int64_t first = 0; first < count; first += kBatch) {
+      progress_.update("save", static_cast<double>(first) / static_cast<double>(count));
+      const std::int64_t batch = std::min(kBatch, count - first);
+      std::vector<std::string> bytes(batch);
+      std::vector<std::uint8_t> missing(batch);
+      parallel_for(batch, 1, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) {
+          bytes[i] = chunk(first + i);
+          hashes[first + i] = hash_of(bytes[i]);
+        }
+      });
+      for (std::int64_t i = 0; i < batch; ++i) missing[i] = !sink_.has(hashes[first + i]);
+      parallel_for(batch, 1, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i)
+          if (missing[i]) bytes[i] = pack(bytes[i], packing_);
+      });
+      for (std::int64_t i = 0; i < batch; ++i)
+        if (missing[i] && !sink_.has(hashes[first + i])) sink_.put(hashes[first + i], bytes[i]);  // equal ones came once
+    }
+    return hashes;
+  }
+
+  ChunkHash put_chunk(const std::string& chunk) {
+    const ChunkHash hash = hash_of(chunk);
+    if (!sink_.has(hash)) sink_.put(hash, pack(chunk, packing_));
+    return hash;
+  }
+
+  DocumentWriter& memory_;
+  ChunkSink& sink_;
+  const Packing packing_;
+  Progress& progress_;
+};
+
+ChunkHash DocumentWriter::write(const Document& document, ChunkSink& sink, Packing packing, Progress& progress) {
+  std::erase_if(parts_, [](const auto& entry) { return entry.second.part.expired(); });
+  return Writing(*this, sink, packing, progress).document(document);
+}
+
+}  // namespace limber
