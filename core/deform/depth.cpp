@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/deform/depth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -53,6 +54,14 @@ class LowerEnvelope {
   std::vector<double> height_, from_;
 };
 
+// The same where nothing is known yet but the run itself: the nearer end is nearest.
+void distances_from_ends(float* f, int count, double squared_spacing) {
+  for (int i = 0; i < count; ++i) {
+    const double steps = std::min(i + 1, count - i);
+    f[i] = static_cast<float>(squared_spacing * steps * steps);
+  }
+}
+
 }  // namespace
 
 TissueDepth::TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing)
@@ -77,16 +86,16 @@ void TissueDepth::pass(int axis, double spacing) {
       line.resize(column.size() * kBrick);
       for (int l = 0; l < kBrick * kBrick && !column.empty(); ++l) {
         const int place = (l % kBrick) * strides[u] + (l / kBrick) * strides[v];
-        for (size_t i = 0; i < line.size(); ++i)
-          line[i] = depth_[std::int64_t{column[i / kBrick]} * kBrickVoxels + place + int(i % kBrick) * strides[axis]];
+        copy_line(column, place, strides[axis], line, Gather);
         for (size_t i = 0; i < line.size();) {
           size_t stop = i;
           while (stop < line.size() && line[stop] > 0) ++stop;
-          if (stop > i) envelope.apply(&line[i], static_cast<int>(stop - i), spacing * spacing);
+          const int run = static_cast<int>(stop - i);
+          if (run > 0 && axis == 0) distances_from_ends(&line[i], run, spacing * spacing);
+          if (run > 0 && axis != 0) envelope.apply(&line[i], run, spacing * spacing);
           i = stop + 1;
         }
-        for (size_t i = 0; i < line.size(); ++i)
-          depth_[std::int64_t{column[i / kBrick]} * kBrickVoxels + place + int(i % kBrick) * strides[axis]] = line[i];
+        copy_line(column, place, strides[axis], line, Scatter);
       }
       column.clear();
     };
@@ -104,6 +113,15 @@ void TissueDepth::pass(int axis, double spacing) {
       lines();
     }
   });
+}
+
+// Line `place` of a column of bricks, out of the bricks or back into them.
+void TissueDepth::copy_line(const std::vector<int>& column, int place, int stride, std::vector<float>& line, Direction direction) {
+  float* at = line.data();
+  for (const int brick : column) {
+    float* in_brick = &depth_[std::int64_t{brick} * kBrickVoxels + place];
+    for (int i = 0; i < kBrick; ++i, ++at, in_brick += stride) (direction == Gather ? *at : *in_brick) = direction == Gather ? *in_brick : *at;
+  }
 }
 
 float TissueDepth::at_voxel(const glm::ivec3& voxel) const {

@@ -22,7 +22,9 @@ class TissueDepth {
   double operator()(const glm::dvec3& rest) const;   // mm, trilinear; voxel coordinates
 
  private:
+  enum Direction { Gather, Scatter };
   void pass(int axis, double spacing);
+  void copy_line(const std::vector<int>& column, int place, int stride, std::vector<float>& line, Direction direction);
 
   const TissueVoxels* tissue_;
   std::vector<float> depth_;  // 512 per tissue brick; squared while the passes run

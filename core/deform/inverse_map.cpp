@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/sparse_zeros.h"
+#include "core/base/pages.h"
 
 namespace limber {
 
@@ -87,6 +87,13 @@ void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::ve
   for (std::int64_t brick : bricks) {
     const VoxelRange reach = intersect(voxels_of(lattice.bounds(brick)), map.range);
     if (reach.empty()) continue;
+    if (lattice.is_still(brick)) {
+      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+        const glm::ivec3 at = voxel - lattice.output().base;
+        if (reach.contains(at)) claims.claim(static_cast<std::uint32_t>(grid.index(voxel)), voxel, {at, glm::dvec3(voxel), 1});
+      });
+      continue;
+    }
     const PosedLattice::Corners& corners = lattice.corners(brick, room);
     const glm::ivec3 first = tissue.bricks()[brick].corner;
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {

@@ -2,9 +2,11 @@
 #include "core/deform/lattice.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/base/pages.h"
 
 namespace limber {
 
@@ -12,6 +14,7 @@ namespace {
 
 constexpr double kFurthest = 32000;                    // output voxels from the base; fixed point holds 32 768
 constexpr std::int64_t kKeptBytes = std::int64_t{48} << 20;  // all corners of a limb, not those of a body
+constexpr int kSeveral = -1;
 constexpr int kHalo = TissueVoxels::kBrick + 2;        // a brick and one voxel around it
 constexpr int kHaloCount = kHalo * kHalo * kHalo;
 
@@ -95,6 +98,42 @@ class CornerWeights {
   std::vector<BoneWeight> influences_;
 };
 
+// The bone that every one of them follows wholly, or kSeveral.
+int only_bone(const SkinWeights::Chunk& chunk) {
+  const Influence& first = chunk.front();
+  const bool same = first.weight[0] == kFullWeight && std::all_of(chunk.begin(), chunk.end(), [&](const Influence& i) {
+    return i.weight[0] == kFullWeight && i.bone[0] == first.bone[0];
+  });
+  return same ? first.bone[0] : kSeveral;
+}
+
+// body(brick) for the brick itself and those of its 26 neighbours that have tissue.
+template <class Body>
+void for_each_around(const TissueVoxels& tissue, std::int64_t brick, const Body& body) {
+  const glm::ivec3 here = tissue.bricks()[brick].corner / TissueVoxels::kBrick;
+  const glm::ivec3 low = glm::max(here - 1, glm::ivec3(0)), high = glm::min(here + 1, tissue.brick_grid() - 1);
+  for (int z = low.z; z <= high.z; ++z)
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x)
+        if (const int near = tissue.brick_at(glm::ivec3(x, y, z) * TissueVoxels::kBrick); near >= 0) body(near);
+}
+
+// body(i, j, k) for every corner of the brick's tissue voxels, in order of place.
+template <class Body>
+void for_each_corner(const TissueVoxels::Brick& brick, const Body& body) {
+  std::array<bool, PosedLattice::kSide * PosedLattice::kSide * PosedLattice::kSide> used{};
+  for (int z = 0; z < TissueVoxels::kBrick; ++z)
+    for (std::uint64_t word = brick.mask[z]; word; word &= word - 1) {
+      const int bit = std::countr_zero(word), x = bit & 7, y = bit >> 3;
+      for (int c = 0; c < 8; ++c) used[PosedLattice::place(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))] = true;
+    }
+  int place = 0;
+  for (int k = 0; k < PosedLattice::kSide; ++k)
+    for (int j = 0; j < PosedLattice::kSide; ++j)
+      for (int i = 0; i < PosedLattice::kSide; ++i)
+        if (used[place++]) body(i, j, k);
+}
+
 }  // namespace
 
 PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
@@ -105,14 +144,31 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
       output_{ratio} {
   const std::int64_t count = std::ssize(tissue.bricks());
   bounds_.resize(count);
-  if (count * std::int64_t{sizeof(Corners)} <= kKeptBytes) kept_.resize(count);
+  still_.resize(count);
+  only_bone_.resize(count);
+  for (const RigidTransform& posed : posed_from_rest) {
+    const glm::dmat3 turn = voxel_from_world_.linear * (glm::mat3_cast(posed.rotation) - glm::dmat3(1));
+    shift_.push_back({turn * world_from_voxel_.linear, turn * world_from_voxel_.offset + voxel_from_world_.linear * posed.translation});
+  }
+  if (count * std::int64_t{sizeof(Corners)} <= kKeptBytes) {
+    kept_.reserve(count);
+    want_large_pages(kept_.data(), count * std::int64_t{sizeof(Corners)});
+    kept_.resize(count);
+  }
   if (count == 0) return;
   choose_base();
   progress.update("pose", 0);
+  parallel_for(count, 64, [&](std::int64_t begin, std::int64_t end) {
+    for (auto brick = begin; brick < end; ++brick) only_bone_[brick] = only_bone(weights.chunk(brick));
+  });
   parallel_for(count, 16, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) throw Cancelled();
     Corners room;
-    for (auto brick = begin; brick < end; ++brick) bounds_[brick] = compute(brick, kept_.empty() ? room : kept_[brick]);
+    for (auto brick = begin; brick < end; ++brick) {
+      Corners& corners = kept_.empty() ? room : kept_[brick];
+      bounds_[brick] = compute(brick, corners);
+      still_[brick] = lies_still(brick, corners);
+    }
   });
   progress.update("pose", 1);
 }
@@ -143,31 +199,65 @@ void PosedLattice::choose_base() {
 }
 
 FixedPoint PosedLattice::posed(const glm::ivec3& corner, std::span<const BoneWeight> influences) const {
-  const glm::dvec3 rest = glm::dvec3(corner) - 0.5, world = world_from_voxel_ * rest;
-  const glm::dvec3 moved = blend_point(blend_, bones_, influences, world) - world;
-  const glm::dvec3 at = output_.from_rest(rest + voxel_from_world_.linear * moved);
+  const glm::dvec3 rest = glm::dvec3(corner) - 0.5;
+  const int bone = influences.front().bone;
+  if (influences.size() == 1) return fixed(rest, shift_[bone] * rest, bone);
+  const glm::dvec3 world = world_from_voxel_ * rest;
+  return fixed(rest, voxel_from_world_.linear * (blend_point(blend_, bones_, influences, world) - world), bone);
+}
+
+//   moved  posed - rest, in voxel coordinates    bone  for the message
+FixedPoint PosedLattice::fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const {
+  const glm::dvec3 at = output_.from_rest(rest + moved);
   for (int axis = 0; axis < 3; ++axis)
     if (!(std::abs(at[axis]) < kFurthest))
-      throw Error("the pose tears the tissue too far apart", "bone " + weights_->bones()[influences.front().bone],
+      throw Error("the pose tears the tissue too far apart", "bone " + weights_->bones()[bone],
                   "check the pose and the rig, or use a coarser spacing");
-  return FixedPoint(glm::floor(at * double(kFixedOne) + 0.5));
+  // One instruction each; std::floor would be a call.
+  return {std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne)};
+}
+
+std::optional<int> PosedLattice::only_bone_around(std::int64_t brick) const {
+  const int bone = only_bone_[brick];
+  bool same = bone != kSeveral;
+  if (same) for_each_around(*tissue_, brick, [&](int near) { same &= only_bone_[near] == bone; });
+  return same ? std::optional(bone) : std::nullopt;
 }
 
 PosedLattice::FixedBox PosedLattice::compute(std::int64_t brick, Corners& corners) const {
+  if (const auto bone = only_bone_around(brick)) return compute_rigid(brick, *bone, corners);
   CornerWeights weights(*tissue_, *weights_, brick);
   const glm::ivec3 first = tissue_->bricks()[brick].corner;
   FixedBox box{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)};
-  for (int k = 0; k < kSide; ++k)
-    for (int j = 0; j < kSide; ++j)
-      for (int i = 0; i < kSide; ++i) {
-        const auto influences = weights.at(i, j, k);
-        FixedPoint& corner = corners[place(i, j, k)];
-        corner = FixedPoint(0);
-        if (influences.empty()) continue;
-        corner = posed(first + glm::ivec3(i, j, k), influences);
-        box = {glm::min(box.low, corner), glm::max(box.high, corner)};
-      }
+  for_each_corner(tissue_->bricks()[brick], [&](int i, int j, int k) {
+    const FixedPoint corner = posed(first + glm::ivec3(i, j, k), weights.at(i, j, k));
+    corners[place(i, j, k)] = corner;
+    box = {glm::min(box.low, corner), glm::max(box.high, corner)};
+  });
   return box;
+}
+
+// The same where all tissue around follows one bone.
+PosedLattice::FixedBox PosedLattice::compute_rigid(std::int64_t brick, int bone, Corners& corners) const {
+  const glm::ivec3 first = tissue_->bricks()[brick].corner;
+  FixedBox box{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)};
+  for_each_corner(tissue_->bricks()[brick], [&](int i, int j, int k) {
+    const glm::dvec3 rest = glm::dvec3(first + glm::ivec3(i, j, k)) - 0.5;
+    const FixedPoint corner = fixed(rest, shift_[bone] * rest, bone);
+    corners[place(i, j, k)] = corner;
+    box = {glm::min(box.low, corner), glm::max(box.high, corner)};
+  });
+  return box;
+}
+
+bool PosedLattice::lies_still(std::int64_t brick, const Corners& corners) const {
+  if (output_.ratio != glm::dvec3(1)) return false;
+  const FixedPoint first = (tissue_->bricks()[brick].corner - output_.base) * kFixedOne - kFixedOne / 2;
+  bool still = true;
+  for_each_corner(tissue_->bricks()[brick], [&](int i, int j, int k) {
+    still = still && corners[place(i, j, k)] == first + glm::ivec3(i, j, k) * kFixedOne;
+  });
+  return still;
 }
 
 }  // namespace limber

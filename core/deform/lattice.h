@@ -12,9 +12,13 @@
 // Corners are computed brick by brick, and kept only while all of them are small: a whole body's would be 150 MB. The same
 // corner comes out the same, bit for bit, from every brick that has it: weights are added as whole numbers, bones in
 // rising order.
+//
+// Much of a posed limb follows one bone wholly. Such corners take that bone's motion in voxel coordinates without
+// blending, and where the bone does not move at all they stay what they are: whole halves, bit for bit.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +37,9 @@ struct VoxelRange {
   glm::ivec3 low{0}, high{-1};
 
   bool empty() const { return high.x < low.x || high.y < low.y || high.z < low.z; }
+  bool contains(const glm::ivec3& v) const {
+    return v.x >= low.x && v.y >= low.y && v.z >= low.z && v.x <= high.x && v.y <= high.y && v.z <= high.z;
+  }
 };
 inline VoxelRange intersect(const VoxelRange& a, const VoxelRange& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
 
@@ -67,12 +74,18 @@ class PosedLattice {
   const LabelVolume& volume() const { return *volume_; }
   const TissueVoxels& tissue() const { return *tissue_; }
   const FixedBox& bounds(std::int64_t brick) const { return bounds_[brick]; }  // of the brick's posed corners
+  // Whether every cell of the brick lies where it lay at rest, and output voxels are the volume's own.
+  bool is_still(std::int64_t brick) const { return still_[brick]; }
   // The brick's corners; computed into `room` where they are not kept.
   const Corners& corners(std::int64_t brick, Corners& room) const;
 
  private:
   FixedPoint posed(const glm::ivec3& corner, std::span<const BoneWeight> influences) const;
+  FixedPoint fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const;
   FixedBox compute(std::int64_t brick, Corners& corners) const;
+  FixedBox compute_rigid(std::int64_t brick, int bone, Corners& corners) const;
+  std::optional<int> only_bone_around(std::int64_t brick) const;
+  bool lies_still(std::int64_t brick, const Corners& corners) const;
   void choose_base();
 
   const LabelVolume* volume_;
@@ -80,10 +93,13 @@ class PosedLattice {
   const SkinWeights* weights_;
   AffineTransform world_from_voxel_, voxel_from_world_;
   std::vector<SkinTransform> bones_;
+  std::vector<AffineTransform> shift_;  // per bone: posed - rest, both in voxel coordinates, of the rest point
   Blend blend_;
   OutputLattice output_;
   std::vector<FixedBox> bounds_;
-  std::vector<Corners> kept_;  // by brick, or none
+  std::vector<std::uint8_t> still_;  // by brick
+  std::vector<int> only_bone_;       // by brick: the bone that all its tissue follows wholly, or kSeveral
+  std::vector<Corners> kept_;        // by brick, or none
 };
 
 }  // namespace limber

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/base/parallel.h"
-#include "core/base/sparse_zeros.h"
+#include "core/base/pages.h"
 #include "core/deform/inverse_map.h"
 #include "core/resample/mend.h"
 #include "core/resample/output_grid.h"
@@ -226,18 +226,22 @@ class Resampling {
     std::int64_t i = 0;
     glm::ivec3 v;
     for (v.z = map.range.low.z; v.z <= map.range.high.z; ++v.z)
-      for (v.y = map.range.low.y; v.y <= map.range.high.y; ++v.y)
+      for (v.y = map.range.low.y; v.y <= map.range.high.y; ++v.y) {
+        const std::int64_t row = output_.grid.index(glm::ivec3(0, v.y, v.z) - output_.range.low);
         for (v.x = map.range.low.x; v.x <= map.range.high.x; ++v.x, ++i) {
-          const std::int64_t at = output_.grid.index(v - output_.range.low);
           const bool covered = map.cell[i] != InverseMap::kNoCell || map.bone[i] != InverseMap::kNoBone;
-          if (settings_.grey) posed_.grey.voxels[at] = covered ? moved_grey(map.rest[i]) : still_grey(v);
-          if (!covered) continue;
-          const Label label = label_of(map, i);
-          posed_.volume.voxels[at] = label;
-          if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
-          write_fields(map, i, v, at);
-          count(map, i, v, label, counts);
+          if (settings_.grey) posed_.grey.voxels[row + v.x] = covered ? moved_grey(map.rest[i]) : still_grey(v);
+          if (covered) write_voxel(map, i, v, row + v.x, counts);
         }
+      }
+  }
+
+  void write_voxel(const InverseMap& map, std::int64_t i, const glm::ivec3& v, std::int64_t at, TileCounts& counts) {
+    const Label label = label_of(map, i);
+    posed_.volume.voxels[at] = label;
+    if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
+    write_fields(map, i, v, at);
+    count(map, i, v, label, counts);
   }
 
   Label label_of(const InverseMap& map, std::int64_t i) const {

@@ -100,7 +100,7 @@ Label LabelSampler::tissue(const glm::dvec3& point) const {
   Neighbours around;
   if (!neighbours(point, around)) return 0;
   const Label nearest = around.label[around.nearest];
-  if (nearest == 0 || around.uniform()) return nearest;
+  if (nearest == 0 || around.fraction == glm::dvec3(0) || around.uniform()) return nearest;
   return around.largest_membership([](Label label) { return label != 0; });
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/memory.h"
+#include "core/base/pages.h"
 #include "core/volume/dicom.h"
 #include "core/volume/header_text.h"
 #include "core/volume/label_decoder.h"
@@ -92,6 +93,7 @@ VolumeFile read_volume(const Path& path, Progress& progress) {
   LabelDecoder decoder;
   auto& voxels = file.volume.voxels;
   voxels.reserve(static_cast<std::size_t>(header.grid.voxel_count()));
+  want_large_pages(voxels.data(), header.grid.voxel_count() * std::int64_t{sizeof(Label)});
   for_chunks(opened, progress, [&](const void* chunk, std::size_t count, std::int64_t first) {
     voxels.resize(static_cast<std::size_t>(first) + count);
     const auto problem = decoder.decode(chunk, count, header.voxel_type, header.slope, header.intercept, &voxels[static_cast<std::size_t>(first)]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/base/sparse_zeros.h"
+#include "core/base/pages.h"
 
 #include <algorithm>
 
