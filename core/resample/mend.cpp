@@ -2,8 +2,6 @@
 #include "core/resample/mend.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -12,7 +10,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "core/volume/components.h"
+#include "core/resample/part_bones.h"
 
 namespace limber {
 
@@ -20,27 +18,8 @@ namespace {
 
 constexpr int kLongestBridge = 4;  // voxels: a longer one would invent anatomy
 constexpr int kAttempts = 32;      // bridges tried for one part, each around the voxels that earlier ones may not take
+constexpr int kSmallestKept = kSmallestPart / 2;  // voxels: a rigid part that came out smaller is not made up again
 constexpr int kSamples = 4;        // voxels of a part that are asked where they come from
-constexpr int kReach = 8;          // voxels around a rest point within which its tissue is looked for
-
-const std::array<glm::ivec3, 26>& neighbours() {
-  static const std::array<glm::ivec3, 26> all = [] {
-    std::array<glm::ivec3, 26> steps;
-    int count = 0;
-    for (int i = 0; i < 27; ++i)
-      if (i != 13) steps[count++] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
-    return steps;
-  }();
-  return all;
-}
-
-// The component of a tissue voxel.
-int component_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v) {
-  const std::int64_t row = v.y + std::int64_t{volume.grid.size.y} * v.z;
-  const auto begin = components.runs.begin() + components.first_run[row], end = components.runs.begin() + components.first_run[row + 1];
-  const auto run = std::partition_point(begin, end, [&](const Components::Run& r) { return r.end <= v.x; });
-  return run->component;
-}
 
 struct Part {
   int component;
@@ -59,64 +38,22 @@ std::map<Label, std::vector<Part>> large_parts(const Components& components) {
   return parts;
 }
 
-// The 3^3 voxels around a voxel as bits, x fastest; bit 13 is the voxel itself.
-constexpr unsigned kAll = (1u << 27) - 1, kCentre = 1u << 13;
-
-// Of every place among the 3^3, the places beside it.
-const std::array<unsigned, 27>& beside() {
-  static const std::array<unsigned, 27> all = [] {
-    std::array<unsigned, 27> places{};
-    for (int a = 0; a < 27; ++a)
-      for (int b = 0; b < 27; ++b)
-        if (std::abs(a % 3 - b % 3) <= 1 && std::abs(a / 3 % 3 - b / 3 % 3) <= 1 && std::abs(a / 9 - b / 9) <= 1) places[a] |= 1u << b;
-    return places;
-  }();
-  return all;
-}
-
-// Whether places other than the centre hang together, 26-connected, without it; not when there are none.
-bool hang_together(unsigned places) {
-  places &= ~kCentre;
-  unsigned reached = places & -places;
-  for (unsigned fresh = reached; fresh;) {
-    unsigned next = 0;
-    for (; fresh; fresh &= fresh - 1) next |= beside()[std::countr_zero(fresh)];
-    fresh = next & places & ~reached;
-    reached |= fresh;
-  }
-  return places && reached == places;
-}
-
-// A voxel that its tissue can spare: away from air, and the tissue around it hangs together without it.
-bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel) {
-  const glm::ivec3 size = volume.grid.size;
-  if (glm::any(glm::lessThan(voxel, glm::ivec3(1))) || glm::any(glm::greaterThan(voxel, size - 2))) return false;
-  const Label* at = &volume.voxels[volume.grid.index(voxel)];
-  const std::int64_t row = size.x, slice = row * size.y;
-  unsigned same = 0, tissue = 0;
-  for (int k = 0; k < 27; ++k) {
-    const Label label = at[(k % 3 - 1) + row * (k / 3 % 3 - 1) + slice * (k / 9 - 1)];
-    same |= unsigned{label == *at} << k;
-    tissue |= unsigned{label != 0} << k;
-  }
-  return tissue == kAll && hang_together(same);
-}
-
 class Mending {
  public:
   // `posed` may be `tissue` itself.
-  Mending(LabelVolume& posed, const LabelVolume& rest, const LabelVolume& tissue, const LabelSet& soft, const RestPoint& rest_point)
-      : posed_(posed), rest_(rest), tissue_(tissue), soft_(soft), in_tissue_(&posed == &tissue), rest_point_(rest_point), of_posed_(connected_components(posed)),
-        of_rest_(connected_components(rest)), joined_(of_posed_.voxels.size()) {
+  Mending(LabelVolume& posed, Components of_posed, const LabelVolume& rest, const Components& of_rest, const LabelVolume& tissue,
+          const LabelSet& soft, const RestPoint& rest_point)
+      : posed_(posed), rest_(rest), tissue_(tissue), soft_(soft), in_tissue_(&posed == &tissue), rest_point_(rest_point),
+        of_posed_(std::move(of_posed)), of_rest_(of_rest), joined_(of_posed_.voxels.size()) {
     std::iota(joined_.begin(), joined_.end(), 0);
   }
 
   std::vector<glm::ivec3> run() {
-    const auto before = large_parts(of_rest_);
-    for (const auto& [label, parts] : large_parts(of_posed_)) {
-      const auto was = before.find(label);
-      if ((!in_tissue_ || soft_[label]) && was != before.end() && parts.size() > was->second.size())
-        mend(label, parts, parts.size() - was->second.size());
+    auto after = large_parts(of_posed_);
+    for (const auto& [label, before] : large_parts(of_rest_)) {
+      const auto& parts = after[label];
+      if (!parts.empty() && parts.size() > before.size()) mend(label, parts, parts.size() - before.size());
+      if (is_rigid(label) && parts.size() < before.size()) grow(label, parts, before.size() - parts.size());
     }
     return std::move(bridges_);
   }
@@ -126,6 +63,8 @@ class Mending {
     std::vector<glm::ivec3> voxels;
     int other = -1;  // component
   };
+
+  bool is_rigid(Label label) const { return !in_tissue_ || !soft_[label]; }
 
   void mend(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
     find_stretches(label);
@@ -146,19 +85,75 @@ class Mending {
   // Of each part, whether another one comes from the same rest part as some of its voxels.
   std::vector<bool> torn(Label label, const std::vector<Part>& parts) const {
     std::map<int, std::vector<size_t>> of_rest_part;
-    for (size_t i = 0; i < parts.size(); ++i) {
-      const auto& stretches = stretches_.at(parts[i].component);
-      std::set<int> from;
-      for (int s = 0; s < kSamples; ++s) {
-        const Stretch& at = stretches[stretches.size() * s / kSamples];
-        from.insert(rest_part(label, {at.begin, at.y, at.z}));
-      }
-      for (int rest_part : from) of_rest_part[rest_part].push_back(i);
-    }
+    for (size_t i = 0; i < parts.size(); ++i)
+      for (int rest_part : sources(label, parts[i].component)) of_rest_part[rest_part].push_back(i);
     std::vector<bool> torn(parts.size(), false);
     for (const auto& [_, pieces] : of_rest_part)
       for (size_t i : pieces) torn[i] = torn[i] || pieces.size() > 1;
     return torn;
+  }
+
+  // The rest parts that some voxels of a part come from.
+  std::set<int> sources(Label label, int part) const {
+    const auto& stretches = stretches_.at(part);
+    std::set<int> from;
+    for (int s = 0; s < kSamples; ++s) {
+      const Stretch& at = stretches[stretches.size() * s / kSamples];
+      from.insert(rest_part(label, {at.begin, at.y, at.z}));
+    }
+    return from;
+  }
+
+  // Rigid parts that lost a few voxels to the grid get them back.
+  void grow(Label label, const std::vector<Part>& parts, std::int64_t too_few) {
+    find_stretches(label);
+    std::set<int> found;
+    for (const Part& part : parts) found.merge(sources(label, part.component));
+    std::vector<Part> small;
+    for (const auto& [component, _] : stretches_)
+      if (of_posed_.voxels[component] < kSmallestPart) small.push_back({component, of_posed_.voxels[component]});
+    std::stable_sort(small.begin(), small.end(), [](const Part& a, const Part& b) { return a.voxels > b.voxels; });
+    barred_.clear();
+    for (const Part& part : small) {
+      if (too_few == 0) break;
+      const auto from = sources(label, part.component);
+      const bool was_large = std::any_of(from.begin(), from.end(), [&](int rest_part) {
+        return rest_part >= 0 && of_rest_.voxels[rest_part] >= kSmallestPart && !found.contains(rest_part);
+      });
+      if (!was_large || !fill_up(label, part.component)) continue;
+      found.insert(from.begin(), from.end());
+      --too_few;
+    }
+  }
+
+  // Takes the voxels that lie deepest in the part's bays. False when there are none left to take.
+  bool fill_up(Label label, int part) {
+    std::vector<glm::ivec3> voxels = voxels_of(part);
+    while (of_posed_.voxels[part] < kSmallestPart) {
+      std::map<std::int64_t, int> touches;  // of voxels around the part
+      for (const glm::ivec3& v : voxels)
+        for (const glm::ivec3& step : neighbours())
+          if (posed_.grid.contains(v + step) && posed_.at(v + step) != label) ++touches[posed_.grid.index(v + step)];
+      int most = 0;
+      std::int64_t best = 0;
+      for (const auto& [at, count] : touches)
+        if (count > most && can_take(voxel(at), label) && !joins_another(voxel(at), label, part, part)) {
+          most = count;
+          best = at;
+        }
+      if (most == 0) return false;
+      take(voxel(best), label, part);
+      ++of_posed_.voxels[part];
+      bridges_.push_back(voxel(best));
+      voxels.push_back(voxel(best));
+    }
+    return true;
+  }
+
+  void take(const glm::ivec3& v, Label label, int part) {
+    if (posed_.at(v)) --of_posed_.voxels[component_of(v)];
+    posed_.at(v) = label;
+    taken_[posed_.grid.index(v)] = joined(part);
   }
 
   int joined(int component) const {
@@ -197,7 +192,7 @@ class Mending {
               layer.push_back(to);
             else if (same_rest_part(label, came_from, to))
               return path(came_from, label, to, component);
-          } else if (length < kLongestBridge && !came_from.contains(at) && can_take(to)) {
+          } else if (length < kLongestBridge && !came_from.contains(at) && can_take(to, label)) {
             came_from[at] = posed_.grid.index(from);
             next.push_back(to);
           }
@@ -218,7 +213,7 @@ class Mending {
     const int height = posed_.grid.size.y;
     for (std::int64_t row = 0; row + 1 < std::ssize(of_posed_.first_run); ++row)
       for (auto r = of_posed_.first_run[row]; r < of_posed_.first_run[row + 1]; ++r)
-        if (const auto& run = of_posed_.runs[r]; run.label == label && of_posed_.voxels[run.component] >= kSmallestPart)
+        if (const auto& run = of_posed_.runs[r]; run.label == label && of_posed_.voxels[run.component] >= kSmallestKept)
           stretches_[run.component].push_back({run.begin, run.end, int(row % height), int(row / height)});
   }
 
@@ -232,9 +227,11 @@ class Mending {
     return voxels;
   }
 
-  bool can_take(const glm::ivec3& v) const {
+  // Soft tissue takes from soft tissue, bone tissue from bone tissue, and whole bones from soft tissue.
+  bool can_take(const glm::ivec3& v, Label taker) const {
     const Label label = tissue_.at(v);
-    if (!label || !soft_[label] || barred_.contains(posed_.grid.index(v)) || !can_spare(tissue_, v)) return false;
+    const bool may_give = label && (in_tissue_ ? soft_[label] == soft_[taker] : soft_[label] != 0);
+    if (!may_give || barred_.contains(posed_.grid.index(v)) || is_beside_air(tissue_, v) || !can_spare(tissue_, v)) return false;
     return !in_tissue_ || of_posed_.voxels[component_of(v)] != kSmallestPart;
   }
 
@@ -259,27 +256,7 @@ class Mending {
 
   // The rest part nearest to where a posed voxel comes from, -1 when there is none about.
   int rest_part(Label label, const glm::ivec3& posed_voxel) const {
-    const glm::dvec3 point = rest_point_(posed_voxel);
-    const glm::ivec3 centre(glm::floor(point + 0.5));
-    for (int shell = 0; shell <= kReach; ++shell) {
-      double nearest = INFINITY;
-      glm::ivec3 found(0);
-      for (int z = -shell; z <= shell; ++z)
-        for (int y = -shell; y <= shell; ++y) {
-          const bool face = std::abs(z) == shell || std::abs(y) == shell;
-          for (int x = -shell; x <= shell; x += face || shell == 0 ? 1 : 2 * shell) {
-            const glm::ivec3 v = centre + glm::ivec3(x, y, z);
-            if (rest_.at_or_air(v) != label) continue;
-            const glm::dvec3 away = glm::dvec3(v) - point;
-            if (const double squared = glm::dot(away, away); squared < nearest) {
-              nearest = squared;
-              found = v;
-            }
-          }
-        }
-      if (nearest < INFINITY) return component_at(of_rest_, rest_, found);
-    }
-    return -1;
+    return nearest_component(of_rest_, rest_, label, rest_point_(posed_voxel));
   }
 
   // Whether a voxel would also join a third part.
@@ -295,7 +272,7 @@ class Mending {
   bool build(const Bridge& bridge, Label label, int part) {
     std::vector<std::pair<glm::ivec3, Label>> changed;
     for (const glm::ivec3& v : bridge.voxels) {
-      if (!can_take(v) || joins_another(v, label, part, bridge.other)) {
+      if (!can_take(v, label) || joins_another(v, label, part, bridge.other)) {
         barred_.insert(posed_.grid.index(v));
         for (const auto& [undone, was] : changed) {
           posed_.at(undone) = was;
@@ -305,9 +282,7 @@ class Mending {
         return false;
       }
       changed.emplace_back(v, posed_.at(v));
-      if (posed_.at(v)) --of_posed_.voxels[component_of(v)];
-      posed_.at(v) = label;
-      taken_[posed_.grid.index(v)] = joined(part);
+      take(v, label, part);
     }
     joined_[joined(bridge.other)] = joined(part);
     bridges_.insert(bridges_.end(), bridge.voxels.begin(), bridge.voxels.end());
@@ -319,7 +294,8 @@ class Mending {
   const LabelSet& soft_;
   const bool in_tissue_;  // voxels are taken from the parts' own volume
   const RestPoint& rest_point_;
-  Components of_posed_, of_rest_;                 // as they were before the first bridge, but for the parts' sizes
+  Components of_posed_;                           // as they were before the first bridge, but for the parts' sizes
+  const Components& of_rest_;
   std::map<int, std::vector<Stretch>> stretches_; // of the present label's parts
   std::vector<int> joined_;                       // component it was joined to; itself where it was not
   std::unordered_map<std::int64_t, int> taken_;   // component of voxels in bridges
@@ -330,12 +306,17 @@ class Mending {
 }  // namespace
 
 std::int64_t mend(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft, const RestPoint& rest_point) {
-  return std::ssize(Mending(posed, rest, posed, soft, rest_point).run());
+  const Components of_rest = connected_components(rest);
+  Components of_posed = connected_components(posed);
+  const std::int64_t parted = part_bones(posed, of_posed, rest, of_rest, soft, rest_point);
+  if (parted > 0) of_posed = connected_components(posed);
+  return parted + std::ssize(Mending(posed, std::move(of_posed), rest, of_rest, posed, soft, rest_point).run());
 }
 
 std::vector<glm::ivec3> mend_bones(LabelVolume& posed_bones, const LabelVolume& rest_bones, const LabelVolume& tissue,
                                    const LabelSet& soft, const RestPoint& rest_point) {
-  return Mending(posed_bones, rest_bones, tissue, soft, rest_point).run();
+  const Components of_rest = connected_components(rest_bones);
+  return Mending(posed_bones, connected_components(posed_bones), rest_bones, of_rest, tissue, soft, rest_point).run();
 }
 
 }  // namespace limber

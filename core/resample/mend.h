@@ -1,35 +1,32 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Rejoins soft tissue that posing has torn. Where a sheet or a strand is one voxel thick and the fold of a joint carries
-// its voxels apart, or another tissue wins the voxel between them, a piece comes off: the tissue has one connected part
-// more than at rest, though the body has not.
+// Keeps tissues the connected parts (26-connected, of 50 voxels or more) that they have at rest, where posing on a grid tears
+// them though the body is not torn: where a sheet or a strand is one voxel thick and the fold of a joint carries its voxels
+// apart, another tissue wins the voxel between them, or a small bone comes out a few voxels smaller when it is turned.
 //
-// For every tissue with more parts (26-connected, of 50 voxels or more) than at rest, and until it has as many again,
-// each part, smallest first, looks for another one that comes from the same rest part, and takes the fewest voxels that
-// join them, at most four. A bridge goes through soft tissue only. It never takes a voxel beside air (so no skin is
-// opened), one whose own tissue would be split by the loss, or one that its own part needs to stay a part.
+// Bone tissues that have fewer parts than at rest are first parted (part_bones). For every tissue with more parts than at
+// rest, and until it has as many again, each part, smallest first, looks for another one that comes from the same rest part,
+// and takes the fewest voxels that join them, at most four. Of bone tissue with fewer, a part that came out smaller than 50
+// voxels, but half of them or more, is filled up to 50. Soft tissue takes from soft tissue only, bone tissue from bone
+// tissue. No voxel beside air is taken (so no skin is opened), none whose own tissue would be split by the loss, and none
+// that its own part needs to stay a part.
 #pragma once
 
-#include <functional>
 #include <vector>
 
+#include "core/resample/neighbourhood.h"
 #include "core/volume/label_sampler.h"
 
 namespace limber {
 
-constexpr std::int64_t kSmallestPart = 50;  // voxels; what is smaller comes and goes with the grid
-
-// The rest point that a tissue voxel of the posed volume is the image of; both in voxel coordinates.
-using RestPoint = std::function<glm::dvec3(const glm::ivec3& posed_voxel)>;
-
-//   soft     tissues that may be mended and may give voxels
+//   soft     tissues that are not bone
 //   posed    voxels of bridges are changed
 //   returns  the number of voxels changed
 std::int64_t mend(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft, const RestPoint& rest_point);
 
-// The same for rigid bones, whose thin places can come apart when they are turned on the grid.
-//   posed_bones  1 + the rig bone of each voxel of bone tissue, 0 elsewhere; bridges are added
+// The same for rigid bones as wholes: they take soft voxels.
+//   posed_bones  1 + the rig bone of each voxel of bone tissue, 0 elsewhere; what is taken is added
 //   rest_bones   the same at rest        tissue  the posed tissue, on the grid of posed_bones: soft voxels may be taken
-//   returns      the voxels of the bridges
+//   returns      the voxels taken
 std::vector<glm::ivec3> mend_bones(LabelVolume& posed_bones, const LabelVolume& rest_bones, const LabelVolume& tissue,
                                    const LabelSet& soft, const RestPoint& rest_point);
 

@@ -191,6 +191,7 @@ class Resampling {
       add(counts);
     }
     const auto rest_point = [&](const glm::ivec3& voxel) {
+      if (posed_bones_.at(voxel)) return of_bone(voxel);
       fill(map, {output_.range.low + voxel, output_.range.low + voxel});
       return glm::dvec3(map.rest[0]);
     };

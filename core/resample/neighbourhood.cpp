@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/neighbourhood.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace limber {
+
+namespace {
+
+constexpr int kReach = 8;  // voxels around a rest point within which its tissue is looked for
+
+// The surroundings as bits, x fastest; bit 13 is the voxel itself.
+constexpr unsigned kCentre = 1u << 13;
+
+// Of every place among the 3^3, the places beside it.
+const std::array<unsigned, 27>& beside() {
+  static const std::array<unsigned, 27> all = [] {
+    std::array<unsigned, 27> places{};
+    for (int a = 0; a < 27; ++a)
+      for (int b = 0; b < 27; ++b)
+        if (std::abs(a % 3 - b % 3) <= 1 && std::abs(a / 3 % 3 - b / 3 % 3) <= 1 && std::abs(a / 9 - b / 9) <= 1) places[a] |= 1u << b;
+    return places;
+  }();
+  return all;
+}
+
+bool bits_hang_together(unsigned places) {
+  places &= ~kCentre;
+  unsigned reached = places & -places;
+  for (unsigned fresh = reached; fresh;) {
+    unsigned next = 0;
+    for (; fresh; fresh &= fresh - 1) next |= beside()[std::countr_zero(fresh)];
+    fresh = next & places & ~reached;
+    reached |= fresh;
+  }
+  return places && reached == places;
+}
+
+// body(place, label) for the 3^3 voxels around a voxel, air outside the grid.
+template <class Body>
+void for_each_around(const LabelVolume& volume, const glm::ivec3& voxel, const Body& body) {
+  const glm::ivec3 size = volume.grid.size;
+  const bool inside = glm::all(glm::greaterThanEqual(voxel, glm::ivec3(1))) && glm::all(glm::lessThanEqual(voxel, size - 2));
+  const Label* at = inside ? &volume.voxels[volume.grid.index(voxel)] : nullptr;
+  const std::int64_t row = size.x, slice = row * size.y;
+  for (int k = 0; k < 27; ++k) {
+    const glm::ivec3 step(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    body(k, inside ? at[step.x + row * step.y + slice * step.z] : volume.at_or_air(voxel + step));
+  }
+}
+
+}  // namespace
+
+const std::array<glm::ivec3, 26>& neighbours() {
+  static const std::array<glm::ivec3, 26> all = [] {
+    std::array<glm::ivec3, 26> steps;
+    int count = 0;
+    for (int i = 0; i < 27; ++i)
+      if (i != 13) steps[count++] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+    return steps;
+  }();
+  return all;
+}
+
+int component_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v) {
+  const std::int64_t row = v.y + std::int64_t{volume.grid.size.y} * v.z;
+  const auto begin = components.runs.begin() + components.first_run[row], end = components.runs.begin() + components.first_run[row + 1];
+  const auto run = std::partition_point(begin, end, [&](const Components::Run& r) { return r.end <= v.x; });
+  return run->component;
+}
+
+int nearest_component(const Components& components, const LabelVolume& volume, Label label, const glm::dvec3& point) {
+  const glm::ivec3 centre(glm::floor(point + 0.5));
+  for (int shell = 0; shell <= kReach; ++shell) {
+    double nearest = INFINITY;
+    glm::ivec3 found(0);
+    for (int z = -shell; z <= shell; ++z)
+      for (int y = -shell; y <= shell; ++y) {
+        const bool face = std::abs(z) == shell || std::abs(y) == shell;
+        for (int x = -shell; x <= shell; x += face || shell == 0 ? 1 : 2 * shell) {
+          const glm::ivec3 v = centre + glm::ivec3(x, y, z);
+          if (volume.at_or_air(v) != label) continue;
+          const glm::dvec3 away = glm::dvec3(v) - point;
+          if (const double squared = glm::dot(away, away); squared < nearest) {
+            nearest = squared;
+            found = v;
+          }
+        }
+      }
+    if (nearest < INFINITY) return component_at(components, volume, found);
+  }
+  return -1;
+}
+
+bool hang_together(const std::array<bool, 27>& marked) {
+  unsigned places = 0;
+  for (int k = 0; k < 27; ++k) places |= unsigned{marked[k]} << k;
+  return bits_hang_together(places);
+}
+
+bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel) {
+  const Label own = volume.at(voxel);
+  unsigned same = 0;
+  for_each_around(volume, voxel, [&](int k, Label label) { same |= unsigned{label == own} << k; });
+  return bits_hang_together(same);
+}
+
+bool is_beside_air(const LabelVolume& volume, const glm::ivec3& voxel) {
+  bool air = false;
+  for_each_around(volume, voxel, [&](int, Label label) { air |= label == 0; });
+  return air;
+}
+
+}  // namespace limber

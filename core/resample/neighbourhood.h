@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The 26 voxels around a voxel, and what a tissue loses when one of its voxels is given to another.
+#pragma once
+
+#include <array>
+#include <functional>
+
+#include "core/volume/components.h"
+
+namespace limber {
+
+constexpr std::int64_t kSmallestPart = 50;  // voxels; what is smaller comes and goes with the grid
+
+// The rest point that a tissue voxel of the posed volume is the image of; both in voxel coordinates.
+using RestPoint = std::function<glm::dvec3(const glm::ivec3& posed_voxel)>;
+
+const std::array<glm::ivec3, 26>& neighbours();
+
+// The component of a tissue voxel.
+int component_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v);
+
+// The rest component of `label` nearest to a rest point, -1 when there is none within 8 voxels.
+int nearest_component(const Components& components, const LabelVolume& volume, Label label, const glm::dvec3& point);
+
+// Whether the marked ones of a voxel's surroundings hang together, 26-connected, without the voxel itself; not when none is.
+//   marked  27, x fastest; the middle one counts for nothing
+bool hang_together(const std::array<bool, 27>& marked);
+
+// Whether its tissue can spare the voxel: what is left of it around hangs together.
+bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel);
+
+// Whether the voxel or one beside it is air or outside the grid.
+bool is_beside_air(const LabelVolume& volume, const glm::ivec3& voxel);
+
+}  // namespace limber

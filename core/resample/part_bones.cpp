@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/part_bones.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+namespace limber {
+
+namespace {
+
+constexpr int kRounds = 4;  // the first takes from the larger part only
+
+std::map<Label, int> large_parts(const Components& components, const LabelSet& soft) {
+  std::vector<Label> label(components.voxels.size());
+  for (const auto& run : components.runs) label[run.component] = run.label;
+  std::map<Label, int> count;
+  for (size_t c = 0; c < label.size(); ++c) count[label[c]] += !soft[label[c]] && components.voxels[c] >= kSmallestPart;
+  return count;
+}
+
+class Parting {
+ public:
+  Parting(LabelVolume& posed, const Components& of_posed, const LabelVolume& rest, const Components& of_rest, const LabelSet& soft,
+          const RestPoint& rest_point)
+      : posed_(posed), of_posed_(of_posed), rest_(rest), of_rest_(of_rest), soft_(soft), rest_point_(rest_point) {}
+
+  std::int64_t run() {
+    const auto before = large_parts(of_rest_, soft_);
+    std::int64_t changed = 0;
+    for (auto [label, after] : large_parts(of_posed_, soft_))
+      if (const auto was = before.find(label); was != before.end() && after < was->second) changed += part(label);
+    return changed;
+  }
+
+ private:
+  std::int64_t part(Label label) {
+    find_fused(label);
+    std::int64_t changed = 0;
+    for (int round = 0; round < kRounds; ++round) {
+      std::int64_t contacts = 0;
+      for (const glm::ivec3& v : fused_) {
+        if (posed_.at(v) != label) continue;
+        const int other = touched_part(label, v);
+        if (other < 0) continue;
+        ++contacts;
+        if (round > 0 || gives(part_of_[posed_.grid.index(v)], other)) changed += give(v, label);
+      }
+      if (contacts == 0) break;
+    }
+    return changed;
+  }
+
+  // The voxels of posed parts that come from more than one large rest part.
+  void find_fused(Label label) {
+    part_of_.clear();
+    fused_.clear();
+    std::unordered_map<int, std::set<int>> sources;
+    std::vector<std::pair<glm::ivec3, int>> voxels;  // and their component
+    const int height = posed_.grid.size.y;
+    for (std::int64_t row = 0; row + 1 < std::ssize(of_posed_.first_run); ++row)
+      for (auto r = of_posed_.first_run[row]; r < of_posed_.first_run[row + 1]; ++r) {
+        const auto& run = of_posed_.runs[r];
+        if (run.label != label || of_posed_.voxels[run.component] < kSmallestPart) continue;
+        for (int x = run.begin; x < run.end; ++x) {
+          const glm::ivec3 v(x, int(row % height), int(row / height));
+          const int part = nearest_component(of_rest_, rest_, label, rest_point_(v));
+          if (part < 0 || of_rest_.voxels[part] < kSmallestPart) continue;
+          part_of_[posed_.grid.index(v)] = part;
+          sources[run.component].insert(part);
+          voxels.emplace_back(v, run.component);
+        }
+      }
+    for (const auto& [v, component] : voxels)
+      if (sources[component].size() > 1) fused_.push_back(v);
+  }
+
+  // A rest part other than its own that a voxel touches, -1 when there is none.
+  int touched_part(Label label, const glm::ivec3& v) const {
+    const int own = part_of_.at(posed_.grid.index(v));
+    for (const glm::ivec3& step : neighbours()) {
+      if (posed_.at_or_air(v + step) != label) continue;
+      const auto there = part_of_.find(posed_.grid.index(v + step));
+      if (there != part_of_.end() && there->second != own) return there->second;
+    }
+    return -1;
+  }
+
+  bool gives(int part, int other) const {
+    return of_rest_.voxels[part] != of_rest_.voxels[other] ? of_rest_.voxels[part] > of_rest_.voxels[other] : part > other;
+  }
+
+  int component_of(const glm::ivec3& v) const {
+    const auto given = given_.find(posed_.grid.index(v));
+    return given != given_.end() ? given->second : component_at(of_posed_, posed_, v);
+  }
+
+  bool give(const glm::ivec3& v, Label label) {
+    if (!part_can_spare(v, label)) return false;
+    std::map<Label, int> around;
+    for (const glm::ivec3& step : neighbours())
+      if (const Label there = posed_.at_or_air(v + step); there != label && !soft_[there]) ++around[there];
+    while (!around.empty()) {
+      const auto most = std::max_element(around.begin(), around.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+      if (const int component = only_component(v, most->first); component >= 0) {
+        posed_.at(v) = most->first;
+        given_[posed_.grid.index(v)] = component;
+        return true;
+      }
+      around.erase(most);
+    }
+    return false;
+  }
+
+  // What is left of the voxel's own part around it hangs together.
+  bool part_can_spare(const glm::ivec3& v, Label label) const {
+    const int own = part_of_.at(posed_.grid.index(v));
+    std::array<bool, 27> same{};
+    for (int k = 0; k < 27; ++k) {
+      const glm::ivec3 at = v + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      if (posed_.at_or_air(at) != label) continue;
+      const auto there = part_of_.find(posed_.grid.index(at));
+      same[k] = there != part_of_.end() && there->second == own;
+    }
+    return hang_together(same);
+  }
+
+  // The component of the neighbours of a tissue, when it is one; a small one beside a large one counts for nothing.
+  int only_component(const glm::ivec3& v, Label tissue) const {
+    int found = -1;
+    for (const glm::ivec3& step : neighbours()) {
+      if (posed_.at_or_air(v + step) != tissue) continue;
+      const int component = component_of(v + step);
+      if (component == found) continue;
+      const bool is_large = of_posed_.voxels[component] >= kSmallestPart;
+      if (found >= 0 && is_large && of_posed_.voxels[found] >= kSmallestPart) return -1;
+      if (found < 0 || is_large) found = component;
+    }
+    return found;
+  }
+
+  LabelVolume& posed_;
+  const Components& of_posed_;
+  const LabelVolume& rest_;
+  const Components& of_rest_;
+  const LabelSet& soft_;
+  const RestPoint& rest_point_;
+  std::unordered_map<std::int64_t, int> part_of_;  // rest part of the present label's voxels that come from a large one
+  std::vector<glm::ivec3> fused_;
+  std::unordered_map<std::int64_t, int> given_;    // component that a voxel was given to
+};
+
+}  // namespace
+
+std::int64_t part_bones(LabelVolume& posed, const Components& of_posed, const LabelVolume& rest, const Components& of_rest,
+                        const LabelSet& soft, const RestPoint& rest_point) {
+  return Parting(posed, of_posed, rest, of_rest, soft, rest_point).run();
+}
+
+}  // namespace limber
