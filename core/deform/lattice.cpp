@@ -18,6 +18,13 @@ constexpr int kSeveral = -1;
 constexpr int kHalo = TissueVoxels::kBrick + 2;        // a brick and one voxel around it
 constexpr int kHaloCount = kHalo * kHalo * kHalo;
 
+// Of a byte; std::popcount is a call where the processor's own instruction may not be assumed.
+constexpr std::array<std::uint8_t, 256> kBitCount = [] {
+  std::array<std::uint8_t, 256> count{};
+  for (int i = 1; i < 256; ++i) count[i] = static_cast<std::uint8_t>(count[i / 2] + (i & 1));
+  return count;
+}();
+
 // Per bone, the weights of a brick's voxels and of those around it, summed over the eight voxels around each corner.
 class CornerWeights {
  public:
@@ -55,19 +62,19 @@ class CornerWeights {
   void gather(const TissueVoxels::Brick& brick, const SkinWeights::Chunk& chunk, const glm::ivec3& step) {
     const glm::ivec3 first = first_of(step), last = last_of(step);
     const unsigned columns = (0xffu >> (7 - last.x)) & (0xffu << first.x);
-    int place = 0;
+    int place = 0;  // in the chunk, of the row's first voxel
     for (int z = 0; z <= last.z; ++z) {
       if (z < first.z) {
         place += std::popcount(brick.mask[z]);
         continue;
       }
       for (int y = 0; y < TissueVoxels::kBrick; ++y) {
-        const unsigned columns_here = y >= first.y && y <= last.y ? columns : 0;
-        for (unsigned bits = brick.mask[z] >> (8 * y) & 0xff; bits; bits &= bits - 1, ++place) {
-          if (!(bits & -bits & columns_here)) continue;
+        const unsigned row = brick.mask[z] >> (8 * y) & 0xff;
+        for (unsigned bits = y >= first.y && y <= last.y ? row & columns : 0; bits; bits &= bits - 1) {
           const glm::ivec3 v = glm::ivec3(std::countr_zero(bits), y, z) + step * TissueVoxels::kBrick + 1;
-          add(chunk[place], v.x + kHalo * (v.y + kHalo * v.z));
+          add(chunk[place + kBitCount[row & ((bits & -bits) - 1)]], v.x + kHalo * (v.y + kHalo * v.z));
         }
+        place += kBitCount[row];
       }
     }
   }

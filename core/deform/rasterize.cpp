@@ -2,6 +2,7 @@
 #include "core/deform/rasterize.h"
 
 #include <cmath>
+#include <optional>
 
 namespace limber {
 
@@ -29,20 +30,36 @@ double largest_row_sum(const glm::dmat3& m) {
 
 double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-// The trilinear map of a cube by its eight coefficients: index bits say which of x, y, z are multiplied
-// (a Hadamard transform of the corners).
-std::array<glm::dvec3, 8> trilinear_coefficients(const std::array<FixedPoint, 8>& corner) {
-  std::array<glm::dvec3, 8> c;
-  for (int i = 0; i < 8; ++i) c[i] = glm::dvec3(corner[i]) / (8.0 * kFixedOne);
+// Four whole numbers in one register, the last unused.
+using Lanes = int __attribute__((vector_size(16)));
+using UnsignedLanes = unsigned __attribute__((vector_size(16)));
+
+// The trilinear map of a cube by its eight coefficients, times 8 kFixedOne and relative to the first corner: index bits
+// say which of x, y, z are multiplied (a Hadamard transform of the corners). Nothing when the cube is far too large for it.
+std::optional<std::array<Lanes, 8>> trilinear_coefficients(const std::array<FixedPoint, 8>& corner) {
+  // The sum of eight fits; and corners so far apart (at most 64 000 voxels) that their difference wraps differ by more.
+  constexpr int kLargest = 1 << 26;
+  std::array<Lanes, 8> c;
+  Lanes too_large{};
+  const UnsignedLanes first = (UnsignedLanes)Lanes{corner[0].x, corner[0].y, corner[0].z, 0};
+  for (int i = 0; i < 8; ++i) {
+    c[i] = (Lanes)((UnsignedLanes)Lanes{corner[i].x, corner[i].y, corner[i].z, 0} - first);
+    too_large |= (c[i] > kLargest) | (c[i] < -kLargest);
+  }
+  if (too_large[0] | too_large[1] | too_large[2]) return std::nullopt;
   for (int bit : {1, 2, 4})
     for (int i = 0; i < 8; ++i)
       if (!(i & bit)) {
-        const glm::dvec3 low = c[i], high = c[i | bit];
+        const Lanes low = c[i], high = c[i | bit];
         c[i] = high + low;
         c[i | bit] = high - low;
       }
   return c;
 }
+
+glm::dvec3 voxels_of(const Lanes& c) { return glm::dvec3(c[0], c[1], c[2]) / (8.0 * kFixedOne); }
+
+int largest(const Lanes& c) { return std::max({std::abs(c[0]), std::abs(c[1]), std::abs(c[2])}); }
 
 }  // namespace
 
@@ -63,14 +80,16 @@ CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<
 
 PosedCell::PosedCell(const std::array<FixedPoint, 8>& corner, const glm::ivec3& rest_voxel)
     : corner_(corner), rest_voxel_(rest_voxel), parity_((rest_voxel.x + rest_voxel.y + rest_voxel.z) & 1) {
-  const auto c = trilinear_coefficients(corner);
-  const glm::dmat3 half_edges(c[1], c[2], c[4]);
-  const glm::dmat3 faces(glm::cross(c[2], c[4]), glm::cross(c[4], c[1]), glm::cross(c[1], c[2]));
-  const double determinant = glm::dot(c[1], faces[0]);
+  const auto coefficients = trilinear_coefficients(corner);
+  if (!coefficients) return;
+  const auto& c = *coefficients;
+  const glm::dvec3 x = voxels_of(c[1]), y = voxels_of(c[2]), z = voxels_of(c[4]);  // half edges
+  const glm::dmat3 faces(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
+  const double determinant = glm::dot(x, faces[0]);
   if (!(determinant > 1e-6)) return;
   place_from_posed_ = glm::transpose(faces) * (1 / determinant);
-  middle_ = c[0];
-  const double departure = largest(c[3]) + largest(c[5]) + largest(c[6]) + largest(c[7]);
+  middle_ = glm::dvec3(corner[0]) / double(kFixedOne) + voxels_of(c[0]);
+  const double departure = (largest(c[3]) + largest(c[5]) + largest(c[6]) + largest(c[7])) / (8.0 * kFixedOne);
   slack_ = largest_row_sum(place_from_posed_) * departure + kRounding;
   near_affine_ = slack_ < kLargestSlack;
 }

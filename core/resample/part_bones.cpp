@@ -16,7 +16,8 @@ std::map<Label, int> large_parts(const Components& components, const LabelSet& s
   std::vector<Label> label(components.voxels.size());
   for (const auto& run : components.runs) label[run.component] = run.label;
   std::map<Label, int> count;
-  for (size_t c = 0; c < label.size(); ++c) count[label[c]] += !soft[label[c]] && components.voxels[c] >= kSmallestPart;
+  for (size_t c = 0; c < label.size(); ++c)
+    if (!soft[label[c]] && components.voxels[c] >= kSmallestPart) ++count[label[c]];
   return count;
 }
 
@@ -29,8 +30,9 @@ class Parting {
   std::int64_t run() {
     const auto before = large_parts(of_rest_, soft_);
     std::int64_t changed = 0;
-    for (auto [label, after] : large_parts(of_posed_, soft_))
-      if (const auto was = before.find(label); was != before.end() && after < was->second) changed += part(label);
+    auto after = large_parts(of_posed_, soft_);
+    for (const auto& [label, count] : before)
+      if (after[label] < count) changed += part(label);
     return changed;
   }
 

@@ -14,6 +14,16 @@ namespace limber {
 namespace {
 using Run = Components::Run;
 
+// First x from `x` on that is not air; 16 voxels at a time.
+int end_of_air(const Label* row, int x, int size) {
+  for (std::uint64_t words[4]; x + 16 <= size; x += 16) {
+    std::memcpy(words, row + x, sizeof words);
+    if (words[0] | words[1] | words[2] | words[3]) break;
+  }
+  while (x < size && row[x] == 0) ++x;
+  return x;
+}
+
 // First x from `begin` on with another label than there; four voxels at a time.
 int end_of_run(const Label* row, int begin, int size) {
   const std::uint64_t four = row[begin] * std::uint64_t{0x0001000100010001};
@@ -32,11 +42,11 @@ std::vector<Run> runs_of_slice(const LabelVolume& volume, int z, std::int64_t* r
   for (int y = 0; y < size.y; ++y) {
     const Label* row = &volume.voxels[volume.grid.index({0, y, z})];
     const std::size_t before = runs.size();
-    for (int x = 0; x < size.x;) {
+    for (int x = end_of_air(row, 0, size.x); x < size.x;) {
       const int begin = x;
-      const Label label = row[x];
       x = end_of_run(row, begin, size.x);
-      if (label != 0) runs.push_back({begin, x, label, 0});
+      runs.push_back({begin, x, row[begin], 0});
+      if (x < size.x && row[x] == 0) x = end_of_air(row, x, size.x);
     }
     runs_in_row[y] = static_cast<std::int64_t>(runs.size() - before);
   }

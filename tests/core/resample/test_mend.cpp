@@ -141,3 +141,86 @@ TEST_CASE("mend: a bone that comes apart is rejoined through soft tissue, one th
   }
   CHECK(parts(posed, 9) == 1);
 }
+
+namespace {
+
+// Two marrows in one block of hard bone, a wall of one voxel between them, flesh around.
+constexpr Label kShell = 3, kMarrow = 5;
+
+LabelVolume bone_with_two_marrows() {
+  LabelVolume volume;
+  volume.grid.size = {15, 15, 20};
+  volume.voxels.assign(volume.grid.voxel_count(), 0);
+  for (int z = 1; z < 19; ++z)
+    for (int y = 1; y < 14; ++y)
+      for (int x = 1; x < 14; ++x) {
+        const bool bone = x > 2 && x < 12 && y > 2 && y < 12 && z > 2 && z < 17;
+        const bool marrow = x > 4 && x < 10 && y > 4 && y < 10 && z > 4 && z < 15 && z != 10;
+        volume.at({x, y, z}) = marrow ? kMarrow : bone ? kShell : kFlesh;
+      }
+  return volume;
+}
+
+const LabelSet& not_bone() {
+  static const LabelSet set = [] {
+    LabelSet all(65536, 1);
+    all[kShell] = all[kMarrow] = 0;
+    return all;
+  }();
+  return set;
+}
+
+std::int64_t mend_bone_tissue(LabelVolume& posed, const LabelVolume& rest) {
+  return mend(posed, rest, not_bone(), [](const glm::ivec3& v) { return glm::dvec3(v); });
+}
+
+}  // namespace
+
+TEST_CASE("mend: a hole in the wall between two marrows is closed, the whole wall's loss too") {
+  const LabelVolume rest = bone_with_two_marrows();
+  for (int width : {1, 3, 5}) {
+    LabelVolume posed = rest;
+    for (int y = 5; y < 5 + width; ++y)
+      for (int x = 5; x < 5 + width; ++x) posed.at({x, y, 10}) = kMarrow;
+    const LabelVolume fused = posed;
+    REQUIRE(parts(fused, kMarrow) == 1);
+    CHECK(mend_bone_tissue(posed, rest) > 0);
+    CHECK(parts(posed, kMarrow) == 2);
+    CHECK(parts(posed, kShell) == 1);
+    CHECK(changes(posed, fused) <= 2 * (width + 1) * (width + 1));
+    for (size_t i = 0; i < posed.voxels.size(); ++i) CHECK((fused.voxels[i] == kFlesh) == (posed.voxels[i] == kFlesh));
+  }
+}
+
+TEST_CASE("mend: bone tissue that came out a few voxels too small is filled up, one that lost most of itself is not") {
+  LabelVolume rest = bone_with_two_marrows();
+  for (int z = 13; z < 15; ++z)
+    for (int y = 5; y < 10; ++y)
+      for (int x = 5; x < 10; ++x) rest.at({x, y, z}) = kShell;
+  REQUIRE(parts(rest, kMarrow) == 2);  // of 125 and 50
+  for (const int rows : {1, 4}) {
+    LabelVolume posed = rest;
+    for (int y = 5; y < 5 + rows; ++y)
+      for (int x = 5; x < 10; ++x)
+        for (int z = 11; z < 13; ++z) posed.at({x, y, z}) = kShell;
+    REQUIRE(parts(posed, kMarrow) == 1);
+    const bool filled = rows == 1;
+    CHECK(mend_bone_tissue(posed, rest) == (filled ? 10 : 0));
+    CHECK(parts(posed, kMarrow) == (filled ? 2 : 1));
+  }
+}
+
+TEST_CASE("mend: a small bone that lost a few voxels takes them back from soft tissue") {
+  LabelVolume tissue = block_with_strand();
+  LabelVolume rest = tissue;
+  for (Label& label : rest.voxels) label = 0;
+  cut(tissue, 8, 13, kHard);
+  cut(rest, 8, 13, 9);  // 54 voxels
+  LabelVolume posed = rest;
+  cut(tissue, 13, 13, kFlesh);
+  cut(posed, 13, 13, 0);
+  const auto taken = mend_bones(posed, rest, tissue, soft(), [](const glm::ivec3& v) { return glm::dvec3(v); });
+  CHECK(taken.size() == 5);
+  CHECK(parts(posed, 9) == 1);
+  for (const glm::ivec3& voxel : taken) CHECK(tissue.at(voxel) != kHard);
+}
