@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/base/sparse_zeros.h"
+#include "core/base/pages.h"
 #include "core/project/bytes.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
