@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Subcommands that need the renderer, beside those of core/cmd.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace limber::editor {
+
+void add_render(CLI::App& app);
+
+}  // namespace limber::editor

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+
+#include <epoxy/gl.h>
+
+#include "render/headless.h"
+#include "render/renderer_parts.h"
+
+namespace limber::render {
+
+namespace {
+
+int texture_limit(int largest_texture) {
+  require_opengl_3_3();
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
+  return largest_texture > 0 ? std::min<int>(most, largest_texture) : most;
+}
+
+// Weak pointers tell whether they were made from the same owner even after it has gone.
+template <class T>
+bool same(const std::weak_ptr<T>& key, const std::shared_ptr<T>& owner) {
+  return !key.owner_before(owner) && !owner.owner_before(key);
+}
+
+const VisibleField& current(std::unique_ptr<VisibleField>& field, const VolumeTexture& volume, const LabelSet& set) {
+  if (!field) field = std::make_unique<VisibleField>(volume, set);
+  else if (field->set() != set) field->update(volume, set);
+  return *field;
+}
+
+}  // namespace
+
+Renderer::Parts::Parts(int largest) : largest_texture(texture_limit(largest)) {}
+
+Renderer::Parts::Body& Renderer::Parts::body(const std::shared_ptr<const LabelVolume>& volume) {
+  for (const auto& body : bodies_)
+    if (same(body->key, volume)) return *body;
+  std::erase_if(bodies_, [](const auto& body) { return body->key.expired(); });
+  auto fresh = std::make_unique<Body>();
+  fresh->key = volume;
+  fresh->volume = std::make_unique<VolumeTexture>(volume, largest_texture);
+  note = fresh->volume->note();
+  return *bodies_.emplace_back(std::move(fresh));
+}
+
+const LooksTexture& Renderer::Parts::looks(const std::shared_ptr<const LabelLooks>& looks) {
+  for (const Looks& known : looks_)
+    if (same(known.key, looks)) return *known.texture;
+  std::erase_if(looks_, [](const Looks& known) { return known.key.expired(); });
+  return *looks_.emplace_back(Looks{looks, std::make_unique<LooksTexture>(*looks)}).texture;
+}
+
+const VisibleField& Renderer::Parts::visible(Body& body, const LooksTexture& looks) { return current(body.visible, *body.volume, looks.visible()); }
+
+const VisibleField& Renderer::Parts::bones(Body& body, const LooksTexture& looks) { return current(body.bones, *body.volume, looks.bones()); }
+
+VolumePass& Renderer::Parts::volume_pass(const VolumeTexture& volume) {
+  auto& pass = volume_passes_[volume.layout().atlases];
+  if (!pass) pass = std::make_unique<VolumePass>(volume.layout().atlases);
+  return *pass;
+}
+
+Renderer::Renderer(int largest_texture) : parts_(std::make_unique<Parts>(largest_texture)) {}
+Renderer::~Renderer() = default;
+const std::string& Renderer::note() const { return parts_->note; }
+
+}  // namespace limber::render

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the views of one context share: programs, and the textures of the volumes and looks that are in use. A volume that
+// nobody holds any more loses its textures at the next picture.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/armature_pass.h"
+#include "render/compose_pass.h"
+#include "render/looks_texture.h"
+#include "render/scene.h"
+#include "render/shade_pass.h"
+#include "render/slice_pass.h"
+#include "render/view.h"
+#include "render/visible_field.h"
+#include "render/volume_pass.h"
+#include "render/volume_texture.h"
+
+namespace limber::render {
+
+struct Renderer::Parts {
+  explicit Parts(int largest);
+
+  // A volume on the card, with the sets of labels that rays look for.
+  struct Body {
+    std::weak_ptr<const LabelVolume> key;
+    std::unique_ptr<VolumeTexture> volume;
+    std::unique_ptr<VisibleField> visible, bones;  // bones: once X-ray was asked for
+  };
+  Body& body(const std::shared_ptr<const LabelVolume>& volume);
+  const LooksTexture& looks(const std::shared_ptr<const LabelLooks>& looks);
+  const VisibleField& visible(Body& body, const LooksTexture& looks);
+  const VisibleField& bones(Body& body, const LooksTexture& looks);
+  VolumePass& volume_pass(const VolumeTexture& volume);
+
+  int largest_texture;
+  ShadePass shade;
+  ComposePass compose;
+  ArmaturePass armature;
+  SlicePass slice;
+  std::string note;
+
+ private:
+  struct Looks {
+    std::weak_ptr<const LabelLooks> key;
+    std::unique_ptr<LooksTexture> texture;
+  };
+  std::vector<std::unique_ptr<Body>> bodies_;
+  std::vector<Looks> looks_;
+  std::map<int, std::unique_ptr<VolumePass>> volume_passes_;  // by number of atlases
+};
+
+}  // namespace limber::render

@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "render/view.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <epoxy/gl.h>
+
+#include "render/renderer_parts.h"
+
+namespace limber::render {
+
+namespace {
+
+constexpr double kRest = 0.1;             // s without a change before the picture is refined
+constexpr double kFrame = 0.028;          // s that a picture may take while something moves
+constexpr double kTileBudget = 0.018;     // s of refinement in one call
+constexpr int kTile = 128;                // pixels
+constexpr int kSamples = 6;               // pictures that are averaged at rest
+constexpr int kCoarsest = 6;
+
+double seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// A texture to draw into.
+class Target {
+ public:
+  void resize(const glm::ivec2& size, GLint internal) {
+    if (size == size_) return;
+    if (!framebuffer_) framebuffer_ = gl::Framebuffer::create(), texture_ = gl::Texture::create();
+    size_ = size;
+    glBindTexture(GL_TEXTURE_2D, texture_.name());
+    glTexImage2D(GL_TEXTURE_2D, 0, internal, size.x, size.y, 0, GL_RGBA, internal == GL_RGBA8 ? GL_UNSIGNED_BYTE : GL_FLOAT, nullptr);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) glTexParameteri(GL_TEXTURE_2D, axis, GL_CLAMP_TO_EDGE);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.name(), 0);
+  }
+  void bind() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+    glViewport(0, 0, size_.x, size_.y);
+  }
+  void clear() const {
+    bind();
+    glDisable(GL_SCISSOR_TEST);
+    const float nothing[4] = {0, 0, 0, 0};
+    glClearBufferfv(GL_COLOR, 0, nothing);
+  }
+  const gl::Texture& texture() const { return texture_; }
+  const glm::ivec2& size() const { return size_; }
+
+ private:
+  gl::Framebuffer framebuffer_;
+  gl::Texture texture_;
+  glm::ivec2 size_{0};
+};
+
+Image read_back(const Target& target, bool premultiplied) {
+  Image image;
+  image.size = target.size();
+  std::vector<std::uint8_t> rows(static_cast<size_t>(image.size.x) * image.size.y * 4);
+  target.bind();
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, image.size.x, image.size.y, GL_RGBA, GL_UNSIGNED_BYTE, rows.data());
+  gl::check_gl("reading a picture");
+  image.rgba.resize(rows.size());
+  const size_t row = static_cast<size_t>(image.size.x) * 4;
+  for (int y = 0; y < image.size.y; ++y)
+    std::copy_n(rows.data() + static_cast<size_t>(image.size.y - 1 - y) * row, row, image.rgba.data() + static_cast<size_t>(y) * row);
+  if (premultiplied)
+    for (size_t i = 0; i < image.rgba.size(); i += 4) {
+      const int alpha = image.rgba[i + 3];
+      for (size_t c = i; c < i + 3; ++c) image.rgba[c] = static_cast<std::uint8_t>(alpha ? std::min(255, (image.rgba[c] * 255 + alpha / 2) / alpha) : 0);
+    }
+  return image;
+}
+
+// What the body's picture depends on. Equal pointers are equal contents.
+struct BodyKey {
+  std::shared_ptr<const LabelVolume> volume;
+  std::shared_ptr<const LabelLooks> looks;
+  Display display{};
+  std::optional<std::array<glm::dvec3, 2>> box, plane;
+  Camera camera;
+  glm::ivec2 size{0};
+
+  bool operator==(const BodyKey&) const = default;
+};
+BodyKey key_of(const Scene& scene, const Camera& camera, const glm::ivec2& size) {
+  return {scene.volume, scene.looks, scene.display, scene.clip.box, scene.clip.plane, camera, size};
+}
+
+// What lies on top of it.
+bool same_pose(const std::vector<RigidTransform>& a, const std::vector<RigidTransform>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& p, const auto& q) { return p.rotation == q.rotation && p.translation == q.translation; });
+}
+bool same_looks(const std::vector<BoneLook>& a, const std::vector<BoneLook>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& p, const auto& q) { return p.selected == q.selected && p.active == q.active && p.hovered == q.hovered; });
+}
+bool same_overlay(const Scene& a, const Scene& b) {
+  return a.armature == b.armature && same_pose(a.posed_from_rest, b.posed_from_rest) && same_looks(a.bones, b.bones) && a.bone_shape == b.bone_shape &&
+         a.bones_in_front == b.bones_in_front && a.grid == b.grid && a.dark_background == b.dark_background &&
+         a.transparent_background == b.transparent_background && a.outlined == b.outlined;
+}
+
+// The box of the volume in the world, or of the armature where there is no volume.
+std::array<glm::dvec3, 2> box_of(const Scene& scene) {
+  glm::dvec3 low(1e300), high(-1e300);
+  const auto take = [&](const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); };
+  if (scene.volume) {
+    const AffineTransform to_world = world_from_voxel(scene.volume->grid);
+    const glm::dvec3 size(scene.volume->grid.size);
+    for (int corner = 0; corner < 8; ++corner)
+      take(to_world * (glm::dvec3(corner & 1 ? size.x : 0, corner & 2 ? size.y : 0, corner & 4 ? size.z : 0) - 0.5));
+  } else if (scene.armature) {
+    for (const Bone& bone : scene.armature->bones) take(bone.head), take(bone.tail);
+  }
+  if (low.x > high.x) return {glm::dvec3(-500), glm::dvec3(500)};
+  return {low, high};
+}
+
+// Halton's sequence of bases 2 and 3 about the pixel's middle; the first sample is the middle.
+glm::dvec2 jitter_of(int sample) {
+  const auto halton = [](int i, int base) {
+    double result = 0, f = 1;
+    for (; i > 0; i /= base) f /= base, result += f * (i % base);
+    return result;
+  };
+  return sample == 0 ? glm::dvec2(0) : glm::dvec2(halton(sample, 2) - 0.5, halton(sample, 3) - 0.5);
+}
+
+}  // namespace
+
+struct View3D::Impl {
+  explicit Impl(Renderer& renderer) : parts(renderer.parts()) {}
+
+  Renderer::Parts& parts;
+  Target output, body, average;
+  GBuffer surface, bones;                    // of the picture that is shown
+  GBuffer jittered_surface, jittered_bones;  // of a sample being averaged
+  BodyKey key;
+  Scene scene;  // last drawn
+  bool drawn = false;
+  double changed_at = 0;
+  int moving_scale = 3;    // pixels each way while moving
+  int shown_scale = 0;     // of the body's picture
+  int sample = 0;          // of the refinement: samples finished
+  int next_tile = 0;       // of the sample under way
+  bool refines = false;    // scale 0: goes on to full resolution and averaging
+  PixelRect rect;          // what the body covers, in pixels of its picture
+
+  struct Source {
+    Renderer::Parts::Body* body = nullptr;
+    const LooksTexture* looks = nullptr;
+    const VisibleField* visible = nullptr;
+    const VisibleField* bones = nullptr;  // X-ray
+  };
+  std::optional<Source> source(const Scene& scene) {
+    if (!scene.volume || !scene.looks) return std::nullopt;
+    Source result;
+    result.body = &parts.body(scene.volume);
+    result.looks = &parts.looks(scene.looks);
+    result.visible = &parts.visible(*result.body, *result.looks);
+    if (scene.display == Display::XRay) result.bones = &parts.bones(*result.body, *result.looks);
+    return result;
+  }
+
+  ViewRays rays_of(const Source& source, const glm::ivec2& size, int sample) const {
+    return view_rays(key.camera, source.body->volume->drawn().grid, size, jitter_of(sample), source.visible->low(), source.visible->high());
+  }
+
+  void start(const Source& source, const ViewRays& rays, GBuffer& surface_buffer, GBuffer& bone_buffer, const glm::ivec2& size, const PixelRect& part) {
+    VolumePass& pass = parts.volume_pass(*source.body->volume);
+    surface_buffer.resize(size);
+    pass.draw_hull(*source.visible, rays, surface_buffer, part);
+    if (!source.bones) return;
+    bone_buffer.resize(size);
+    pass.draw_hull(*source.bones, rays, bone_buffer, part);
+  }
+  void march(const Source& source, const ViewRays& rays, GBuffer& surface_buffer, GBuffer& bone_buffer, const PixelRect& part) {
+    VolumePass& pass = parts.volume_pass(*source.body->volume);
+    const gl::Texture& looks = source.looks->texture();
+    pass.march(*source.body->volume, *source.visible, looks, Sets::Visible, scene.clip, rays, surface_buffer, part);
+    if (source.bones) pass.march(*source.body->volume, *source.bones, looks, Sets::Bone, scene.clip, rays, bone_buffer, part);
+  }
+  void shade(const Source& source, const ViewRays& rays, const GBuffer& surface_buffer, const GBuffer& bone_buffer, const PixelRect& part) {
+    parts.shade.draw(*source.body->volume, *source.visible, surface_buffer, source.bones ? &bone_buffer : nullptr, source.bones, source.looks->texture(),
+                     rays, part);
+  }
+
+  // The whole body at once, at every `scale`-th pixel.
+  void draw_at_once(const Source& source, int scale) {
+    const glm::ivec2 size = glm::max((key.size + scale - 1) / scale, glm::ivec2(1));
+    const ViewRays rays = rays_of(source, size, 0);
+    rect = VolumePass::covered(*source.visible, rays, size);
+    start(source, rays, surface, bones, size, rect);
+    march(source, rays, surface, bones, rect);
+    body.resize(size, GL_RGBA8);
+    body.clear();
+    body.bind();
+    shade(source, rays, surface, bones, rect);
+    shown_scale = scale;
+  }
+
+  // Some tiles of the sample under way; true when the picture to show has changed.
+  bool refine(const Source& source) {
+    const double begin = seconds();
+    const ViewRays rays = rays_of(source, key.size, sample);
+    const PixelRect part = VolumePass::covered(*source.visible, rays, key.size);
+    GBuffer& surface_buffer = jittered_surface;
+    GBuffer& bone_buffer = jittered_bones;
+    if (next_tile == 0) start(source, rays, surface_buffer, bone_buffer, key.size, part);
+    const glm::ivec2 tiles = (part.high - part.low + kTile - 1) / kTile;
+    const int count = part.empty() ? 0 : tiles.x * tiles.y;
+    do {
+      if (next_tile >= count) break;
+      const glm::ivec2 low = part.low + glm::ivec2(next_tile % tiles.x, next_tile / tiles.x) * kTile;
+      march(source, rays, surface_buffer, bone_buffer, intersection(part, {low, low + kTile}));
+      ++next_tile;
+      glFinish();
+    } while (seconds() - begin < kTileBudget);
+    if (next_tile < count) return false;
+
+    body.resize(key.size, GL_RGBA8);
+    body.clear();
+    body.bind();
+    shade(source, rays, surface_buffer, bone_buffer, part);
+    average.resize(key.size, GL_RGBA16F);
+    if (sample == 0) average.clear();
+    average.bind();
+    parts.compose.accumulate(body.texture(), key.size, 1.0f / float(sample + 1), {{0, 0}, key.size});
+    if (sample == 0) {
+      std::swap(surface, jittered_surface);
+      std::swap(bones, jittered_bones);
+      rect = part;
+    }
+    shown_scale = 1;
+    next_tile = 0;
+    ++sample;
+    return true;
+  }
+
+  void compose() {
+    output.bind();
+    const auto background = scene.transparent_background ? Background::Transparent : scene.dark_background ? Background::Dark : Background::Light;
+    parts.compose.background(background, key.size);
+    const auto [low, high] = box_of(scene);
+    if (scene.grid && !scene.transparent_background)
+      parts.compose.grid(key.camera, key.size, (low + high) / 2.0, low.z, std::max(600.0, glm::length(high - low) * 1.5));
+    const bool has_body = shown_scale > 0;
+    if (has_body) parts.compose.body(sample > 0 ? average.texture() : body.texture(), key.size, {{0, 0}, key.size});
+    if (has_body && scene.outlined) parts.compose.outline(surface, *scene.outlined, key.size, {{0, 0}, key.size});
+    parts.armature.draw(scene, key.camera, key.size, has_body && scene.display != Display::XRay ? &surface.depth : nullptr);
+    gl::check_gl("drawing a picture");
+  }
+
+  bool complete() const { return drawn && (!refines || sample == kSamples); }
+};
+
+View3D::View3D(Renderer& renderer) : impl_(std::make_unique<Impl>(renderer)) {}
+View3D::~View3D() = default;
+
+void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, double now, int scale) {
+  Impl& my = *impl_;
+  const BodyKey key = key_of(scene, camera, size);
+  const bool moved = !my.drawn || key != my.key || (scale > 0 && (my.shown_scale != scale || my.sample > 0));
+  const bool overlay_changed = !my.drawn || !same_overlay(scene, my.scene);
+  if (!moved && !overlay_changed && my.complete()) return;
+
+  my.key = key;
+  my.scene = scene;
+  my.output.resize(size, GL_RGBA8);
+  const auto source = my.source(scene);
+  my.refines = scale == 0 && source;
+  bool redraw = overlay_changed || moved;
+  if (!source) {
+    my.shown_scale = 0;
+    my.sample = 0;
+  } else if (moved) {
+    my.changed_at = now;
+    my.sample = my.next_tile = 0;
+    const double begin = seconds();
+    my.draw_at_once(*source, scale > 0 ? scale : my.moving_scale);
+    if (scale == 0) {
+      glFinish();
+      // The cost goes with the number of pixels; a finer picture is tried when it would fit well.
+      const double cost = seconds() - begin;
+      const int at = my.moving_scale;
+      if (cost > kFrame) my.moving_scale = std::min(at + 1, kCoarsest);
+      else if (at > 1 && cost * at * at / ((at - 1) * (at - 1)) < kFrame * 0.85) my.moving_scale = at - 1;
+    }
+  } else if (my.refines && my.sample < kSamples && now - my.changed_at >= kRest) {
+    redraw |= my.refine(*source);
+  }
+  my.drawn = true;
+  if (redraw) my.compose();
+}
+
+bool View3D::complete() const { return impl_->complete(); }
+unsigned View3D::texture() const { return impl_->output.texture().name(); }
+Image View3D::read() const { return read_back(impl_->output, impl_->scene.transparent_background); }
+
+std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
+  const Impl& my = *impl_;
+  if (!my.drawn || my.shown_scale == 0 || !my.scene.volume) return std::nullopt;
+  if (glm::any(glm::lessThan(pixel, glm::ivec2(0))) || glm::any(glm::greaterThanEqual(pixel, my.key.size))) return std::nullopt;
+  const glm::ivec2 buffer_size = my.surface.size();
+  const glm::ivec2 at(pixel.x * buffer_size.x / my.key.size.x, (my.key.size.y - 1 - pixel.y) * buffer_size.y / my.key.size.y);
+
+  // In X-ray the bone under the ghost is meant, where there is one.
+  const auto hit_in = [&](const GBuffer& buffer) -> std::optional<Hit> {
+    float depth = 0;
+    std::uint16_t label = 0;
+    std::uint32_t normal = 0;
+    glBindFramebuffer(GL_FRAMEBUFFER, buffer.march_target.name());
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    glReadPixels(at.x, at.y, 1, 1, GL_RED, GL_FLOAT, &depth);
+    glReadBuffer(GL_COLOR_ATTACHMENT1);
+    glReadPixels(at.x, at.y, 1, 1, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, &normal);
+    glReadBuffer(GL_COLOR_ATTACHMENT2);
+    glReadPixels(at.x, at.y, 1, 1, GL_RED_INTEGER, GL_UNSIGNED_SHORT, &label);
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    if (depth >= kNothingDepth * 0.5f || label == 0) return std::nullopt;
+    Hit hit;
+    hit.label = label;
+    // The buffer's pixel, not the asked one: its ray is the one that was followed.
+    const glm::dvec2 middle((at.x + 0.5) * my.key.size.x / buffer_size.x, my.key.size.y - (at.y + 0.5) * my.key.size.y / buffer_size.y);
+    const Ray ray = ray_through(my.key.camera, middle, my.key.size);
+    const glm::dvec3 ahead = my.key.camera.world_from_view * glm::dvec3(0, 0, -1);
+    hit.point = ray.origin + ray.direction * (double(depth) / glm::dot(ray.direction, ahead));
+    const bool cap = normal >> 30 == 3;
+    const glm::dvec3 view_normal = glm::dvec3(normal & 1023, normal >> 10 & 1023, normal >> 20 & 1023) / 1023.0 * 2.0 - 1.0;
+    if (!cap) hit.normal = my.key.camera.world_from_view * glm::normalize(view_normal);
+
+    // The voxel of that label where the surface lies, walking inward as the shader did.
+    const AffineTransform to_voxel = voxel_from_world(my.scene.volume->grid);
+    const glm::dvec3 inward = to_voxel.linear * (cap ? ray.direction : -hit.normal);
+    const glm::dvec3 step = inward / std::max({std::abs(inward.x), std::abs(inward.y), std::abs(inward.z)}) * 0.25;
+    glm::dvec3 p = to_voxel * hit.point;
+    hit.voxel = glm::ivec3(glm::floor(p + 0.5));
+    for (int i = 0; i < 16; ++i, p += step) {
+      const glm::ivec3 voxel(glm::floor(p + 0.5));
+      if (my.scene.volume->at_or_air(voxel) != label) continue;
+      hit.voxel = voxel;
+      break;
+    }
+    hit.voxel = glm::clamp(hit.voxel, glm::ivec3(0), my.scene.volume->grid.size - 1);
+    return hit;
+  };
+  if (my.scene.display == Display::XRay)
+    if (auto bone = hit_in(my.bones)) return bone;
+  return hit_in(my.surface);
+}
+
+std::optional<int> View3D::pick_bone(const glm::ivec2& pixel) const {
+  const Impl& my = *impl_;
+  if (!my.drawn) return std::nullopt;
+  return bone_at(my.scene, my.key.camera, my.key.size, glm::dvec2(pixel) + 0.5);
+}
+
+SliceFrame frame_of(SliceAxis axis) {
+  switch (axis) {
+    case SliceAxis::Sagittal: return {{0, 1, 0}, {0, 0, -1}, {1, 0, 0}};
+    case SliceAxis::Coronal: return {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
+    case SliceAxis::Axial: break;
+  }
+  return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+}
+
+struct SliceView::Impl {
+  explicit Impl(Renderer& renderer) : parts(renderer.parts()) {}
+  Renderer::Parts& parts;
+  Target output;
+};
+
+SliceView::SliceView(Renderer& renderer) : impl_(std::make_unique<Impl>(renderer)) {}
+SliceView::~SliceView() = default;
+
+void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay display, const glm::ivec2& size) {
+  Impl& my = *impl_;
+  my.output.resize(size, GL_RGBA8);
+  my.output.bind();
+  my.parts.compose.background(scene.dark_background ? Background::Dark : Background::Light, size);
+  if (scene.volume && scene.looks)
+    my.parts.slice.draw(*my.parts.body(scene.volume).volume, my.parts.looks(scene.looks), camera, display, scene.outlined, size);
+  gl::check_gl("drawing a slice");
+}
+
+unsigned SliceView::texture() const { return impl_->output.texture().name(); }
+Image SliceView::read() const { return read_back(impl_->output, false); }
+
+}  // namespace limber::render

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "render/volume_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <epoxy/gl.h>
+
+namespace limber::render {
+
+namespace {
+
+const char* const kHullVertex = R"(
+layout(location = 0) in vec3 corner;
+uniform mat4 u_clip;
+uniform vec4 u_depth;
+out float depth;
+void main() {
+  gl_Position = u_clip * vec4(corner, 1.0);
+  depth = dot(u_depth.xyz, corner) + u_depth.w;
+}
+)";
+
+const char* const kHullFragment = R"(
+in float depth;
+layout(location = 0) out float entry;
+void main() { entry = depth; }
+)";
+
+// Lengths of s are voxels of the axis along which the ray moves fastest, so that no step of 1 passes over a voxel layer.
+const char* const kMarch = R"(
+in vec2 ndc;
+uniform sampler2D u_entry;
+uniform usampler3D u_index;
+uniform usampler2D u_looks;
+uniform uint u_set;
+uniform vec3 u_low, u_high;      // the hull's corners, cut by the clip box
+uniform vec4 u_plane;            // dot(xyz, p) <= w is kept
+uniform bool u_clipped;
+uniform mat3 u_view_from_gradient;
+
+layout(location = 0) out float out_depth;
+layout(location = 1) out vec4 out_normal;
+layout(location = 2) out uint out_label;
+
+const float kBand = 64.0 / 255.0;           // from here on the surface may be near
+const float kFirstFieldValue = 7.5 / 255.0;
+
+struct Slot { ivec3 offset; uint atlas; };
+Slot slot_of(ivec3 block) {
+  uvec4 entry = texelFetch(u_index, block, 0);
+  return Slot(ivec3(entry.xyz) * SLOT + APRON - block * BLOCK, entry.w);
+}
+
+// In the slot of its own block, since p may have left the block in which the march found it.
+Slot slot_at(vec3 p) { return slot_of(ivec3(p) >> BLOCK_SHIFT); }
+
+void main() {
+  vec3 base = u_base + ndc.x * u_base_x + ndc.y * u_base_y;
+  vec3 toward = u_toward + ndc.x * u_toward_x + ndc.y * u_toward_y;
+  vec3 speed = abs(toward);
+  float voxels_per_depth = max(max(speed.x, speed.y), speed.z);
+  vec3 d = toward / voxels_per_depth;
+  vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
+  vec3 inverse_d = 1.0 / safe;
+
+  float s = texelFetch(u_entry, ivec2(gl_FragCoord.xy), 0).r * voxels_per_depth;
+  vec3 t0 = (u_low - base) * inverse_d, t1 = (u_high - base) * inverse_d;
+  vec3 nearer = min(t0, t1), farther = max(t0, t1);
+  float box_start = max(max(nearer.x, nearer.y), nearer.z);
+  float s_end = min(min(farther.x, farther.y), farther.z);
+  bool cut = false;
+  if (u_clipped) {
+    float rate = dot(u_plane.xyz, d), room = u_plane.w - dot(u_plane.xyz, base);
+    if (rate > 0.0) s_end = min(s_end, room / rate);
+    float start = rate < 0.0 ? max(box_start, room / rate) : box_start;
+    if (rate == 0.0 && room < 0.0) s_end = -1e30;
+    cut = start > s;
+    s = max(s, start);
+  }
+  float s_start = s;
+
+  float found = -1e30, before = 0.0, after = 0.0;
+  vec3 block_exit = vec3(greaterThan(d, vec3(0.0))) * float(BLOCK);
+  bool cap = false;
+  for (int blocks = 0; blocks < 1024 && s < s_end && found < -1e29; ++blocks) {
+    vec3 p = base + d * s;
+    ivec3 block = ivec3(p) >> BLOCK_SHIFT;
+    Slot slot = slot_of(block);
+    vec3 leave = (vec3(block * BLOCK) + block_exit - base) * inverse_d;
+    float s_leave = min(min(min(leave.x, leave.y), leave.z) + 1e-3, s_end);
+    float s_march = slot.atlas == 0u ? s_leave : s;
+    float value = 0.0;
+    while (s_march < s_leave) {
+      value = field_texel(slot.atlas, ivec3(base + d * s_march) + slot.offset);
+      if (value >= kBand) break;
+      s_march += value < kFirstFieldValue ? max(1.0, value * (255.0 * BRICK) - float(BRICK - 1)) : 1.0;
+    }
+    // From a voxel before, so that a surface is not met from its inside; the apron reaches far enough.
+    float s_near = max(s_march - 1.0, s_start), s_far = value >= kBand ? s_march + 1.5 : -1e30;
+    vec3 offset = vec3(slot.offset);
+    before = 0.0;
+    while (s_near < s_far) {
+      after = field_at(slot.atlas, base + d * s_near + offset);
+      if (after >= 0.5) { found = s_near; break; }
+      before = after;
+      s_near += 0.5;
+    }
+    s = value >= kBand ? s_march + 1.5 : max(s_march, s_leave);
+  }
+
+  if (found < -1e29 || found > s_end) {
+    out_depth = 1e30;
+    out_normal = vec4(0.0);
+    out_label = 0u;
+    return;
+  }
+  cap = cut && found == s_start;
+  vec3 p = base + d * found;
+  Slot slot = slot_at(p);
+  if (!cap) {
+    // Two steps of the secant.
+    float low = max(found - 0.5, s_start), high = found;
+    float middle = mix(low, high, clamp((0.5 - before) / max(after - before, 1e-3), 0.0, 1.0));
+    vec3 offset = vec3(slot.offset);
+    float value = field_at(slot.atlas, base + d * middle + offset);
+    found = value < 0.5 ? mix(middle, high, clamp((0.5 - value) / max(after - value, 1e-3), 0.0, 1.0))
+                        : mix(low, middle, clamp((0.5 - before) / max(value - before, 1e-3), 0.0, 1.0));
+    p = base + d * found;
+    slot = slot_at(p);
+  }
+
+  vec3 at = p + vec3(slot.offset);
+  vec3 gradient = vec3(field_at(slot.atlas, at + vec3(1, 0, 0)) - field_at(slot.atlas, at - vec3(1, 0, 0)),
+                       field_at(slot.atlas, at + vec3(0, 1, 0)) - field_at(slot.atlas, at - vec3(0, 1, 0)),
+                       field_at(slot.atlas, at + vec3(0, 0, 1)) - field_at(slot.atlas, at - vec3(0, 0, 1)));
+  vec3 steepness = abs(gradient);
+  float steepest = max(max(steepness.x, steepness.y), steepness.z);
+  vec3 inward = steepest < 1e-4 || cap ? d : gradient / steepest;
+  vec3 normal = normalize(-(u_view_from_gradient * inward));
+
+  // The first label of the set, from the surface inward.
+  vec3 step = (cap ? d : inward) * 0.5;
+  vec3 inside = at + step * (cap ? 0.02 : 0.3);
+  uint label = 0u;
+  for (int i = 0; i < 6; ++i) {
+    label = label_at(slot.atlas, ivec3(inside));
+    if ((texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & u_set) != 0u) break;
+    label = 0u;
+    inside += step;
+  }
+
+  out_depth = found / voxels_per_depth;
+  out_normal = vec4(normal * 0.5 + 0.5, cap ? 1.0 : 1.0 / 3.0);
+  out_label = label;
+}
+)";
+
+std::string march_source(int atlases) {
+  const auto define = [](const char* name, int value) { return "#define " + std::string(name) + " " + std::to_string(value) + "\n"; };
+  return define("SLOT", kSlot) + define("APRON", kApron) + define("BLOCK", kBlock) + define("BLOCK_SHIFT", 5) + define("BRICK", kBrick) +
+         kRayUniforms + atlas_functions(atlases) + kMarch;
+}
+static_assert(kBlock == 1 << 5);
+
+void set_scissor(const PixelRect& rect) {
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(rect.low.x, rect.low.y, std::max(rect.high.x - rect.low.x, 0), std::max(rect.high.y - rect.low.y, 0));
+}
+
+void attach(const gl::Texture& texture, const glm::ivec2& size, GLint internal, GLenum pixels, GLenum type, GLenum attachment) {
+  glBindTexture(GL_TEXTURE_2D, texture.name());
+  glTexImage2D(GL_TEXTURE_2D, 0, internal, size.x, size.y, 0, pixels, type, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture.name(), 0);
+}
+
+bool inside(const glm::dvec3& point, const glm::vec3& low, const glm::vec3& high, double margin) {
+  return glm::all(glm::greaterThan(point, glm::dvec3(low) - margin)) && glm::all(glm::lessThan(point, glm::dvec3(high) + margin));
+}
+
+// The eye within the hull's box sees no front faces of what surrounds it: rays then start at the near plane.
+bool eye_inside(const VisibleField& field, const ViewRays& rays) {
+  if (!rays.perspective) return false;  // the orthographic depth range begins before the body
+  const double voxels_per_depth = glm::length(rays.toward) + glm::length(rays.toward_x) + glm::length(rays.toward_y);
+  return inside(rays.eye, field.low(), field.high(), rays.nearest * voxels_per_depth);
+}
+
+}  // namespace
+
+PixelRect intersection(const PixelRect& a, const PixelRect& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
+
+void GBuffer::resize(const glm::ivec2& size) {
+  if (size == size_) return;
+  if (!hull_target) {
+    for (gl::Texture* texture : {&depth, &normal, &label, &entry, &hull_depth}) *texture = gl::Texture::create();
+    hull_target = gl::Framebuffer::create();
+    march_target = gl::Framebuffer::create();
+  }
+  size_ = size;
+  glBindFramebuffer(GL_FRAMEBUFFER, hull_target.name());
+  attach(entry, size, GL_R32F, GL_RED, GL_FLOAT, GL_COLOR_ATTACHMENT0);
+  attach(hull_depth, size, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_DEPTH_ATTACHMENT);
+  glBindFramebuffer(GL_FRAMEBUFFER, march_target.name());
+  attach(depth, size, GL_R32F, GL_RED, GL_FLOAT, GL_COLOR_ATTACHMENT0);
+  attach(normal, size, GL_RGB10_A2, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, GL_COLOR_ATTACHMENT1);
+  attach(label, size, GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, GL_COLOR_ATTACHMENT2);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, hull_depth.name(), 0);
+  const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
+  glDrawBuffers(3, targets);
+  gl::check_gl("the buffers of a picture");
+}
+
+VolumePass::VolumePass(int atlases)
+    : hull_("hull", kHullVertex, kHullFragment), march_("march", gl::kWholePicture, march_source(atlases)), nothing_(gl::VertexArray::create()) {}
+
+PixelRect VolumePass::covered(const VisibleField& field, const ViewRays& rays, const glm::ivec2& size) {
+  if (field.empty()) return {};
+  const PixelRect whole = {{0, 0}, size};
+  glm::dvec2 low(1e30), high(-1e30);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 padded(corner & 1 ? field.high().x : field.low().x, corner & 2 ? field.high().y : field.low().y,
+                            corner & 4 ? field.high().z : field.low().z);
+    const glm::dvec4 clip = rays.clip_from_padded * glm::dvec4(padded, 1);
+    if (clip.w < 1e-6) return whole;
+    const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
+    low = glm::min(low, pixel);
+    high = glm::max(high, pixel);
+  }
+  low = glm::clamp(low - 1.0, glm::dvec2(0), glm::dvec2(size));
+  high = glm::clamp(high + 2.0, glm::dvec2(0), glm::dvec2(size));
+  return intersection(whole, {glm::ivec2(low), glm::ivec2(high)});
+}
+
+void VolumePass::draw_hull(const VisibleField& field, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect) {
+  glBindFramebuffer(GL_FRAMEBUFFER, buffer.hull_target.name());
+  glViewport(0, 0, buffer.size().x, buffer.size().y);
+  set_scissor(rect);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  const bool from_eye = eye_inside(field, rays);
+  const float far = from_eye ? 0.5f : 1.0f, start = static_cast<float>(rays.nearest);
+  glClearBufferfv(GL_DEPTH, 0, &far);
+  if (from_eye) {
+    glClearBufferfv(GL_COLOR, 0, &start);
+    return;
+  }
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glEnable(GL_CULL_FACE);
+  const bool mirrored = glm::determinant(glm::dmat3(rays.padded_from_world)) < 0;
+  glFrontFace(mirrored ? GL_CW : GL_CCW);
+  hull_.use();
+  hull_.set("u_clip", glm::mat4(rays.clip_from_padded));
+  hull_.set("u_depth", glm::vec4(rays.depth_of_padded));
+  field.draw_hull(glm::vec3(rays.eye), rays.perspective);
+  glDisable(GL_CULL_FACE);
+  glFrontFace(GL_CCW);
+}
+
+void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, const gl::Texture& looks, Sets set, const Clip& clip,
+                       const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect) {
+  glBindFramebuffer(GL_FRAMEBUFFER, buffer.march_target.name());
+  glViewport(0, 0, buffer.size().x, buffer.size().y);
+  set_scissor(rect);
+  glDisable(GL_BLEND);
+  const float depth[4] = {kNothingDepth, 0, 0, 0}, normal[4] = {0, 0, 0, 0};
+  const GLuint label[4] = {0, 0, 0, 0};
+  glClearBufferfv(GL_COLOR, 0, depth);
+  glClearBufferfv(GL_COLOR, 1, normal);
+  glClearBufferuiv(GL_COLOR, 2, label);
+  if (field.empty()) return;
+
+  // Drawn at the far plane: only where the hull lies in front.
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_FALSE);
+  march_.use();
+  int unit = volume.bind(march_, 0);
+  unit = field.bind(volume, march_, unit);
+  march_.set_texture("u_entry", unit++, GL_TEXTURE_2D, buffer.entry.name());
+  march_.set_texture("u_looks", unit++, GL_TEXTURE_2D, looks.name());
+  march_.set("u_set", static_cast<unsigned>(set));
+  set_rays(march_, rays);
+  march_.set("u_view_from_gradient", glm::mat3(rays.view_from_gradient));
+  glm::vec3 low = field.low(), high = field.high();
+  if (clip.box) {
+    // A coarser volume's voxels are larger: by the padded coordinates' own scale.
+    const double scale = 1.0 / (1 << volume.halvings());
+    low = glm::max(low, glm::vec3(((*clip.box)[0] + 0.5) * scale + double(kPad)));
+    high = glm::min(high, glm::vec3(((*clip.box)[1] + 0.5) * scale + double(kPad)));
+  }
+  march_.set("u_low", low);
+  march_.set("u_high", high);
+  march_.set("u_plane", clip.plane ? glm::vec4(rays.padded_from_clip_plane((*clip.plane)[0], (*clip.plane)[1])) : glm::vec4(0, 0, 0, 1));
+  march_.set("u_clipped", clip.box || clip.plane ? 1 : 0);
+  glBindVertexArray(nothing_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glBindVertexArray(0);
+}
+
+}  // namespace limber::render

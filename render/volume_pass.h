@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Finds what each pixel shows: rays march through a visible set to its surface, and position, normal and label of what they
+// meet go into buffers that later passes shade, outline and pick from.
+//
+// The hull of the set is drawn first, giving each ray its start; rays of pixels beside it never run. From there a ray reads
+// one texel a step, skipping as far as the texel allows; near the surface it reads filtered values, and the crossing of one
+// half is found by the secant. A ray that the clip box or plane lets into the middle of the body ends at once, on a cap.
+#pragma once
+
+#include <optional>
+
+#include <glm/glm.hpp>
+
+#include "render/gl/object.h"
+#include "render/gl/program.h"
+#include "render/scene.h"
+#include "render/view_rays.h"
+#include "render/visible_field.h"
+#include "render/volume_texture.h"
+
+namespace limber::render {
+
+inline constexpr float kNothingDepth = 1e30f;  // of a pixel that shows nothing of the volume
+
+// Rectangle of a picture's pixels, from the lower left corner.
+struct PixelRect {
+  glm::ivec2 low{0}, high{0};
+  bool empty() const { return high.x <= low.x || high.y <= low.y; }
+};
+PixelRect intersection(const PixelRect& a, const PixelRect& b);
+
+// What the rays of a picture met.
+class GBuffer {
+ public:
+  void resize(const glm::ivec2& size);
+  const glm::ivec2& size() const { return size_; }
+
+  gl::Texture depth;   // R32F: mm before the eye along the direction of view; kNothingDepth
+  gl::Texture normal;  // RGB10_A2: unit, of the view, halved and shifted to [0, 1]; alpha 0 nothing, 1/3 surface, 1 cap
+  gl::Texture label;   // R16UI
+  gl::Texture entry;   // R32F: depth where the ray meets the hull
+  gl::Texture hull_depth;
+  gl::Framebuffer hull_target, march_target;
+
+ private:
+  glm::ivec2 size_{0};
+};
+
+// Which bit of the look table (looks_texture.h) a label must have to be seen.
+enum class Sets { Visible = 1, Bone = 2 };
+
+class VolumePass {
+ public:
+  explicit VolumePass(int atlases);
+
+  // The part of the picture that the hull covers.
+  static PixelRect covered(const VisibleField& field, const ViewRays& rays, const glm::ivec2& size);
+
+  // The start of every ray inside `rect`.
+  void draw_hull(const VisibleField& field, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);
+  // What the rays of `rect` meet.
+  void march(const VolumeTexture& volume, const VisibleField& field, const gl::Texture& looks, Sets set, const Clip& clip, const ViewRays& rays,
+             const GBuffer& buffer, const PixelRect& rect);
+
+ private:
+  gl::Program hull_, march_;
+  gl::VertexArray nothing_;
+};
+
+}  // namespace limber::render

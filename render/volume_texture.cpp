@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "render/volume_texture.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <epoxy/gl.h>
+
+#include "core/base/error.h"
+
+namespace limber::render {
+
+namespace {
+
+constexpr Format3D kLabels = {GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, false};
+constexpr int kMostHalvings = 3;
+
+// The labels of a slot, its apron included; air outside the grid.
+void gather(const LabelVolume& volume, const glm::ivec3& block, std::vector<Label>& slot) {
+  const glm::ivec3 low = block * kBlock - kApron - kPad, size = volume.grid.size;
+  slot.assign(static_cast<size_t>(kSlot) * kSlot * kSlot, 0);
+  const int from = std::max(low.x, 0), to = std::min(low.x + kSlot, size.x);
+  if (from >= to) return;
+  for (int z = std::max(low.z, 0); z < std::min(low.z + kSlot, size.z); ++z)
+    for (int y = std::max(low.y, 0); y < std::min(low.y + kSlot, size.y); ++y) {
+      const Label* row = volume.voxels.data() + volume.grid.index({0, y, z});
+      std::copy(row + from, row + to, slot.data() + ((z - low.z) * kSlot + (y - low.y)) * kSlot + (from - low.x));
+    }
+}
+
+std::string describe(const glm::ivec3& size) {
+  return std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z) + " voxels";
+}
+
+}  // namespace
+
+bool allocate(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const void* texels) {
+  glBindTexture(GL_TEXTURE_3D, texture.name());
+  glTexImage3D(GL_PROXY_TEXTURE_3D, 0, format.internal, size.x, size.y, size.z, 0, format.pixels, format.type, nullptr);
+  GLint width = 0;
+  glGetTexLevelParameteriv(GL_PROXY_TEXTURE_3D, 0, GL_TEXTURE_WIDTH, &width);
+  if (width == 0) return false;
+  gl::check_gl("before a volume is uploaded");
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage3D(GL_TEXTURE_3D, 0, format.internal, size.x, size.y, size.z, 0, format.pixels, format.type, texels);
+  if (glGetError() != GL_NO_ERROR) return false;
+  const GLint filter = format.linear ? GL_LINEAR : GL_NEAREST;
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, filter);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) glTexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
+  return true;
+}
+
+bool upload_index(const gl::Texture& texture, const BlockLayout& layout, const std::vector<std::uint8_t>& present) {
+  std::vector<glm::u8vec4> texels(layout.slot_of_block.size(), glm::u8vec4(0));
+  for (size_t s = 0; s < present.size(); ++s) {
+    if (!present[s]) continue;
+    const int slot = static_cast<int>(s);
+    texels[static_cast<size_t>(layout.block_index(layout.block_of_slot[s]))] = glm::u8vec4(layout.place_of(slot), layout.atlas_of(slot) + 1);
+  }
+  return allocate(texture, layout.blocks, {GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE, false}, texels.data());
+}
+
+int bind_atlases(gl::Program& program, const std::string& name, const std::vector<gl::Texture>& atlases, int first) {
+  for (size_t a = 0; a < atlases.size(); ++a)
+    program.set_texture((name + std::to_string(a)).c_str(), first++, GL_TEXTURE_3D, atlases[a].name());
+  return first;
+}
+
+VolumeTexture::VolumeTexture(std::shared_ptr<const LabelVolume> volume, int largest_texture)
+    : original_(volume), drawn_(std::move(volume)), largest_texture_(largest_texture) {
+  for (;;) {
+    layout_ = block_layout(*drawn_);
+    if (place_slots(layout_, largest_texture) && upload()) break;
+    atlases_.clear();
+    if (halvings_ == kMostHalvings)
+      throw Error("the volume cannot be shown: the graphics driver has no room for it", describe(original_->grid.size),
+                  "re-grid it with a larger spacing");
+    drawn_ = std::make_shared<const LabelVolume>(halved(*drawn_));
+    ++halvings_;
+  }
+  if (halvings_ > 0)
+    note_ = "Shown at 1/" + std::to_string(1 << halvings_) + " of its resolution: the graphics driver has no room for " + describe(original_->grid.size);
+}
+
+bool VolumeTexture::upload() {
+  const glm::ivec3 size = layout_.slots * kSlot;
+  for (int a = 0; a < layout_.atlases; ++a) {
+    atlases_.push_back(gl::Texture::create());
+    if (!allocate(atlases_.back(), size, kLabels)) return false;
+  }
+  std::vector<Label> slot;
+  for (size_t s = 0; s < layout_.block_of_slot.size(); ++s) {
+    gather(*drawn_, layout_.block_of_slot[s], slot);
+    const glm::ivec3 at = layout_.place_of(static_cast<int>(s)) * kSlot;
+    glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<size_t>(layout_.atlas_of(static_cast<int>(s)))].name());
+    glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, kSlot, kSlot, kSlot, kLabels.pixels, kLabels.type, slot.data());
+  }
+  if (!index_) index_ = gl::Texture::create();
+  return glGetError() == GL_NO_ERROR && upload_index(index_, layout_, std::vector<std::uint8_t>(layout_.block_of_slot.size(), 1));
+}
+
+int VolumeTexture::bind(gl::Program& program, int first) const { return bind_atlases(program, "u_labels", atlases_, first); }
+
+std::string atlas_functions(int atlases) {
+  const auto each = [&](const char* before, const char* after) {
+    std::string text;
+    for (int a = 0; a < atlases; ++a) text += before + std::to_string(a) + after;
+    return text;
+  };
+  // Which atlas to read is told by the index's last channel, counted from 1; the first needs no test when it is alone.
+  const auto choose = [&](const std::string& read) {
+    std::string text;
+    for (int a = 0; a < atlases; ++a) {
+      std::string line = "  return " + read + ";\n";
+      line.replace(line.find('@'), 1, std::to_string(a));
+      text += a + 1 < atlases ? "  if (atlas == " + std::to_string(a + 1) + "u)" + line : line;
+    }
+    return text;
+  };
+  return each("uniform sampler3D u_field", ";\n") + each("uniform usampler3D u_labels", ";\n") +
+         "uniform vec3 u_texel;\n"
+         "float field_texel(uint atlas, ivec3 at) {\n" + choose("texelFetch(u_field@, at, 0).r") + "}\n"
+         "float field_at(uint atlas, vec3 at) {\n" + choose("textureLod(u_field@, at * u_texel, 0.0).r") + "}\n"
+         "uint label_at(uint atlas, ivec3 at) {\n" + choose("texelFetch(u_labels@, at, 0).r") + "}\n";
+}
+
+}  // namespace limber::render
