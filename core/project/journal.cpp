@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/project/journal.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "core/project/bytes.h"
+
+namespace limber {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic = "LimberEd";
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHeadBytes = 8, kSumBytes = 8;
+constexpr std::size_t kMostPayload = kLargestChunk + (std::size_t{1} << 20);  // an incompressible chunk is a little larger
+
+enum RecordType : std::uint32_t { kHeader = 1, kChunk = 2, kEdit = 3 };
+
+std::int64_t now() {
+  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+// type, length, payload, the beginning of the SHA-256 of these
+std::string record(std::uint32_t type, const std::string& payload) {
+  ByteWriter out;
+  out.put(type);
+  out.text(payload);
+  std::string bytes = out.take();
+  const auto sum = sha256(bytes.data(), bytes.size());
+  bytes.append(reinterpret_cast<const char*>(sum.data()), kSumBytes);
+  return bytes;
+}
+
+void put_hash(ByteWriter& out, const ChunkHash& hash) { out.raw(hash.bytes.data(), hash.bytes.size()); }
+ChunkHash get_hash(ByteReader& in) {
+  ChunkHash hash;
+  std::memcpy(hash.bytes.data(), in.raw(hash.bytes.size()).data(), hash.bytes.size());
+  return hash;
+}
+
+std::string header_payload(const JournalWriter::Start& start) {
+  ByteWriter out;
+  out.raw(kMagic.data(), kMagic.size());
+  out.put(kVersion);
+  out.text(start.project.string());
+  out.flag(start.base.has_value());
+  const SaveMark base = start.base.value_or(SaveMark{});
+  put_hash(out, base.root);
+  out.text(base.id);
+  return out.take();
+}
+
+Error no_journal(const std::string& where) {
+  return {"this is not a journal of edits, or its beginning is damaged", where, "open the project itself"};
+}
+
+struct Malformed {};
+
+}  // namespace
+
+// ---- writing
+
+JournalWriter::JournalWriter(Start start, DocumentWriter& writer, const OpenLog& open) : chunks_(std::move(start.base_chunks)) {
+  const Path fresh = start.path.string() + ".new";
+  struct Remove {
+    const Path& path;
+    ~Remove() {
+      std::error_code ignored;
+      fs::remove(path, ignored);
+    }
+  } remove{fresh};
+  file_ = open(fresh);
+  append(kHeader, header_payload(start));
+  if (start.document)
+    write(*start.document, start.label, writer);
+  else
+    file_->sync();
+  std::error_code error;
+  if (!start.replace) fs::create_hard_link(fresh, start.path, error);
+  if (start.replace || (error && error != std::errc::file_exists)) fs::rename(fresh, start.path, error);
+  if (error) throw Error("your edits cannot be kept between saves", start.path.string(), error.message());
+  sync_folder(start.path.parent_path());
+}
+
+bool JournalWriter::has(const ChunkHash& hash) { return chunks_.contains(hash); }
+
+void JournalWriter::put(const ChunkHash& hash, const std::string& packed) {
+  ByteWriter out;
+  put_hash(out, hash);
+  out.raw(packed.data(), packed.size());
+  append(kChunk, out.take());
+  chunks_.insert(hash);
+}
+
+void JournalWriter::append(std::uint32_t type, const std::string& payload) {
+  const std::string bytes = record(type, payload);
+  try {
+    file_->append(bytes);
+  } catch (...) {
+    file_->cut(bytes_);
+    throw;
+  }
+  bytes_ += std::ssize(bytes);
+}
+
+void JournalWriter::write(const Document& document, const std::string& label, DocumentWriter& writer) {
+  const ChunkHash root = writer.write(document, *this, Packing::Quick);
+  ByteWriter out;
+  put_hash(out, root);
+  out.text(label);
+  out.put(now());
+  append(kEdit, out.take());
+  try {
+    file_->sync();
+  } catch (...) {
+    broken_ = true;  // nobody knows what of it is on the disk
+    throw;
+  }
+}
+
+// ---- reading
+
+JournalReader::JournalReader(const Path& path) : where_(path.string()), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+  if (descriptor_ < 0) throw Error("the journal of edits cannot be opened", where_, std::strerror(errno));
+  try {
+    scan();
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+JournalReader::~JournalReader() { ::close(descriptor_); }
+
+namespace {
+bool read_at(int descriptor, std::int64_t offset, char* to, std::size_t size) {
+  while (size > 0) {
+    const ssize_t got = ::pread(descriptor, to, size, offset);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    to += got;
+    offset += got;
+    size -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+}  // namespace
+
+// Up to the first record that is not whole.
+void JournalReader::scan() {
+  std::int64_t offset = 0;
+  const std::int64_t end = ::lseek(descriptor_, 0, SEEK_END);
+  for (bool first = true;; first = false) {
+    char head[kHeadBytes];
+    std::uint32_t type = 0, size = 0;
+    bool whole = read_at(descriptor_, offset, head, sizeof head);
+    std::memcpy(&type, head, sizeof type);
+    std::memcpy(&size, head + sizeof type, sizeof size);
+    whole = whole && size <= kMostPayload && offset + static_cast<std::int64_t>(kHeadBytes + size + kSumBytes) <= end;
+    std::string bytes;
+    if (whole) {
+      bytes.resize(kHeadBytes + size + kSumBytes);
+      whole = read_at(descriptor_, offset, bytes.data(), bytes.size());
+    }
+    if (whole) {
+      const auto sum = sha256(bytes.data(), kHeadBytes + size);
+      whole = std::memcmp(sum.data(), bytes.data() + kHeadBytes + size, kSumBytes) == 0;
+    }
+    if (!whole || (first && type != kHeader)) {
+      if (first) throw no_journal(where_);
+      return;
+    }
+    try {
+      ByteReader in(std::string_view(bytes).substr(kHeadBytes, size), [] { throw Malformed(); });
+      if (type == kHeader) {
+        in.require(first && in.raw(kMagic.size()) == kMagic);
+        if (in.get<std::uint32_t>() != kVersion)
+          throw Error("the journal of edits was written by another version of Limber", where_, "open it with that version");
+        project_ = in.text();
+        const bool has_base = in.flag();
+        SaveMark base;
+        base.root = get_hash(in);
+        base.id = in.text();
+        if (has_base) base_ = base;
+      } else if (type == kChunk) {
+        const ChunkHash hash = get_hash(in);
+        chunks_[hash.bytes] = {offset + static_cast<std::int64_t>(kHeadBytes + sizeof(ChunkHash)), static_cast<std::uint32_t>(size - sizeof(ChunkHash))};
+      } else if (type == kEdit) {
+        Edit edit;
+        edit.root = get_hash(in);
+        edit.label = in.text();
+        edit.time = in.get<std::int64_t>();
+        edits_.push_back(std::move(edit));
+      }
+    } catch (const Malformed&) {
+      throw no_journal(where_);
+    }
+    offset += static_cast<std::int64_t>(kHeadBytes + size + kSumBytes);
+  }
+}
+
+std::optional<std::string> JournalReader::find(const ChunkHash& hash) {
+  const auto place = chunks_.find(hash.bytes);
+  if (place == chunks_.end()) return std::nullopt;
+  std::string packed(place->second.size, '\0');
+  if (!read_at(descriptor_, place->second.offset, packed.data(), packed.size())) return std::nullopt;
+  return packed;
+}
+
+// ---- what a session has left
+
+Path edits_folder() {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  const char* home = std::getenv("HOME");
+  const Path base = state && *state ? Path(state) : home && *home ? Path(home) / ".local/state" : fs::temp_directory_path();
+  const Path folder = base / "limber" / "edits";
+  std::error_code ignored;
+  fs::create_directories(folder, ignored);
+  return folder;
+}
+
+Path journal_path(const Path& project) { return project.string() + "-edits"; }
+
+std::optional<Recoverable> recoverable(const Path& journal) {
+  try {
+    const FileLock lock(journal);
+    if (!lock.taken()) return std::nullopt;
+    const JournalReader reader(journal);
+    if (reader.edits().empty()) return std::nullopt;
+    const JournalReader::Edit& last = reader.edits().back();
+    if (!reader.project().empty() && is_project(reader.project()) && read_mark(reader.project()).root == last.root) return std::nullopt;
+    return Recoverable{journal, reader.project(), last.label, last.time, std::ssize(reader.edits())};
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+std::vector<Recoverable> all_recoverable(const Path& folder) {
+  std::vector<Recoverable> all;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() != ".edits") continue;
+    std::error_code ignored;
+    Path journal = entry.path();
+    if (entry.is_symlink(ignored)) journal = fs::read_symlink(journal, ignored);
+    if (!fs::exists(journal, ignored)) {
+      fs::remove(entry.path(), ignored);
+      continue;
+    }
+    if (auto one = recoverable(journal)) all.push_back(std::move(*one));
+  }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.time > b.time; });
+  return all;
+}
+
+Recovered recover(const Path& journal, Progress& progress) {
+  JournalReader reader(journal);
+  std::unique_ptr<ProjectChunks> saved;
+  Recovered recovered;
+  try {
+    if (!reader.project().empty()) saved = std::make_unique<ProjectChunks>(reader.project());
+  } catch (const Error& error) {
+    recovered.warnings.push_back(error.what());
+  }
+  struct Both final : ChunkSource {
+    JournalReader& journal;
+    ChunkSource* saved;
+    Both(JournalReader& the_journal, ChunkSource* the_saved) : journal(the_journal), saved(the_saved) {}
+    std::optional<std::string> find(const ChunkHash& hash) override {
+      if (auto packed = journal.find(hash)) return packed;
+      return saved ? saved->find(hash) : std::nullopt;
+    }
+  } both(reader, saved.get());
+
+  const auto& edits = reader.edits();
+  for (auto edit = edits.rbegin(); edit != edits.rend(); ++edit) {
+    try {
+      std::vector<std::string> warnings;
+      recovered.document = read_document(edit->root, both, journal.string(), warnings, {}, progress);
+      recovered.project = reader.project();
+      recovered.label = edit->label;
+      recovered.warnings.insert(recovered.warnings.end(), warnings.begin(), warnings.end());
+      if (edit != edits.rbegin())
+        recovered.warnings.push_back("the last " + std::to_string(edit - edits.rbegin()) + " edits could not be read: parts of the project are missing");
+      return recovered;
+    } catch (const Error&) {
+      continue;  // an earlier one may be whole
+    }
+  }
+  throw Error("no edit can be recovered", journal.string(), edits.empty() ? "the journal is empty" : "the project it builds on is missing or damaged");
+}
+
+void discard(const Path& journal, const Path& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    std::error_code ignored;
+    if (entry.is_symlink(ignored) && fs::read_symlink(entry.path(), ignored) == journal) fs::remove(entry.path(), ignored);
+  }
+  fs::remove(journal, error);
+}
+
+}  // namespace limber
