@@ -2,11 +2,18 @@
 // The program: the editor, or with a subcommand the command line.
 #include "core/cmd/command.h"
 #include "editor/commands/command.h"
+#include "editor/loop.h"
 
 int main(int argc, char** argv) {
-  CLI::App app("Limber changes the pose of labelled voxel anatomy.", "limber");
-  app.require_subcommand(1);
+  CLI::App app("Limber changes the pose of labelled voxel anatomy. Without a command it opens the editor.", "limber");
+  std::vector<std::string> files;
+  app.add_option("FILE", files, "volumes or a project to open in the editor");
+  app.require_subcommand(0, 1);
   limber::cmd::add_commands(app);
+  limber::editor::add_editor(app);
   limber::editor::add_render(app);
+  app.callback([&] {
+    if (app.get_subcommands().empty()) limber::editor::run_editor({.files = {files.begin(), files.end()}});
+  });
   return limber::cmd::run(app, argc, argv);
 }

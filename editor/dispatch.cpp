@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/dispatch.h"
+
+#include <imgui.h>
+#include <imgui_internal.h>
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kDragThreshold = 4;   // pixels at scale 1, before a press is a drag
+constexpr double kLongestClick = 0.3;  // s
+
+bool dialog_open(const Editor& editor) { return editor.dialog || !editor.messages.errors.empty(); }
+
+// Chords that a focused text field wants itself.
+bool belongs_to_text(const Chord& chord) {
+  if (chord.modifiers.alt) return false;
+  if (chord.key >= Key::F1 && chord.key <= Key::F12) return false;
+  if (!chord.modifiers.ctrl) return true;
+  constexpr Key kEditing[] = {Key::A, Key::C, Key::V, Key::X, Key::Y, Key::Z, Key::Left, Key::Right, Key::Home, Key::End, Key::Delete, Key::Backspace};
+  return std::find(std::begin(kEditing), std::end(kEditing), chord.key) != std::end(kEditing);
+}
+
+void run_chord(Editor& editor, const Chord& chord) {
+  if (const std::string* id = editor.keymap.find(chord, contexts(editor))) run(editor, *id);
+}
+
+void on_key(Editor& editor, const KeyChanged& event) {
+  if (!event.down || event.key >= Key::Ctrl) return;
+  if (event.key == Key::Escape) {
+    if (editor.drag) {
+      if (editor.drag->cancelled) editor.drag->cancelled(editor);
+      editor.drag.reset();
+    } else if (!editor.messages.errors.empty()) {
+      editor.messages.errors.erase(editor.messages.errors.begin());
+    } else if (editor.dialog && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) {
+      editor.dialog->escape(editor);
+    }
+    return;
+  }
+  const Chord chord{Chord::Kind::Key, editor.input.modifiers(), event.key};
+  if (editor.drag || dialog_open(editor)) return;
+  if (ImGui::GetIO().WantTextInput && belongs_to_text(chord)) return;
+  if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) return;
+  run_chord(editor, chord);
+}
+
+// A press that may become a drag.
+void on_press(Editor& editor, MouseButton button) {
+  const ViewPlace* view = hovered_view(editor);
+  if (!view || editor.drag || dialog_open(editor)) return;
+  editor.views->active = view->id;
+  const Modifiers modifiers = editor.input.modifiers();
+  const Chord press{Chord::Kind::Press, modifiers, Key::None, button}, drag{Chord::Kind::Drag, modifiers, Key::None, button};
+  if (!editor.keymap.find(drag, contexts(editor))) return run_chord(editor, press);
+  editor.pending_press = {press, drag, editor.input.pointer, editor.now};
+}
+
+void on_release(Editor& editor, MouseButton button) {
+  if (editor.pending_press && editor.pending_press->press.button == button) {
+    const PendingPress pending = *editor.pending_press;
+    editor.pending_press.reset();
+    if (editor.now - pending.since < kLongestClick) run_chord(editor, pending.press);
+  }
+  if (!editor.drag || editor.drag->button != button) return;
+  const Drag ended = std::move(*editor.drag);
+  editor.drag.reset();
+  if (ended.ended) ended.ended(editor);
+}
+
+void on_move(Editor& editor, const glm::vec2& by) {
+  if (editor.pending_press && glm::distance(editor.pending_press->from, editor.input.pointer) >= kDragThreshold * editor.look.scale) {
+    const PendingPress pending = *editor.pending_press;
+    editor.pending_press.reset();
+    run_chord(editor, pending.drag);
+    if (editor.drag && editor.drag->moved) editor.drag->moved(editor, editor.input.pointer - pending.from);
+    return;
+  }
+  if (editor.drag && editor.drag->moved) editor.drag->moved(editor, by);
+}
+
+}  // namespace
+
+const ViewPlace* hovered_view(const Editor& editor) {
+  const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
+  if (window && std::string_view(window->RootWindow->Name) != "##views") return nullptr;
+  return editor.layout.view_at(editor.input.pointer);
+}
+
+std::vector<std::string> contexts(const Editor& editor) {
+  std::vector<std::string> contexts;
+  const ViewPlace* view = hovered_view(editor);
+  if (view && view->id != ViewId::Body) contexts.push_back("slice");
+  if (view && view->id == ViewId::Body) contexts.push_back("view3d");
+  constexpr const char* kWorkspaces[] = {"rig", "skin", "pose", "resample"};
+  contexts.push_back(kWorkspaces[static_cast<int>(editor.workspace)]);
+  contexts.push_back("select");
+  if (!view) contexts.push_back("view3d");
+  contexts.push_back("global");
+  return contexts;
+}
+
+void dispatch(Editor& editor, const std::vector<Event>& events, InputState before) {
+  const InputState after = editor.input;
+  for (const Event& event : events) {
+    const glm::vec2 from = before.pointer;
+    before.apply(event);
+    editor.input = before;
+    if (std::holds_alternative<PointerMoved>(event)) {
+      on_move(editor, before.pointer - from);
+    } else if (const auto* button = std::get_if<ButtonChanged>(&event)) {
+      button->down ? on_press(editor, button->button) : on_release(editor, button->button);
+    } else if (const auto* wheel = std::get_if<Wheeled>(&event)) {
+      editor.input.wheel = wheel->steps;
+      if (hovered_view(editor) && !editor.drag && !dialog_open(editor)) run_chord(editor, {Chord::Kind::Wheel, before.modifiers()});
+    } else if (const auto* key = std::get_if<KeyChanged>(&event)) {
+      on_key(editor, *key);
+    } else if (const auto* dropped = std::get_if<FilesDropped>(&event)) {
+      editor.to_open.insert(editor.to_open.end(), dropped->paths.begin(), dropped->paths.end());
+    } else if (const auto* focus = std::get_if<FocusChanged>(&event); focus && !focus->focused) {
+      editor.pending_press.reset();
+      editor.drag.reset();
+    }
+  }
+  editor.input = after;
+}
+
+}  // namespace limber::editor

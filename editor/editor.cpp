@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/editor.h"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include "editor/assets.h"
+#include "editor/dispatch.h"
+#include "editor/panels/panels.h"
+#include "editor/project.h"
+#include "editor/tooltip.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kCameraMove = 0.18;  // s
+constexpr double kLongestRest = 60;   // s; only so that a wait ends at all
+constexpr double kJobPulse = 0.1;     // s between frames while a job runs
+constexpr int kJobsAtOnce = 2;
+
+void draw_view_picture(Views& views, const ViewPlace& place, double now) {
+  const glm::ivec2 size(place.rect.size());
+  if (size.x < 1 || size.y < 1) return;
+  if (place.id == ViewId::Body) {
+    views.body.picture->draw(views.scene, views.body.camera, size, now);
+    return;
+  }
+  SliceState& slice = slice_of(views, place.id);
+  const glm::dvec3 normal = render::frame_of(slice.camera.axis).normal;
+  slice.camera.centre += normal * glm::dot(views.cross_hair - slice.camera.centre, normal);
+  slice.picture->draw(views.scene, slice.camera, views.slice_display, size);
+}
+
+void move_camera(BodyView& body, double now, bool at_once) {
+  if (!body.move) return;
+  const double t = at_once ? 1 : glm::clamp((now - body.move->start) / kCameraMove, 0.0, 1.0);
+  body.camera = between(body.move->from, body.move->to, 1 - (1 - t) * (1 - t) * (1 - t));
+  if (t >= 1) body.move.reset();
+}
+
+}  // namespace
+
+void Dialog::escape(Editor& editor) { editor.close_dialog(); }
+
+Editor::Editor(Host& host, const Preferences& preferences)
+    : host(host), preferences(preferences), keymap(read_keymap(asset("keymap.json"))), operators(gather_operators()),
+      jobs(kJobsAtOnce, [&host] { host.wake(); }) {
+  IMGUI_CHECKVERSION();
+  imgui = ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.ConfigInputTextCursorBlink = false;  // an idle editor draws nothing
+  io.ClipboardUserData = &host;
+  io.GetClipboardTextFn = [](void* user) {
+    static std::string text;
+    text = static_cast<Host*>(user)->clipboard();
+    return text.c_str();
+  };
+  io.SetClipboardTextFn = [](void* user, const char* text) { static_cast<Host*>(user)->set_clipboard(text); };
+  teach_imgui_keys();
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+  views.emplace();
+  for (int w = 0; w < 4; ++w) arrangements[w] = default_arrangement(static_cast<Workspace>(w));
+  apply_look(look, preferences.theme, static_cast<float>(preferences.scale * host.monitor_scale()));
+  layout = arrange(host.size(), look.scale, arrangement());
+}
+
+Editor::~Editor() {
+  ImGui::SetCurrentContext(imgui);
+  views.reset();
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui::DestroyContext(imgui);
+}
+
+void Editor::open_dialog(std::unique_ptr<Dialog> dialog) { next_dialog_ = std::move(dialog); }
+void Editor::close_dialog() { next_dialog_ = std::unique_ptr<Dialog>(); }
+
+double Editor::rest() const {
+  if (frames_wanted_ > 0 || !host.events.empty() || views->body.move) return 0;
+  if (layout.place_of(ViewId::Body) && !views->body.picture->complete()) return 0;
+  double seconds = kLongestRest;
+  seconds = std::min(seconds, wake_at_ - now);
+  if (jobs.busy()) seconds = std::min(seconds, kJobPulse);
+  return std::clamp(seconds, 0.0, kLongestRest);
+}
+
+void Editor::take_input() {
+  const std::vector<Event> events = host.events.take_frame();
+  const InputState before = input;
+  input.wheel = 0;
+  for (const Event& event : events) input.apply(event);
+  if (!events.empty()) touch();
+  if (!events.empty() && views->body.move && !std::holds_alternative<PointerMoved>(events.front())) views->body.move.reset();
+  tell_imgui(events, input);
+  ImGui::NewFrame();
+  dispatch(*this, events, before);
+}
+
+void Editor::draw_views() {
+  update_scene(*views, document(), selection, preferences.theme == "dark");
+  move_camera(views->body, now, preferences.reduce_motion);
+  for (const ViewPlace& place : layout.view_places) draw_view_picture(*views, place, now);
+  hover_views(*this);
+}
+
+void Editor::draw() {
+  widgets.begin_frame();
+  cursor = Cursor::Arrow;
+  wake_at_ = 1e300;
+  place.windows.clear();
+  draw_top_bar(*this);
+  draw_tool_header(*this);
+  draw_views_region(*this);
+  draw_tool_strip(*this);
+  draw_bottom(*this);
+  draw_status_bar(*this);
+  draw_sidebar(*this);
+  draw_splitters(*this);
+  draw_toasts(*this);
+  if (dialog) dialog->draw(*this);
+  draw_error_message(*this);
+  draw_tooltip(*this);
+  widgets.end_frame();
+  host.set_cursor(ImGui::GetIO().WantTextInput ? Cursor::Text : cursor);
+  // Regions stand behind popups and dialogs, in the order in which they were drawn.
+  for (auto name = place.windows.rbegin(); name != place.windows.rend(); ++name) ImGui::BringWindowToDisplayBack(ImGui::FindWindowByName(name->c_str()));
+}
+
+void Editor::frame(double time) {
+  ImGui::SetCurrentContext(imgui);
+  ImGuiIO& io = ImGui::GetIO();
+  io.DeltaTime = static_cast<float>(glm::clamp(time - now, 1e-4, 0.25));
+  now = time;
+  if (frames_wanted_ > 0) --frames_wanted_;
+
+  const glm::ivec2 size = host.size();
+  if (size.x < 1 || size.y < 1) return;  // minimized
+  if (glm::vec2(size) != layout.window.size()) touch();
+  if (apply_look_if_changed(*this)) touch();
+  io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
+  layout = arrange(size, look.scale, arrangement());
+  ImGui_ImplOpenGL3_NewFrame();
+  take_input();
+  open_waiting_files(*this);
+  if (poll_jobs(*this)) touch();
+  layout = arrange(size, look.scale, arrangement());
+  draw_views();
+  draw();
+  if (next_dialog_) {
+    dialog = std::move(*next_dialog_);
+    next_dialog_.reset();
+    touch();
+  }
+
+  ImGui::Render();
+  glBindFramebuffer(GL_FRAMEBUFFER, host.framebuffer());
+  glViewport(0, 0, size.x, size.y);
+  const ImVec4 gap = ImGui::ColorConvertU32ToFloat4(look.theme.void_);
+  glClearColor(gap.x, gap.y, gap.z, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  host.present();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The editor: what is open, how the window is arranged, what the user is doing. Operators change it, panels draw it; both
+// get it as their argument. frame() is one turn: take events, dispatch them to operators, draw everything.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/project/history.h"
+#include "core/project/job.h"
+#include "editor/host.h"
+#include "editor/keymap.h"
+#include "editor/layout.h"
+#include "editor/look.h"
+#include "editor/messages.h"
+#include "editor/operators/operator.h"
+#include "editor/views.h"
+#include "editor/widget_registry.h"
+
+struct ImGuiContext;
+
+namespace limber::editor {
+
+struct Preferences {
+  std::string theme = "dark";
+  double scale = 1;           // times the monitor's, [0.75, 3]
+  double tooltip_delay = 0.5;  // s
+  bool reduce_motion = false;
+};
+
+// What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
+struct Drag {
+  MouseButton button = MouseButton::Left;
+  std::function<void(Editor&, const glm::vec2& pixels)> moved;  // by how much since the last call
+  std::function<void(Editor&)> ended, cancelled;
+};
+
+// A press that is still either a click or the beginning of a drag.
+struct PendingPress {
+  Chord press, drag;
+  glm::vec2 from;
+  double since;
+};
+
+// Something in the middle of the window that everything else waits for; only one at a time.
+class Dialog {
+ public:
+  virtual ~Dialog() = default;
+  virtual void draw(Editor& editor) = 0;  // between begin_dialog and end_dialog of dialog.h
+  virtual void escape(Editor& editor);    // closes it
+};
+
+// What a click can do to the left button in a view.
+enum class Tool { Select, CrossHair };
+
+struct Editor {
+  explicit Editor(Host& host, const Preferences& preferences = {});
+  ~Editor();
+  Editor(const Editor&) = delete;
+  Editor& operator=(const Editor&) = delete;
+
+  void frame(double now);  // seconds, of any steady clock
+  double rest() const;     // seconds that may pass until the next frame when nothing happens; 0: draw on
+  bool at_rest() const { return rest() > 0 && !jobs.busy(); }
+
+  Arrangement& arrangement() { return arrangements[static_cast<std::size_t>(workspace)]; }
+  const Arrangement& arrangement() const { return arrangements[static_cast<std::size_t>(workspace)]; }
+  const Document& document() const { return history.current(); }
+  void open_dialog(std::unique_ptr<Dialog> dialog);  // in place of an open one, from the next frame on
+  void close_dialog();
+  // Draws again at that time, though nothing happens until then.
+  void wake_at(double time) { wake_at_ = std::min(wake_at_, std::max(time, now)); }
+  // Draws again, after something changed that no event tells of.
+  void touch() { frames_wanted_ = 3; }
+
+  Host& host;
+  Preferences preferences;
+  std::string shown_theme;
+  Look look;
+  WidgetRegistry widgets;
+  Keymap keymap;
+  std::vector<Operator> operators;
+  Messages messages;
+
+  // The project
+  History history;
+  Jobs jobs;
+  Path project_path;  // empty: never saved
+  std::string name;   // of the project or of the volume opened last
+  std::vector<Path> to_open;  // dropped on the window, or given on the command line
+
+  // The window
+  Workspace workspace = Workspace::Rig;
+  std::array<Arrangement, 4> arrangements;
+  Layout layout;
+  std::unique_ptr<Dialog> dialog;  // null: none
+  bool quit = false;
+
+  // What is seen and done in it
+  ImGuiContext* imgui = nullptr;
+  std::optional<Views> views;
+  Selection selection;
+  std::string tissue_search;
+  struct {
+    std::string name;
+    double value = 0;
+  } edited_number;  // while it is dragged or typed; the document changes once, at the end
+  std::optional<glm::vec3> edited_colour;
+  Tool tool = Tool::Select;
+  std::string open_menu;  // of the top bar
+  bool open_context_menu = false;
+  std::map<std::string, bool> open_sections;  // of the sidebar, by title
+  InputState input;
+  std::optional<Drag> drag;
+  std::optional<PendingPress> pending_press;
+  std::string last_operator;  // id, for Repeat
+  double now = 0;
+
+  Cursor cursor = Cursor::Arrow;  // of this frame
+  int hovered_splitter = -1;
+  double splitter_since = 0;
+
+  // Where the panel that is being drawn stands: the beginning of its widgets' names.
+  struct {
+    Region region = Region::Views;
+    std::vector<std::string> steps;
+    std::vector<std::string> windows;  // of the regions of this frame, back to front
+  } place;
+
+  // The tool tip to come: which widget is pointed at, since when.
+  struct {
+    std::string widget, title, sentence;
+    std::optional<Chord> chord;
+    Rect rect;
+    double since = 0;
+    bool asked = false;  // in this frame
+  } tip;
+
+ private:
+  void take_input();
+  void draw_views();
+  void draw();
+  std::optional<std::unique_ptr<Dialog>> next_dialog_;
+  double wake_at_ = 1e300;
+  int frames_wanted_ = 3;  // ImGui settles a change within that many
+};
+
+}  // namespace limber::editor

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/fields.h"
+
+#include <cstdio>
+
+#include <imgui_internal.h>
+#include <imgui_stdlib.h>
+
+#include "editor/icons.h"
+
+namespace limber::editor {
+
+void checkbox_mark(Editor& editor, const Rect& rect, bool on, bool hovered) {
+  const Look& look = editor.look;
+  fill(rect, on ? look.theme.accent : hovered ? look.theme.hover : look.theme.field, look.px(3));
+  if (!on) outline(rect, look.theme.line2, look.px(3), look.line());
+  if (on) put_icon(look.fonts.small, look.theme.on_accent, rect, icon::kTick);
+}
+
+bool checkbox(Editor& editor, const std::string& name, const Rect& rect, const std::string& label, bool& on) {
+  const Look& look = editor.look;
+  const Pressed pressed = press_area(editor, name, rect);
+  const float side = look.px(16), y = std::round(rect.centre().y - side / 2);
+  checkbox_mark(editor, {{rect.low.x, y}, {rect.low.x + side, y + side}}, on, pressed.hovered);
+  put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + side + look.px(6), rect.low.y}, rect.high}, label);
+  if (pressed.clicked) on = !on;
+  return pressed.clicked;
+}
+
+bool number_field(Editor& editor, const std::string& name, const Rect& rect, double& value, double low, double high, const char* format,
+                  const char* unit, bool filled, bool& committed) {
+  const Look& look = editor.look;
+  committed = false;
+  // The text stands at the right with its unit; ImGui's own field appears while a number is typed.
+  ImGui::SetCursorScreenPos(im(rect.low));
+  ImGui::SetNextItemWidth(rect.width());
+  ImGui::PushFont(look.fonts.mono);
+  ImGui::PushStyleColor(ImGuiCol_Text, with_alpha(look.theme.text, ImGui::TempInputIsActive(ImGui::GetID(name.c_str())) ? 1 : 0));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(look.px(7), std::round((rect.height() - look.fonts.mono->FontSize) / 2)));
+  const double speed = std::max((high - low) / std::max(1.0f, rect.width()), 1e-6);
+  const bool changed = ImGui::DragScalar(name.c_str() , ImGuiDataType_Double, &value, static_cast<float>(speed), &low, &high, format, ImGuiSliderFlags_AlwaysClamp);
+  const bool typing = ImGui::TempInputIsActive(ImGui::GetItemID());
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+  committed = ImGui::IsItemDeactivatedAfterEdit();
+  register_widget(editor, name, rect);
+  if (typing) return changed;
+
+  if (filled) {
+    const float share = static_cast<float>(std::clamp((value - low) / (high - low), 0.0, 1.0));
+    fill({rect.low + look.line(), {rect.low.x + look.line() + (rect.width() - 2 * look.line()) * share, rect.high.y - look.line()}}, look.theme.accent_soft, look.px(3));
+  }
+  char text[48];
+  std::snprintf(text, sizeof text, format, value);
+  float right = rect.high.x - look.px(7);
+  if (*unit) {
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{rect.low, {right, rect.high.y}}, unit, Align::Right);
+    right -= text_size(look.fonts.small, unit).x + look.px(4);
+  }
+  put_text(editor, look.fonts.mono, look.theme.text, Rect{rect.low, {right, rect.high.y}}, text, Align::Right);
+  return changed;
+}
+
+bool text_field(Editor& editor, const std::string& name, const Rect& rect, std::string& text, const char* hint, bool focus) {
+  const Look& look = editor.look;
+  ImGui::SetCursorScreenPos(im(rect.low));
+  ImGui::SetNextItemWidth(rect.width());
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(look.px(8), std::round((rect.height() - look.fonts.regular->FontSize) / 2)));
+  if (focus) ImGui::SetKeyboardFocusHere();
+  ImGui::InputTextWithHint(("##" + name).c_str(), hint, &text, ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::PopStyleVar();
+  register_widget(editor, name, rect);
+  return ImGui::IsItemDeactivatedAfterEdit();
+}
+
+}  // namespace limber::editor

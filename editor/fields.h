@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Things that hold a value: check boxes, numbers, texts.
+#pragma once
+
+#include <string>
+
+#include "editor/widgets.h"
+
+namespace limber::editor {
+
+void checkbox_mark(Editor& editor, const Rect& rect, bool on, bool hovered);
+bool checkbox(Editor& editor, const std::string& name, const Rect& rect, const std::string& label, bool& on);
+// A number that is dragged sideways, or typed after a double click; `fraction` < 0: no fill. True while it changes;
+// `committed` when the drag or typing ended.
+bool number_field(Editor& editor, const std::string& name, const Rect& rect, double& value, double low, double high, const char* format,
+                  const char* unit, bool filled, bool& committed);
+// True when Return or leaving the field accepted a changed text.
+bool text_field(Editor& editor, const std::string& name, const Rect& rect, std::string& text, const char* hint = "", bool focus = false);
+
+}  // namespace limber::editor

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Where the editor lives: a window of the desktop (window.h) or a picture in memory (offscreen.h). Both have a current
+// OpenGL 3.3 core context and push the user's events into one queue; the editor cannot tell which one it is in.
+#pragma once
+
+#include <string>
+
+#include <glm/glm.hpp>
+
+#include "editor/events.h"
+
+namespace limber::editor {
+
+enum class Cursor { Arrow, Hand, Text, ResizeX, ResizeY, Cross, Move };
+
+class Host {
+ public:
+  virtual ~Host() = default;
+
+  virtual glm::ivec2 size() const = 0;     // pixels of the picture
+  virtual double monitor_scale() const = 0;
+  virtual bool close_requested() const = 0;
+  virtual void forget_close_request() = 0;
+
+  // Returns at the first event, at wake(), or after `seconds`; 0 only gathers what has happened.
+  virtual void wait(double seconds) = 0;
+  virtual void wake() = 0;  // from any thread
+  virtual void present() = 0;
+  virtual unsigned framebuffer() const { return 0; }
+
+  virtual std::string clipboard() = 0;
+  virtual void set_clipboard(const std::string& text) = 0;
+  virtual void set_cursor(Cursor cursor) = 0;
+  virtual void set_title(const std::string& title) = 0;
+  virtual void toggle_full_screen() = 0;
+
+  EventQueue events;
+};
+
+}  // namespace limber::editor

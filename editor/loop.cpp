@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/loop.h"
+
+#include <chrono>
+
+#include "editor/offscreen.h"
+#include "editor/recording.h"
+#include "editor/window.h"
+
+namespace limber::editor {
+
+namespace {
+
+double steady_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+Preferences preferences_of(const StartOptions& options) {
+  Preferences preferences;
+  preferences.scale = glm::clamp(options.scale, 0.75, 3.0);
+  preferences.theme = options.theme;
+  return preferences;
+}
+
+void play(const StartOptions& options) {
+  const auto script = parse_script(read_file(options.script));
+  const auto host = open_offscreen(options.size);
+  Editor editor(*host, preferences_of(options));
+  editor.to_open = options.files;
+  Player player(editor, *host);
+  player.step();
+  player.play({{0, {"wait-job"}}});
+  player.play(script, options.script.parent_path());
+}
+
+void run_in_window(const StartOptions& options) {
+  const auto host = open_window(options.size, "Limber");
+  Editor editor(*host, preferences_of(options));
+  editor.to_open = options.files;
+  while (!editor.quit) {
+    host->wait(editor.rest());
+    if (host->close_requested()) {
+      host->forget_close_request();
+      run(editor, "file.quit");
+    }
+    editor.frame(steady_seconds());
+  }
+}
+
+}  // namespace
+
+void run_editor(const StartOptions& options) { options.script.empty() ? run_in_window(options) : play(options); }
+
+}  // namespace limber::editor

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/menus.h"
+
+#include "editor/widgets.h"
+
+namespace limber::editor {
+
+namespace {
+
+using Entry = std::vector<std::string>::const_iterator;
+
+// The end of the submenu that begins at `entry`.
+Entry end_of(Entry entry, Entry end) {
+  while (entry != end && *entry != "<") ++entry;
+  return entry;
+}
+
+bool any_operator(const Editor& editor, Entry begin, Entry end) {
+  return std::any_of(begin, end, [&](const std::string& id) { return find_operator(editor, id) != nullptr; });
+}
+
+void draw_entries(Editor& editor, Entry begin, Entry end) {
+  bool line_wanted = false, any = false;
+  for (Entry entry = begin; entry != end; ++entry) {
+    if (*entry == "-") {
+      line_wanted = any;
+      continue;
+    }
+    const bool submenu = entry->starts_with("> ");
+    const Entry last = submenu ? end_of(entry, end) : entry + 1;
+    if (any_operator(editor, entry, last)) {
+      if (line_wanted) ImGui::Separator();
+      line_wanted = false;
+      any = true;
+      if (!submenu) operator_menu_item(editor, *entry);
+      else {
+        const std::string title = entry->substr(2);
+        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + editor.look.px(34));
+        const bool open = ImGui::BeginMenu(title.c_str());
+        if (!open) register_widget(editor, title, {from_im(ImGui::GetItemRectMin()), from_im(ImGui::GetItemRectMax())});
+        if (open) {
+          push_path(editor, title);
+          draw_entries(editor, entry + 1, last);
+          pop_path(editor);
+          ImGui::EndMenu();
+        }
+      }
+    }
+    entry = submenu ? last : entry;
+  }
+}
+
+}  // namespace
+
+std::vector<Menu> menus() {
+  return {
+      {"File",
+       {"file.new", "file.open", "> Open recent", "file.open_recent", "<", "> Samples", "file.sample_arm", "file.sample_body", "<", "-", "file.save", "file.save_as",
+        "file.save_copy", "file.recover", "-", "> Import", "file.import", "file.import_volume", "file.import_dicom", "file.import_rig", "file.import_tissues", "<",
+        "> Export", "file.export", "file.export_volume", "file.export_rig", "file.export_tissues", "view.screenshot", "view.turntable", "<", "-", "file.quit"}},
+      {"Edit",
+       {"edit.undo", "edit.redo", "edit.history", "-", "edit.repeat_last", "-", "select.all", "select.none", "-", "edit.rename", "-", "> Prepare volume", "prepare.regrid",
+        "prepare.flip_x", "prepare.flip_y", "prepare.flip_z", "prepare.orient", "prepare.crop", "prepare.pad", "prepare.merge", "prepare.specks", "prepare.statistics", "<", "-",
+        "edit.preferences"}},
+      {"View",
+       {"view.one", "view.split", "view.four", "view.maximize", "-", "> Standard views", "view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom", "view.opposite", "<",
+        "view.ortho", "view.frame_selected", "view.frame_all", "-", "view.solid", "view.xray_display", "view.tissue", "-", "> Clipping", "view.clip_box", "view.clip_plane", "view.reset_clipping",
+        "<", "> Tissues", "view.hide", "view.isolate_selected", "view.reveal", "<", "> Slices", "slice.show_labels", "slice.show_outlines", "slice.next", "slice.previous", "<", "> Overlays",
+        "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.cross_hair", "<", "-", "view.sidebar", "view.tool_strip", "view.full_screen"}},
+      {"Help", {"help.guide", "help.keys", "help.tour", "-", "search.commands", "view.console", "help.system_facts", "-", "help.about"}},
+  };
+}
+
+Menu context_menu(ViewId view) {
+  if (view == ViewId::Body)
+    return {"3D view", {"view.hide", "view.isolate_selected", "view.reveal", "-", "view.frame_selected", "view.frame_all", "view.centre_on_pick", "-", "view.clip_box", "view.clip_plane", "view.xray"}};
+  return {name_of(view), {"view.hide", "view.isolate_selected", "view.reveal", "-", "slice.outline", "view.cross_hair", "view.frame_all", "-", "view.maximize"}};
+}
+
+void draw_menu(Editor& editor, const Menu& menu) { draw_entries(editor, menu.entries.begin(), menu.entries.end()); }
+
+}  // namespace limber::editor

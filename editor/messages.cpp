@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/messages.h"
+
+#include <algorithm>
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::size_t kLongestLog = 5000;  // lines
+
+}  // namespace
+
+ErrorMessage parts_of(const std::string& text) {
+  ErrorMessage message;
+  const auto first = text.find(": ");
+  const auto last = text.rfind(": ");
+  message.what = text.substr(0, first);
+  if (first != std::string::npos && last != first) {
+    message.where = text.substr(first + 2, last - first - 2);
+    message.what_to_do = text.substr(last + 2);
+  } else if (first != std::string::npos) {
+    message.where = text.substr(first + 2);
+  }
+  return message;
+}
+
+void Messages::add(Toast toast) {
+  log.push_back({toast.severity, toast.detail.empty() ? toast.line : toast.line + ": " + toast.detail});
+  if (log.size() > kLongestLog) log.erase(log.begin(), log.begin() + kLongestLog / 10);
+  const auto same = std::find_if(toasts.begin(), toasts.end(), [&](const Toast& t) { return t.line == toast.line && t.detail == toast.detail; });
+  if (same == toasts.end()) return toasts.push_back(std::move(toast));
+  same->times += 1;
+  same->since = -1;
+}
+
+void Messages::show_error(const std::string& text) {
+  log.push_back({Severity::Error, text});
+  const ErrorMessage message = parts_of(text);
+  const auto same = std::find_if(errors.begin(), errors.end(),
+                                 [&](const ErrorMessage& e) { return e.what == message.what && e.where == message.where; });
+  if (same == errors.end()) errors.push_back(message);
+  else same->times += 1;
+}
+
+}  // namespace limber::editor

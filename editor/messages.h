@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the editor tells the user without being asked: toasts for the moment, a console log for later, one error message
+// for an act of the user's own that failed.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+namespace limber::editor {
+
+enum class Severity { Info, Ok, Warning, Error };
+
+struct Toast {
+  Severity severity;
+  std::string line, detail;
+  double since = -1;  // first shown; set when drawn
+  int times = 1;
+};
+
+struct LogLine {
+  Severity severity;
+  std::string text;
+};
+
+// An error as the user reads it: title, where, what to do.
+struct ErrorMessage {
+  std::string what, where, what_to_do;
+  int times = 1;
+};
+
+class Messages {
+ public:
+  void info(std::string line, std::string detail = "") { add({Severity::Info, std::move(line), std::move(detail)}); }
+  void ok(std::string line, std::string detail = "") { add({Severity::Ok, std::move(line), std::move(detail)}); }
+  void warn(std::string line, std::string detail = "") { add({Severity::Warning, std::move(line), std::move(detail)}); }
+  // Beside the work: what failed without the user having just asked for it, as in a job.
+  void toast_error(std::string line, std::string detail = "") { add({Severity::Error, std::move(line), std::move(detail)}); }
+  // In the middle of the window: the user's own act failed. The same error again counts up. `text` is an Error's line.
+  void show_error(const std::string& text);
+
+  std::deque<Toast> toasts;
+  std::vector<LogLine> log;
+  std::vector<ErrorMessage> errors;  // the first is shown
+
+ private:
+  void add(Toast toast);
+};
+
+// "what: where: what to do" in its three parts; a text of another shape is all `what`.
+ErrorMessage parts_of(const std::string& text);
+
+}  // namespace limber::editor

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A window that is only a picture in memory: surfaceless EGL. Tests and scripts run the real editor in it.
+#pragma once
+
+#include <memory>
+
+#include "editor/host.h"
+#include "render/image_io.h"
+
+namespace limber::editor {
+
+class Offscreen : public Host {
+ public:
+  virtual void resize(const glm::ivec2& size) = 0;
+  virtual render::Image picture() const = 0;  // as last presented
+};
+
+// Throws Error where EGL gives no OpenGL 3.3 context.
+std::unique_ptr<Offscreen> open_offscreen(const glm::ivec2& size, double monitor_scale = 1);
+
+}  // namespace limber::editor

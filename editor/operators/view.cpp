@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How the window and its pictures are arranged and shown.
+#include "editor/dispatch.h"
+#include "editor/icons.h"
+#include "editor/operators/polls.h"
+
+namespace limber::editor {
+
+namespace {
+
+Operator layout_operator(const char* id, const char* label, const char* icon, const char* sentence, ViewLayout views) {
+  return {id, label, icon, "View", sentence,
+          [views](Editor& e) {
+            e.arrangement().views = views;
+            e.arrangement().maximized.reset();
+          },
+          nullptr, [views](const Editor& e) { return e.arrangement().views == views && !e.arrangement().maximized; }};
+}
+
+Operator display_operator(const char* id, const char* label, const char* sentence, render::Display display) {
+  return {id, label, "", "View", sentence, [display](Editor& e) { e.views->display = display; }, nullptr,
+          [display](const Editor& e) { return e.views->display == display; }};
+}
+
+Operator overlay_operator(const char* id, const char* label, const char* sentence, bool Views::*shown) {
+  return {id, label, "", "View", sentence, [shown](Editor& e) { (*e.views).*shown = !((*e.views).*shown); }, nullptr,
+          [shown](const Editor& e) { return (*e.views).*shown; }};
+}
+
+void maximize(Editor& editor) {
+  auto& maximized = editor.arrangement().maximized;
+  if (maximized) return maximized.reset();
+  const ViewPlace* view = hovered_view(editor);
+  maximized = view ? view->id : editor.views->active;
+}
+
+void toggle_xray(Editor& editor) {
+  editor.views->display = editor.views->display == render::Display::XRay ? render::Display::Solid : render::Display::XRay;
+}
+
+}  // namespace
+
+std::vector<Operator> view_operators() {
+  return {
+      layout_operator("view.one", "One view", icon::kOneView, "The 3D view alone.", ViewLayout::One),
+      layout_operator("view.split", "3D and slices", icon::kSplitViews, "The 3D view and two slices beside it.", ViewLayout::Split),
+      layout_operator("view.four", "Four views", icon::kFourViews, "The 3D view and three linked slices.", ViewLayout::Four),
+      {"view.maximize", "Maximize area", icon::kFullScreen, "View", "The area under the pointer fills the window, or shrinks back.", maximize, nullptr,
+       [](const Editor& e) { return e.arrangement().maximized.has_value(); }},
+      display_operator("view.solid", "Solid", "Shows the outermost visible tissue, opaque.", render::Display::Solid),
+      display_operator("view.xray_display", "X-ray", "Shows flesh as a ghost around the bones.", render::Display::XRay),
+      display_operator("view.tissue", "Tissue", "Shows every tissue with its own opacity.", render::Display::Tissue),
+      {"view.xray", "Toggle X-ray", "", "View", "Changes between solid and X-ray.", toggle_xray, nullptr,
+       [](const Editor& e) { return e.views->display == render::Display::XRay; }},
+      overlay_operator("view.grid", "Grid", "Shows the ground grid.", &Views::grid),
+      overlay_operator("view.axes", "Axes", "Shows the axis ball.", &Views::axes),
+      overlay_operator("view.scale_bar", "Scale bar", "Shows a scale bar in every view.", &Views::scale_bar),
+      overlay_operator("view.letters", "Orientation letters", "Shows which side of the body is where.", &Views::letters),
+      overlay_operator("view.cross_hair", "Cross-hair", "Shows where the slices meet.", &Views::show_cross_hair),
+      {"view.sidebar", "Sidebar", "", "View", "Opens or closes the sidebar.",
+       [](Editor& e) { e.arrangement().sidebar = e.layout.sidebar.empty(); }, nullptr, [](const Editor& e) { return !e.layout.sidebar.empty(); }},
+      {"view.tool_strip", "Tool strip", "", "View", "Shows or hides the tools at the left.",
+       [](Editor& e) { e.arrangement().tool_strip = !e.arrangement().tool_strip; }, nullptr, [](const Editor& e) { return e.arrangement().tool_strip; }},
+      {"view.console", "Console", icon::kConsole, "Help", "Opens or closes the list of messages below the views.",
+       [](Editor& e) { e.arrangement().console = !e.arrangement().console; }, nullptr, [](const Editor& e) { return e.arrangement().console; }},
+      {"view.full_screen", "Full screen", icon::kExpand, "View", "The window fills the screen, or shrinks back.", [](Editor& e) { e.host.toggle_full_screen(); }},
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Drawing into the current window: rectangles, lines of text, key caps. Sizes are pixels of the window.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <imgui.h>
+
+#include "editor/editor.h"
+
+namespace limber::editor {
+
+inline ImVec2 im(const glm::vec2& v) { return {v.x, v.y}; }
+inline glm::vec2 from_im(const ImVec2& v) { return {v.x, v.y}; }
+
+void fill(const Rect& rect, Colour colour, float rounding = 0);
+void outline(const Rect& rect, Colour colour, float rounding = 0, float width = 1);
+glm::vec2 text_size(ImFont* font, std::string_view text);
+// `where` is the text's top left corner. Returns its right end.
+float put_text(Editor& editor, ImFont* font, Colour colour, const glm::vec2& where, std::string_view text);
+enum class Align { Left, Centre, Right };
+// One line in the vertical middle of the rectangle; too long a text ends in "...", and pointing at it shows it whole.
+void put_text(Editor& editor, ImFont* font, Colour colour, const Rect& in, std::string_view text, Align align = Align::Left);
+// An icon in the middle of the rectangle.
+void put_icon(ImFont* font, Colour colour, const Rect& in, const char* icon);
+// Caps beside one another; returns the right end. `y` is the middle.
+float put_key_caps(Editor& editor, float x, float y, const std::vector<std::string>& caps);
+float width_of_key_caps(const Editor& editor, const std::vector<std::string>& caps);
+
+}  // namespace limber::editor

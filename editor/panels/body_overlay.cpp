@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Over the 3D view: its name, the axis ball, the scale bar.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "editor/panels/panels.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kBall = 34, kEnd = 9;  // radii of the axis ball and of its ends, pixels
+
+struct AxisEnd {
+  const char* letter;
+  const char* operator_id;
+  glm::dvec3 direction;  // world
+  int axis;
+  bool positive;
+};
+constexpr AxisEnd kEnds[] = {{"L", "view.left", {1, 0, 0}, 0, true},   {"R", "view.right", {-1, 0, 0}, 0, false}, {"P", "view.back", {0, 1, 0}, 1, true},
+                             {"A", "view.front", {0, -1, 0}, 1, false}, {"S", "view.top", {0, 0, 1}, 2, true},     {"I", "view.bottom", {0, 0, -1}, 2, false}};
+
+void draw_axis_ball(Editor& editor, const Rect& rect) {
+  if (!editor.views->axes || rect.width() < editor.look.px(220) || rect.height() < editor.look.px(140)) return;
+  const Look& look = editor.look;
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  const glm::vec2 centre{rect.high.x - look.px(52), rect.low.y + look.px(56)};
+  const glm::dquat view_from_world = glm::conjugate(editor.views->body.camera.world_from_view);
+
+  std::array<std::pair<double, int>, 6> order;
+  std::array<glm::vec2, 6> places;
+  for (int i = 0; i < 6; ++i) {
+    const glm::dvec3 seen = view_from_world * kEnds[i].direction;
+    places[i] = centre + glm::vec2(seen.x, -seen.y) * look.px(kBall);
+    order[i] = {seen.z, i};
+  }
+  std::sort(order.begin(), order.end());
+  for (const auto& [depth, i] : order) {
+    const AxisEnd& end = kEnds[i];
+    const Colour colour = look.theme.axis[end.axis];
+    const float radius = look.px(kEnd);
+    const Rect place{places[i] - radius, places[i] + radius};
+    const Pressed pressed = press_area(editor, std::string("axis ") + end.letter, place);
+    if (end.positive) canvas.AddLine(im(centre), im(places[i]), colour, 2 * look.line());
+    if (end.positive || pressed.hovered) canvas.AddCircleFilled(im(places[i]), radius, colour, 32);
+    else {
+      canvas.AddCircleFilled(im(places[i]), radius - look.px(1), with_alpha(colour, 0.3f), 32);
+      canvas.AddCircle(im(places[i]), radius - look.px(1), colour, 32, 1.2f * look.scale);
+    }
+    if (end.positive || pressed.hovered) put_text(editor, look.fonts.small, 0xFF141210, place, end.letter, Align::Centre);
+    if (pressed.hovered) operator_tooltip(editor, *find_operator(editor, end.operator_id), place);
+    if (pressed.clicked) run(editor, end.operator_id);
+  }
+}
+
+std::string state_of(const Editor& editor) {
+  if (!editor.document().volume) return "";
+  std::string state = editor.views->display == render::Display::Solid ? "Solid" : editor.views->display == render::Display::XRay ? "X-ray" : "Tissue";
+  if (editor.document().armature) state += " \u00b7 " + std::to_string(editor.document().armature->bones.size()) + " bones";
+  if (!editor.views->renderer.note().empty()) state += " \u00b7 " + editor.views->renderer.note();
+  return state;
+}
+
+}  // namespace
+
+void draw_body_overlay(Editor& editor, const Rect& rect) {
+  const BodyView& body = editor.views->body;
+  const std::string projection = body.camera.projection == render::Projection::Perspective ? "Perspective" : "Parallel";
+  std::string title = body.name.empty() ? projection : body.name + " \u00b7 " + projection;
+  if (!editor.name.empty()) title += " \u00b7 " + editor.name;
+  draw_view_title(editor, rect, title, state_of(editor));
+  draw_axis_ball(editor, rect);
+  if (!editor.document().volume) return draw_empty_view(editor, rect);
+  const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
+  draw_scale_bar(editor, rect, visible_height / rect.height());
+}
+
+}  // namespace limber::editor

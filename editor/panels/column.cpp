@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/panels/column.h"
+
+#include "editor/icons.h"
+
+namespace limber::editor {
+
+Column::Column(Editor& editor, const std::string& name, const Rect& area) : editor_(editor), area_(area) {
+  push_path(editor, name);
+  ImGui::SetCursorScreenPos(im(area.low));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+  ImGui::BeginChild("column", im(area.size()), false, ImGuiWindowFlags_NoNav);
+  ImGui::PopStyleVar();
+  width_ = ImGui::GetContentRegionAvail().x;
+  y_ = top_ = ImGui::GetCursorScreenPos().y;
+}
+
+Column::~Column() {
+  ImGui::SetCursorScreenPos({area_.low.x, y_});
+  ImGui::Dummy({1, 0});
+  ImGui::EndChild();
+  pop_path(editor_);
+}
+
+Rect Column::row(float height) {
+  const Rect rect{{area_.low.x, y_}, {area_.low.x + width_, y_ + editor_.look.px(height)}};
+  y_ = rect.high.y;
+  return rect;
+}
+
+bool Column::begin_section(const std::string& title, const std::string& right, bool open_at_first) {
+  const Look& look = editor_.look;
+  bool& open = editor_.open_sections.try_emplace(title, open_at_first).first->second;
+  const Rect rect = head_ = row(28);
+  push_path(editor_, title);
+  // The end of the head is left to buttons that a panel puts there.
+  const Pressed pressed = press_area(editor_, "fold", {rect.low, {rect.high.x - look.px(90), rect.high.y}});
+  fill(rect, look.theme.head);
+  fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
+  put_icon(look.fonts.regular, look.theme.text2, Rect{{rect.low.x + look.px(10), rect.low.y}, {rect.low.x + look.px(26), rect.high.y}},
+           open ? icon::kOpened : icon::kClosed);
+  put_text(editor_, look.fonts.semibold, look.theme.text, Rect{{rect.low.x + look.px(34), rect.low.y}, {rect.high.x - look.px(100), rect.high.y}}, title);
+  if (!right.empty())
+    put_text(editor_, look.fonts.small, look.theme.text2, Rect{{rect.high.x - look.px(150), rect.low.y}, {rect.high.x - look.px(10), rect.high.y}}, right, Align::Right);
+  if (pressed.clicked) {
+    open = !open;
+    editor_.touch();
+  }
+  return open;
+}
+
+void Column::end_section() { pop_path(editor_); }
+
+Rect Column::property(const std::string& label) {
+  const Look& look = editor_.look;
+  const Rect rect = row(26);
+  const float inset = look.px(2);
+  put_text(editor_, look.fonts.regular, look.theme.text2, Rect{{rect.low.x + look.px(10), rect.low.y}, {rect.low.x + look.px(114), rect.high.y}}, label);
+  return {{rect.low.x + look.px(122), rect.low.y + inset}, {rect.high.x - look.px(10), rect.high.y - inset}};
+}
+
+bool Column::list_row(Rect& rect, int index, bool chosen) {
+  const Look& look = editor_.look;
+  rect = row(24);
+  if (!ImGui::IsRectVisible(im(rect.low), im(rect.high))) return false;
+  if (chosen) fill(rect, look.theme.accent_soft);
+  else if (index % 2) fill(rect, look.theme.row_alt);
+  return true;
+}
+
+bool empty_state(Editor& editor, const Rect& rect, const std::string& line, const std::string& button_label) {
+  const Look& look = editor.look;
+  const glm::vec2 middle = rect.centre();
+  const ButtonLook face{"", button_label, ButtonStyle::Plain};
+  const float width = width_of_button(editor, face), height = look.px(26);
+  put_text(editor, look.fonts.regular, look.theme.text2, Rect{{rect.low.x, middle.y - look.px(28)}, {rect.high.x, middle.y - look.px(8)}}, line, Align::Centre);
+  const glm::vec2 corner = glm::round(glm::vec2(middle.x - width / 2, middle.y));
+  return button(editor, button_label, {corner, corner + glm::vec2(width, height)}, face);
+}
+
+}  // namespace limber::editor

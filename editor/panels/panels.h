@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The regions of the window and what stands in them: one file each. Panels draw and ask; what the user wants goes through
+// an operator.
+#pragma once
+
+#include "editor/editor.h"
+#include "editor/panels/column.h"
+
+namespace limber::editor {
+
+// Regions
+void draw_top_bar(Editor& editor);
+void draw_tool_header(Editor& editor);
+void draw_tool_strip(Editor& editor);
+void draw_views_region(Editor& editor);
+void draw_sidebar(Editor& editor);
+void draw_bottom(Editor& editor);
+void draw_status_bar(Editor& editor);
+void draw_splitters(Editor& editor);
+
+// In the views
+void draw_body_overlay(Editor& editor, const Rect& rect);
+void draw_slice_overlay(Editor& editor, ViewId id, const Rect& rect);
+void draw_empty_view(Editor& editor, const Rect& rect);
+void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel);
+void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state);
+// Finds what the pointer is over.
+void hover_views(Editor& editor);
+
+// Sections of the sidebar
+void draw_outliner(Editor& editor, Column& column);
+void draw_tissues(Editor& editor, Column& column);
+void draw_tissue(Editor& editor, Column& column);
+void draw_under_cursor(Editor& editor, Column& column);
+void draw_history(Editor& editor, Column& column);
+
+// Messages
+void draw_toasts(Editor& editor);
+void draw_error_message(Editor& editor);
+
+}  // namespace limber::editor

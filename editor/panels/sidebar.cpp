@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The column of sections at the right: fixed order, each folds, all scroll as one.
+#include "editor/icons.h"
+#include "editor/panels/panels.h"
+
+namespace limber::editor {
+
+namespace {
+
+// Where the sidebar is closed: a handle at the views' right edge.
+void draw_handle(Editor& editor) {
+  const Look& look = editor.look;
+  const Rect& rect = editor.layout.sidebar_handle;
+  begin_region(editor, Region::Sidebar, "sidebar handle", rect, 0);
+  const Pressed pressed = press_area(editor, "Open sidebar", rect);
+  ImGui::GetWindowDrawList()->AddRectFilled(im(rect.low), im(rect.high), with_alpha(pressed.hovered ? look.theme.hover : look.theme.view_plate, 0.85f), look.px(5),
+                                            ImDrawFlags_RoundCornersLeft);
+  put_icon(look.fonts.regular, look.theme.view_text, rect, icon::kLeft);
+  const Operator* op = find_operator(editor, "view.sidebar");
+  if (pressed.hovered) operator_tooltip(editor, *op, rect);
+  if (pressed.clicked) run(editor, *op);
+  end_region(editor);
+}
+
+}  // namespace
+
+void draw_sidebar(Editor& editor) {
+  if (!editor.layout.sidebar_handle.empty()) return draw_handle(editor);
+  const Rect& rect = editor.layout.sidebar;
+  if (rect.empty()) return;
+  begin_region(editor, Region::Sidebar, "sidebar", rect, editor.look.theme.panel);
+  {
+    Column column(editor, "sections", rect);
+    draw_outliner(editor, column);
+    draw_tissues(editor, column);
+    draw_tissue(editor, column);
+    draw_under_cursor(editor, column);
+    draw_history(editor, column);
+  }
+  end_region(editor);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Key hints that fit what the pointer is over, what is under it, the job at work, whether all is saved.
+#include <cstdio>
+
+#include "editor/dispatch.h"
+#include "editor/icons.h"
+#include "editor/panels/panels.h"
+
+namespace limber::editor {
+
+namespace {
+
+struct Hint {
+  const char* operator_id;
+  const char* words;
+};
+
+std::vector<Hint> hints(const Editor& editor) {
+  if (editor.drag) return {};
+  const ViewPlace* view = hovered_view(editor);
+  if (view && view->id != ViewId::Body)
+    return {{"select.pick", editor.tool == Tool::CrossHair ? "Move cross-hair" : "Select"}, {"slice.step", "Slice"}, {"slice.zoom", "Zoom"}, {"slice.pan", "Shift"},
+            {"view.place_cross_hair", "Cross-hair"}, {"slice.outline", "Outline"}, {"view.maximize", "Maximize"}};
+  if (!editor.document().volume) return {{"file.open", "Open"}, {"file.new", "New"}, {"search.commands", "Search"}, {"help.guide", "Help"}, {"file.quit", "Quit"}};
+  return {{"view.orbit", "Turn"}, {"view.pan", "Shift"}, {"view.zoom_step", "Zoom"}, {"view.xray", "X-ray"}, {"view.clip_box", "Clip box"}, {"view.hide", "Hide tissue"},
+          {"view.frame_all", "Frame all"}};
+}
+
+float draw_hints(Editor& editor, const Rect& bar, float right) {
+  const Look& look = editor.look;
+  float x = bar.low.x + look.px(10);
+  int shown = 0;
+  for (const Hint& hint : hints(editor)) {
+    const auto chord = editor.keymap.chord_of(hint.operator_id, contexts(editor));
+    if (!chord || !find_operator(editor, hint.operator_id)) continue;
+    if (editor.layout.few_hints && shown == 5) break;
+    const std::vector<std::string> caps = key_caps(*chord);
+    const float words = text_size(look.fonts.small, hint.words).x;
+    if (x + width_of_key_caps(editor, caps) + look.px(7) + words > right - look.px(16)) break;
+    x = put_key_caps(editor, x, bar.centre().y, caps) + look.px(7);
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{x, bar.low.y}, {x + words + 1, bar.high.y}}, hint.words);
+    x += words + look.px(12);
+    ++shown;
+  }
+  if (editor.drag) put_text(editor, look.fonts.small, look.theme.text2, Rect{{x, bar.low.y}, {right, bar.high.y}}, "Esc drops the drag");
+  return x;
+}
+
+// Each of these takes its place at the right and returns what is left.
+float draw_saved(Editor& editor, const Rect& bar, float right) {
+  if (!editor.document().volume) return right;
+  const Look& look = editor.look;
+  const bool unsaved = editor.history.unsaved();
+  const Rect slot{{right - look.px(96), bar.low.y}, {right, bar.high.y}};
+  put_icon(look.fonts.small, unsaved ? look.theme.warn : look.theme.ok, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, unsaved ? icon::kDot : icon::kTick);
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{slot.low.x + look.px(20), slot.low.y}, slot.high}, unsaved ? "Not saved" : "Saved");
+  return slot.low.x - look.px(12);
+}
+
+float draw_job(Editor& editor, const Rect& bar, float right) {
+  const Look& look = editor.look;
+  for (const JobStatus& job : editor.jobs.statuses()) {
+    if (!job.active()) continue;
+    const Rect slot{{right - look.px(190), bar.low.y}, {right, bar.high.y}};
+    const Rect cancel{{slot.high.x - look.px(22), slot.low.y + look.px(3)}, {slot.high.x, slot.high.y - look.px(3)}};
+    if (button(editor, "Cancel job", cancel, {icon::kClose, "", ButtonStyle::Flat})) editor.jobs.cancel(job.id);
+    if (ImGui::IsItemHovered()) tooltip(editor, cancel, "Cancel", job.label);
+    const std::string words = job.state == JobState::Stopping ? "Stopping" : job.label;
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{slot.low, {slot.high.x - look.px(76), slot.high.y}}, words);
+    const Rect track{{slot.high.x - look.px(70), slot.centre().y - look.px(3)}, {slot.high.x - look.px(26), slot.centre().y + look.px(3)}};
+    fill(track, look.theme.field, look.px(3));
+    fill({track.low, {track.low.x + track.width() * static_cast<float>(std::clamp(job.fraction, 0.0, 1.0)), track.high.y}}, look.theme.accent, look.px(3));
+    return slot.low.x - look.px(12);
+  }
+  return right;
+}
+
+float draw_hover(Editor& editor, const Rect& bar, float right) {
+  const Hover& hover = editor.views->hover;
+  if (!hover.view || !editor.document().volume) return right;
+  const Look& look = editor.look;
+  std::string words = "Outside";
+  char place[64] = "";
+  if (hover.inside) {
+    const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(hover.label) : nullptr;
+    words = (tissue ? tissue->name : std::string("Unknown")) + " \u00b7 label " + std::to_string(hover.label);
+    std::snprintf(place, sizeof place, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
+  }
+  const float mono = *place ? look.px(170) : 0, width = std::min(text_size(look.fonts.small, words).x + 1, look.px(220));
+  const float left = right - mono - width;
+  if (*place) put_text(editor, look.fonts.small_mono, look.theme.text2, Rect{{right - mono, bar.low.y}, {right, bar.high.y}}, place, Align::Right);
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, bar.low.y}, {left + width, bar.high.y}}, words);
+  return left;
+}
+
+}  // namespace
+
+void draw_status_bar(Editor& editor) {
+  const Look& look = editor.look;
+  const Rect& bar = editor.layout.status;
+  begin_region(editor, Region::Status, "status", bar, look.theme.head);
+  fill({bar.low, {bar.high.x, bar.low.y + look.line()}}, look.theme.void_);
+  float right = draw_saved(editor, bar, bar.high.x - look.px(10));
+  right = draw_job(editor, bar, right);
+  right = draw_hover(editor, bar, right);
+  draw_hints(editor, bar, right);
+  end_region(editor);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Every tissue in a row: eye (Ctrl+click: only this one), colour, name, label, opacity bar.
+#include <algorithm>
+
+#include "editor/fields.h"
+#include "editor/icons.h"
+#include "editor/panels/panels.h"
+#include "editor/tissues.h"
+
+namespace limber::editor {
+
+namespace {
+
+bool contains_ignoring_case(const std::string& text, const std::string& part) {
+  const auto equal = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b)); };
+  return std::search(text.begin(), text.end(), part.begin(), part.end(), equal) != text.end();
+}
+
+void draw_eye(Editor& editor, const Rect& rect, const Tissue& tissue, const TissueLook& shown) {
+  const Look& look = editor.look;
+  const Pressed pressed = press_area(editor, "eye", rect);
+  put_icon(look.fonts.regular, shown.visible ? look.theme.text2 : look.theme.text3, rect, shown.visible ? icon::kVisible : icon::kHidden);
+  if (pressed.hovered) tooltip(editor, rect, shown.visible ? "Hide" : "Show", "Ctrl+click shows only this tissue.");
+  if (!pressed.clicked) return;
+  if (editor.input.down(Key::Ctrl)) solo_tissues(editor, {tissue.label});
+  else show_tissues(editor, {tissue.label}, !shown.visible);
+}
+
+// Dragged: the picture follows, one edit at the end.
+void draw_opacity(Editor& editor, const Rect& rect, const Tissue& tissue, const TissueLook& shown) {
+  const Look& look = editor.look;
+  const Pressed pressed = press_area(editor, "opacity", rect);
+  const Rect bar{{rect.low.x, rect.centre().y - look.px(3)}, {rect.high.x, rect.centre().y + look.px(3)}};
+  const float share = std::clamp((editor.input.pointer.x - bar.low.x) / bar.width(), 0.0f, 1.0f);
+  const float value = pressed.held ? share : shown.opacity;
+  fill(bar, look.theme.field, look.px(3));
+  fill({bar.low, {bar.low.x + bar.width() * value, bar.high.y}}, look.theme.text3, look.px(3));
+  if (pressed.hovered) tooltip(editor, rect, "Opacity", std::to_string(static_cast<int>(value * 100 + 0.5f)) + " %, in the X-ray and tissue displays.");
+  if (ImGui::IsItemDeactivated() && share != shown.opacity) set_look(editor, "Opacity of " + tissue.name, tissue.label, {shown.visible, share});
+}
+
+void draw_row(Editor& editor, Column& column, int index, const Tissue& tissue) {
+  const Look& look = editor.look;
+  Rect rect;
+  const bool chosen = editor.selection.tissues.contains(tissue.label);
+  if (!column.list_row(rect, index, chosen)) return;
+  const PathScope path(editor, tissue.name);
+  const PathScope label_path(editor, std::to_string(tissue.label));
+  const TissueLook shown = look_of(editor.document(), tissue.label);
+  draw_eye(editor, {{rect.low.x + look.px(6), rect.low.y}, {rect.low.x + look.px(26), rect.high.y}}, tissue, shown);
+
+  const float side = look.px(14), x = rect.low.x + look.px(30), y = std::round(rect.centre().y - side / 2);
+  fill({{x, y}, {x + side, y + side}}, rgb(tissue.colour.r, tissue.colour.g, tissue.colour.b), look.px(3));
+
+  const Rect name{{x + side, rect.low.y}, {rect.high.x - look.px(70), rect.high.y}};
+  const Pressed pressed = press_area(editor, "name", name);
+  const Colour colour = shown.visible ? look.theme.text : chosen ? look.theme.text2 : look.theme.text3;
+  put_text(editor, look.fonts.regular, colour, Rect{{name.low.x + look.px(6), name.low.y}, {name.high.x - look.px(34), name.high.y}}, tissue.name);
+  put_text(editor, look.fonts.mono, chosen ? look.theme.text2 : look.theme.text3, Rect{{name.high.x - look.px(44), name.low.y}, name.high}, std::to_string(tissue.label),
+           Align::Right);
+  if (pressed.clicked) select_tissue(editor, tissue.label, editor.input.down(Key::Ctrl) || editor.input.down(Key::Shift));
+  draw_opacity(editor, {{rect.high.x - look.px(64), rect.low.y}, {rect.high.x - look.px(8), rect.high.y}}, tissue, shown);
+}
+
+}  // namespace
+
+void draw_tissues(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  const Document& document = editor.document();
+  const std::string count = document.tissues ? std::to_string(document.tissues->tissues.size()) : "";
+  if (column.begin_section("Tissues", count)) {
+    if (!document.tissues) {
+      const Rect rect = column.row(30);
+      put_text(editor, look.fonts.regular, look.theme.text2, Rect{{rect.low.x + look.px(14), rect.low.y}, rect.high}, "Open a volume to see its tissues");
+    } else {
+      if (document.tissues->tissues.size() > 16) {
+        const Rect rect = column.row(32);
+        text_field(editor, "search", {rect.low + glm::vec2(look.px(10), look.px(4)), rect.high - glm::vec2(look.px(10), look.px(4))}, editor.tissue_search, "Search tissues");
+      }
+      int index = 0;
+      for (const Tissue& tissue : document.tissues->tissues)
+        if (contains_ignoring_case(tissue.name, editor.tissue_search) || std::to_string(tissue.label) == editor.tissue_search) draw_row(editor, column, index++, tissue);
+      if (index == 0 && empty_state(editor, column.row(72), "No tissue named '" + editor.tissue_search + "'", "Clear search")) editor.tissue_search.clear();
+    }
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Below the top bar: how the body is shown, what is clipped, the layout of the views.
+#include "editor/icons.h"
+#include "editor/panels/panels.h"
+
+namespace limber::editor {
+
+namespace {
+
+class Header {
+ public:
+  explicit Header(Editor& editor) : editor_(editor), bar_(editor.layout.tool_header), x_(editor.look.px(8)) {}
+
+  // Operators of which one is on, as one bar.
+  void segments(std::initializer_list<const char*> ids) {
+    for (const char* id : ids) {
+      const Operator* op = find_operator(editor_, id);
+      const ButtonLook face = face_of(*op, true);
+      const float width = *face.icon && face.label.empty() ? px(36) : std::round(text_size(editor_.look.fonts.regular, face.label).x + px(20));
+      place(id, face.label, width, op->checked(editor_) ? ButtonStyle::Chosen : ButtonStyle::Plain);
+      x_ += px(1);
+    }
+    x_ += px(9);
+  }
+
+  void toggle(const char* id) {
+    const Operator* op = find_operator(editor_, id);
+    const ButtonLook face = face_of(*op, false);
+    const float width = face.label.empty() ? px(30) : width_of_button(editor_, face);
+    place(id, face.label, width, op->checked(editor_) ? ButtonStyle::Soft : ButtonStyle::Plain);
+    x_ += px(6);
+  }
+
+  void label(const std::string& text) {
+    const float width = text_size(editor_.look.fonts.regular, text).x;
+    put_text(editor_, editor_.look.fonts.regular, editor_.look.theme.text2, Rect{{x_, bar_.low.y}, {x_ + width + 1, bar_.high.y}}, text);
+    x_ += width + px(8);
+  }
+
+  void line() {
+    fill({{x_, bar_.low.y + px(9)}, {x_ + editor_.look.line(), bar_.high.y - px(9)}}, editor_.look.theme.line2);
+    x_ += editor_.look.line() + px(10);
+  }
+
+  // Layout buttons never leave: they stand at the right end.
+  void layouts() {
+    x_ = bar_.high.x - px(8) - 3 * px(36) - 2 * px(1);
+    right_ = x_;
+    segments({"view.one", "view.split", "view.four"});
+  }
+  void to_left() { x_ = bar_.low.x + px(8); }
+  // Whether as much still fits before the layout buttons.
+  bool room(float width) const { return x_ + px(width) < right_ - px(12); }
+
+ private:
+  float px(float size) const { return editor_.look.px(size); }
+  ButtonLook face_of(const Operator& op, bool segment) const {
+    const bool layout = segment && *op.icon;
+    const bool icon_alone = layout || (editor_.layout.short_labels && *op.icon);
+    return {op.icon, icon_alone ? "" : op.label};
+  }
+  void place(const char* id, const std::string& label, float width, ButtonStyle style) {
+    const float height = px(26), y = std::round(bar_.centre().y - height / 2);
+    operator_button(editor_, id, {{x_, y}, {x_ + width, y + height}}, label, style);
+    x_ += width;
+  }
+
+  Editor& editor_;
+  Rect bar_;
+  float x_, right_ = 1e9f;
+};
+
+}  // namespace
+
+void draw_tool_header(Editor& editor) {
+  const Look& look = editor.look;
+  const Rect& rect = editor.layout.tool_header;
+  begin_region(editor, Region::ToolHeader, "header", rect, look.theme.head);
+  fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
+  fill({{rect.low.x, rect.high.y - look.line()}, rect.high}, look.theme.void_);
+  Header header(editor);
+  header.layouts();
+  header.to_left();
+  header.segments({"view.solid", "view.xray_display", "view.tissue"});
+  header.line();
+  if (editor.layout.view_places.size() > 1 && header.room(240)) {
+    header.label("Slices");
+    header.segments({"slice.show_labels", "slice.show_outlines"});
+    if (header.room(140)) header.toggle("view.cross_hair");
+  }
+  for (const char* id : {"view.clip_box", "view.clip_plane"})
+    if (header.room(130)) header.toggle(id);
+  end_region(editor);
+}
+
+}  // namespace limber::editor

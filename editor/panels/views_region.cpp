@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The pictures of the body, what is drawn over them, and what the pointer is over.
+#include <cmath>
+
+#include "editor/dispatch.h"
+#include "editor/icons.h"
+#include "editor/menus.h"
+#include "editor/panels/panels.h"
+
+namespace limber::editor {
+
+namespace {
+
+void draw_picture(Editor& editor, const ViewPlace& place) {
+  Views& views = *editor.views;
+  const unsigned texture = place.id == ViewId::Body ? views.body.picture->texture() : slice_of(views, place.id).picture->texture();
+  ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), im(place.rect.low), im(place.rect.high), {0, 1}, {1, 0});
+}
+
+void hover_body(Editor& editor, const ViewPlace& place) {
+  Hover& hover = editor.views->hover;
+  const auto hit = editor.views->body.picture->pick(glm::ivec2(editor.input.pointer - place.rect.low));
+  if (!hit) return;
+  hover.inside = true;
+  hover.label = hit->label;
+  hover.voxel = hit->voxel;
+  hover.point = hit->point;
+}
+
+void hover_slice(Editor& editor, const ViewPlace& place) {
+  Hover& hover = editor.views->hover;
+  hover.point = world_of(slice_of(*editor.views, place.id).camera, editor.input.pointer - place.rect.low, place.rect.size());
+  const LabelVolume& volume = *editor.document().volume;
+  hover.voxel = glm::ivec3(glm::round(voxel_from_world(volume.grid) * hover.point));
+  hover.label = volume.at_or_air(hover.voxel);
+  hover.inside = hover.label != 0;
+}
+
+void draw_context_menu(Editor& editor) {
+  if (editor.open_context_menu) {
+    ImGui::OpenPopup("context");
+    editor.open_context_menu = false;
+  }
+  if (!ImGui::BeginPopup("context", ImGuiWindowFlags_NoMove)) return;
+  editor.place.region = Region::Popup;
+  const Menu menu = context_menu(editor.views->active);
+  const Tissue* tissue = editor.selection.tissue && editor.document().tissues ? editor.document().tissues->find(*editor.selection.tissue) : nullptr;
+  const std::string title = tissue ? tissue->name : menu.title;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  put_text(editor, editor.look.fonts.semibold, editor.look.theme.text2, from_im(corner) + glm::vec2(editor.look.px(8), editor.look.px(2)), title);
+  ImGui::Dummy({text_size(editor.look.fonts.semibold, title).x + editor.look.px(16), editor.look.px(22)});
+  ImGui::Separator();
+  push_path(editor, "context");
+  draw_menu(editor, menu);
+  pop_path(editor);
+  editor.place.region = Region::Views;
+  ImGui::EndPopup();
+}
+
+}  // namespace
+
+void hover_views(Editor& editor) {
+  Hover& hover = editor.views->hover;
+  hover = {};
+  const ViewPlace* place = hovered_view(editor);
+  if (!place) return;
+  hover.view = place->id;
+  if (!editor.document().volume || editor.drag) return;
+  if (place->id == ViewId::Body) hover_body(editor, *place);
+  else hover_slice(editor, *place);
+}
+
+void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state) {
+  const Look& look = editor.look;
+  const glm::vec2 corner = rect.low + glm::vec2(look.px(12), look.px(10));
+  put_text(editor, look.fonts.regular, look.theme.view_text, corner, title);
+  put_text(editor, look.fonts.small, look.theme.view_text2, corner + glm::vec2(0, look.px(18)), state);
+}
+
+void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel) {
+  if (!editor.views->scale_bar || millimetres_per_pixel <= 0) return;
+  const Look& look = editor.look;
+  // 1, 2, 4, 5, 10, 15 or 20 units of mm, cm or m, between 60 and 120 pixels long.
+  const double low = look.px(60) * millimetres_per_pixel, high = look.px(120) * millimetres_per_pixel;
+  constexpr std::pair<double, const char*> kUnits[] = {{0.001, "\u00b5m"}, {1, "mm"}, {10, "cm"}, {1000, "m"}};
+  double length = 0, number = 0;
+  const char* unit = "";
+  for (const auto& [millimetres, name] : kUnits)
+    for (const double count : {1.0, 2.0, 4.0, 5.0, 10.0, 15.0, 20.0, 40.0, 50.0, 100.0, 200.0, 400.0})
+      if (length == 0 && (count <= 20 || millimetres == 0.001) && count * millimetres >= low && count * millimetres <= high) {
+        length = count * millimetres;
+        number = count;
+        unit = name;
+      }
+  if (length == 0) return;
+  const float pixels = std::round(static_cast<float>(length / millimetres_per_pixel)), right = rect.high.x - look.px(28), y = rect.high.y - look.px(26);
+  if (rect.width() < pixels + look.px(120)) return;
+  const float line = look.line(), tick = look.px(5);
+  for (const Rect& stroke : {Rect{{right - pixels, y}, {right, y + 2 * line}}, Rect{{right - pixels, y - tick}, {right - pixels + 2 * line, y}}, Rect{{right - 2 * line, y - tick}, {right, y}}})
+    fill(stroke, look.theme.view_text);
+  put_text(editor, look.fonts.small, look.theme.view_text, Rect{{right - pixels, y - look.px(20)}, {right, y - look.px(2)}},
+           std::to_string(static_cast<int>(number)) + " " + unit, Align::Centre);
+}
+
+void draw_empty_view(Editor& editor, const Rect& rect) {
+  const Operator* open = find_operator(editor, "file.open");
+  if (!open) {
+    put_text(editor, editor.look.fonts.regular, editor.look.theme.view_text2, rect, "Drop a volume here", Align::Centre);
+    return;
+  }
+  if (empty_state(editor, rect, "Drop a volume here", "Open...")) run(editor, *open);
+}
+
+void draw_views_region(Editor& editor) {
+  const Look& look = editor.look;
+  begin_region(editor, Region::Views, "views", editor.layout.views, look.theme.void_);
+  for (const ViewPlace& place : editor.layout.view_places) {
+    const PathScope path(editor, name_of(place.id));
+    register_widget(editor, "view", place.rect);
+    draw_picture(editor, place);
+    ImGui::PushClipRect(im(place.rect.low), im(place.rect.high), true);
+    if (place.id == ViewId::Body) draw_body_overlay(editor, place.rect);
+    else draw_slice_overlay(editor, place.id, place.rect);
+    if (editor.layout.view_places.size() > 1 && place.id == editor.views->active) outline(place.rect, look.theme.accent, 0, 2 * look.line());
+    ImGui::PopClipRect();
+  }
+  draw_context_menu(editor);
+  end_region(editor);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/project.h"
+
+#include <backends/imgui_impl_opengl3.h>
+
+#include "core/volume/volume_io.h"
+
+namespace limber::editor {
+
+namespace {
+
+// The volume replaces the one that is open, and with it all that belongs to it.
+Work opening_volume(const Path& path) {
+  return [path](Progress& progress) -> Edit {
+    VolumeFile file = read_volume(path, progress);
+    auto volume = std::make_shared<const LabelVolume>(std::move(file.volume));
+    auto tissues = std::make_shared<const TissueTable>(merge_tissue_tables(file.tissues, nullptr));
+    auto type = std::make_shared<const FileType>(file.type);
+    return [volume, tissues, type](const Document&) {
+      Document opened;
+      opened.volume = volume;
+      opened.tissues = tissues;
+      opened.volume_type = type;
+      return opened;
+    };
+  };
+}
+
+void tell_of_ended(Editor& editor, const JobStatus& job) {
+  if (job.state == JobState::Failed) {
+    const ErrorMessage message = parts_of(job.message);
+    editor.messages.toast_error(message.what, message.where.empty() ? job.label : message.where);
+  }
+  if (job.state == JobState::Cancelled) editor.messages.info(job.label, "cancelled");
+}
+
+double fitting_scale(const Box& box, const render::SliceFrame& frame, const glm::vec2& view) {
+  const glm::dvec3 size = box.high - box.low;
+  const glm::dvec2 millimetres{glm::dot(glm::abs(frame.right), size), glm::dot(glm::abs(frame.down), size)};
+  const glm::dvec2 pixels = glm::max(glm::dvec2(view) * 0.86, 1.0);
+  return std::max({millimetres.x / pixels.x, millimetres.y / pixels.y, 1e-4});
+}
+
+}  // namespace
+
+void open_file(Editor& editor, const Path& path) {
+  editor.jobs.start("Open " + path.filename().string(), opening_volume(path));
+  editor.touch();
+}
+
+void open_waiting_files(Editor& editor) {
+  std::vector<Path> files;
+  files.swap(editor.to_open);
+  for (const Path& path : files) open_file(editor, path);
+}
+
+bool poll_jobs(Editor& editor) {
+  const auto volume_before = editor.document().volume;
+  const bool changed = editor.jobs.poll(editor.history);
+  if (!changed) return false;
+  for (const JobStatus& job : editor.jobs.statuses()) {
+    if (job.active()) continue;
+    tell_of_ended(editor, job);
+    if (job.state == JobState::Done && job.label.starts_with("Open ")) editor.name = Path(job.label.substr(5)).stem().string();
+    editor.jobs.dismiss(job.id);
+  }
+  if (editor.document().volume != volume_before) {
+    editor.selection = {};
+    frame_all(editor, false);
+  }
+  return true;
+}
+
+void commit(Editor& editor, const std::string& label, Document next) {
+  editor.history.commit(label, std::move(next));
+  editor.touch();
+}
+
+void frame_all(Editor& editor, bool animated) {
+  Views& views = *editor.views;
+  const Box box = tissue_box(editor.document(), std::nullopt), all = world_box(editor.document());
+  const Rect* place = editor.layout.place_of(ViewId::Body);
+  const double aspect = place && place->height() > 0 ? place->width() / place->height() : 1.5;
+  const render::Camera framed = render::framing(views.body.camera, box.low, box.high, aspect);
+  if (animated && !editor.preferences.reduce_motion) views.body.move = CameraMove{views.body.camera, framed, editor.now};
+  else views.body.camera = framed;
+  views.cross_hair = (all.low + all.high) * 0.5;
+  for (SliceState& slice : views.slices) {
+    const Rect* shown = editor.layout.place_of(view_of(slice.camera.axis));
+    slice.camera.centre = views.cross_hair;
+    slice.camera.millimetres_per_pixel = fitting_scale(all, render::frame_of(slice.camera.axis), shown ? shown->size() : glm::vec2(400));
+  }
+  editor.touch();
+}
+
+bool apply_look_if_changed(Editor& editor) {
+  const auto scale = static_cast<float>(editor.preferences.scale * editor.host.monitor_scale());
+  if (scale == editor.look.scale && editor.shown_theme == editor.preferences.theme) return false;
+  editor.shown_theme = editor.preferences.theme;
+  if (apply_look(editor.look, editor.preferences.theme, scale)) ImGui_ImplOpenGL3_DestroyFontsTexture(), ImGui_ImplOpenGL3_CreateFontsTexture();
+  return true;
+}
+
+}  // namespace limber::editor

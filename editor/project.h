@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What is open: volumes and their tissues come in through jobs beside the live editor; their edits and failures are met
+// here, once a frame.
+#pragma once
+
+#include "editor/editor.h"
+
+namespace limber::editor {
+
+// Starts to open a file of any kind the editor reads; more than one file: the volume and what belongs to it.
+void open_file(Editor& editor, const Path& path);
+// The files that were dropped or given on the command line.
+void open_waiting_files(Editor& editor);
+// Commits what jobs have done and tells of those that failed. True when anything changed.
+bool poll_jobs(Editor& editor);
+// An edit of the user's own: commits the document and shows it.
+void commit(Editor& editor, const std::string& label, Document next);
+// Puts cameras and cross-hair where the whole body is seen.
+void frame_all(Editor& editor, bool animated);
+
+// Follows a change of the theme or scale. True when the look changed.
+bool apply_look_if_changed(Editor& editor);
+
+}  // namespace limber::editor

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/tissues.h"
+
+#include "editor/project.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string name_of(const Editor& editor, const std::set<Label>& tissues) {
+  if (tissues.size() != 1) return std::to_string(tissues.size()) + " tissues";
+  const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(*tissues.begin()) : nullptr;
+  return tissue ? tissue->name : "label " + std::to_string(*tissues.begin());
+}
+
+void commit_looks(Editor& editor, const std::string& label, const std::function<void(std::map<Label, TissueLook>&)>& change) {
+  Visibility visibility = editor.document().visibility ? *editor.document().visibility : Visibility{};
+  const Visibility before = visibility;
+  change(visibility.looks);
+  if (visibility == before) return;
+  Document next = editor.document();
+  next.visibility = std::make_shared<const Visibility>(std::move(visibility));
+  commit(editor, label, std::move(next));
+}
+
+}  // namespace
+
+TissueLook look_of(const Document& document, Label label) {
+  if (!document.visibility) return {};
+  const auto found = document.visibility->looks.find(label);
+  return found == document.visibility->looks.end() ? TissueLook{} : found->second;
+}
+
+void set_look(Editor& editor, const std::string& label, Label tissue, const TissueLook& look) {
+  commit_looks(editor, label, [&](auto& looks) { looks[tissue] = look; });
+}
+
+void show_tissues(Editor& editor, const std::set<Label>& tissues, bool visible) {
+  commit_looks(editor, (visible ? "Show " : "Hide ") + name_of(editor, tissues), [&](auto& looks) {
+    for (const Label label : tissues) looks[label].visible = visible;
+  });
+}
+
+void solo_tissues(Editor& editor, const std::set<Label>& tissues) {
+  bool alone = true;
+  for (const Tissue& tissue : editor.document().tissues->tissues)
+    if (look_of(editor.document(), tissue.label).visible != tissues.contains(tissue.label)) alone = false;
+  if (alone) return reveal_tissues(editor);
+  commit_looks(editor, "Show only " + name_of(editor, tissues), [&](auto& looks) {
+    for (const Tissue& tissue : editor.document().tissues->tissues) looks[tissue.label].visible = tissues.contains(tissue.label);
+  });
+}
+
+void reveal_tissues(Editor& editor) {
+  commit_looks(editor, "Reveal all", [](auto& looks) {
+    for (auto& [label, look] : looks) look.visible = true;
+  });
+}
+
+void set_tissue(Editor& editor, const std::string& what, const Tissue& tissue) {
+  TissueTable table = *editor.document().tissues;
+  Tissue* place = table.find(tissue.label);
+  if (!place) return;
+  *place = tissue;
+  Document next = editor.document();
+  next.tissues = std::make_shared<const TissueTable>(std::move(table));
+  commit(editor, what, std::move(next));
+}
+
+void select_tissue(Editor& editor, Label label, bool extended) {
+  Selection& selection = editor.selection;
+  if (!extended) {
+    selection.tissues = {label};
+    selection.tissue = label;
+    return;
+  }
+  if (selection.tissues.erase(label) == 0) {
+    selection.tissues.insert(label);
+    selection.tissue = label;
+  } else if (selection.tissue == label) {
+    selection.tissue.reset();
+    if (!selection.tissues.empty()) selection.tissue = *selection.tissues.begin();
+  }
+}
+
+}  // namespace limber::editor

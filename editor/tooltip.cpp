@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/tooltip.h"
+
+#include "editor/operators/operator.h"
+#include "editor/paint.h"
+#include "editor/dispatch.h"
+
+namespace limber::editor {
+
+void tooltip(Editor& editor, const Rect& rect, const std::string& title, const std::string& sentence, const std::optional<Chord>& chord) {
+  auto& tip = editor.tip;
+  if (tip.widget != title || tip.rect != rect) {
+    tip.widget = title;
+    tip.rect = rect;
+    tip.since = editor.now;
+  }
+  tip.title = title;
+  tip.sentence = sentence;
+  tip.chord = chord;
+  tip.asked = true;
+}
+
+void operator_tooltip(Editor& editor, const Operator& op, const Rect& rect) {
+  const std::string reason = why_not(editor, op);
+  tooltip(editor, rect, op.label, reason.empty() ? op.sentence : op.sentence + "\n" + reason, editor.keymap.chord_of(op.id, contexts(editor)));
+}
+
+void draw_tooltip(Editor& editor) {
+  auto& tip = editor.tip;
+  if (!tip.asked || editor.input.down(MouseButton::Left)) {
+    if (!tip.asked) tip.widget.clear();
+    return;
+  }
+  tip.asked = false;
+  if (editor.now - tip.since < editor.preferences.tooltip_delay) return editor.wake_at(tip.since + editor.preferences.tooltip_delay);
+
+  const Look& look = editor.look;
+  const float padding = look.px(10), widest = look.px(320);
+  const std::vector<std::string> caps = tip.chord ? key_caps(*tip.chord) : std::vector<std::string>{};
+  const float caps_width = caps.empty() ? 0 : look.px(12) + width_of_key_caps(editor, caps);
+  const ImFont* font = look.fonts.regular;
+  const glm::vec2 body = tip.sentence.empty() ? glm::vec2(0)
+                                              : from_im(look.fonts.small->CalcTextSizeA(look.fonts.small->FontSize, FLT_MAX, widest, tip.sentence.c_str()));
+  const glm::vec2 title = text_size(look.fonts.regular, tip.title);
+  const glm::vec2 size{std::max(title.x + caps_width, body.x) + 2 * padding,
+                       font->FontSize + (tip.sentence.empty() ? 0 : look.px(4) + body.y) + 2 * look.px(7)};
+  glm::vec2 corner{tip.rect.low.x, tip.rect.high.y + look.px(6)};
+  if (corner.y + size.y > editor.layout.window.high.y) corner.y = tip.rect.low.y - look.px(6) - size.y;
+  corner.x = std::clamp(corner.x, look.px(4), std::max(look.px(4), editor.layout.window.high.x - size.x - look.px(4)));
+
+  ImGui::SetNextWindowPos(im(corner));
+  ImGui::SetNextWindowSize(im(size));
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, 0);
+  ImGui::Begin("##tooltip", nullptr, ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoSavedSettings);
+  const Rect rect{corner, corner + size};
+  fill(rect, look.theme.panel, look.px(5));
+  outline(rect, look.theme.line2, look.px(5), look.line());
+  const glm::vec2 text = corner + glm::vec2(padding, look.px(7));
+  put_text(editor, look.fonts.regular, look.theme.text, text, tip.title);
+  put_key_caps(editor, rect.high.x - padding - caps_width + (caps.empty() ? 0 : look.px(12)), text.y + font->FontSize / 2, caps);
+  if (!tip.sentence.empty())
+    ImGui::GetWindowDrawList()->AddText(look.fonts.small, look.fonts.small->FontSize, im(text + glm::vec2(0, font->FontSize + look.px(4))),
+                                        look.theme.text2, tip.sentence.c_str(), nullptr, widest);
+  ImGui::End();
+  ImGui::PopStyleColor();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/views.h"
+
+#include <cmath>
+#include <limits>
+
+#include "render/looks.h"
+
+namespace limber::editor {
+
+namespace {
+
+Box box_of_voxels(const Grid& grid, const glm::dvec3& low, const glm::dvec3& high) {
+  const AffineTransform world = world_from_voxel(grid);
+  Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p = world * glm::dvec3(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z);
+    box.low = glm::min(box.low, p);
+    box.high = glm::max(box.high, p);
+  }
+  return box;
+}
+
+}  // namespace
+
+render::Camera between(const render::Camera& from, const render::Camera& to, double t) {
+  render::Camera camera = to;
+  camera.centre = glm::mix(from.centre, to.centre, t);
+  camera.distance = std::exp(glm::mix(std::log(from.distance), std::log(to.distance), t));
+  camera.world_from_view = glm::slerp(from.world_from_view, to.world_from_view, t);
+  return t < 1 ? camera : to;
+}
+
+Views::Views(int largest_texture) : renderer(largest_texture) {
+  body.camera = render::looking_from(render::StandardView::Front, body.camera);
+  body.picture = std::make_unique<render::View3D>(renderer);
+  for (int axis = 0; axis < 3; ++axis) {
+    slices[axis].camera.axis = static_cast<render::SliceAxis>(axis);
+    slices[axis].picture = std::make_unique<render::SliceView>(renderer);
+  }
+}
+
+render::SliceAxis axis_of(ViewId id) {
+  return id == ViewId::Sagittal ? render::SliceAxis::Sagittal : id == ViewId::Coronal ? render::SliceAxis::Coronal : render::SliceAxis::Axial;
+}
+
+ViewId view_of(render::SliceAxis axis) {
+  return axis == render::SliceAxis::Sagittal ? ViewId::Sagittal : axis == render::SliceAxis::Coronal ? ViewId::Coronal : ViewId::Axial;
+}
+
+SliceState& slice_of(Views& views, ViewId id) { return views.slices[static_cast<std::size_t>(axis_of(id))]; }
+
+std::string name_of(ViewId id) {
+  constexpr const char* kNames[] = {"3D view", "Axial", "Coronal", "Sagittal"};
+  return kNames[static_cast<int>(id)];
+}
+
+void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme) {
+  render::Scene& scene = views.scene;
+  scene.volume = document.volume;
+  if (!scene.looks || views.looks_of_tissues != document.tissues || views.looks_of_visibility != document.visibility) {
+    scene.looks = std::make_shared<const render::LabelLooks>(
+        document.tissues ? render::looks_of(*document.tissues, document.visibility ? *document.visibility : Visibility{}) : render::LabelLooks{});
+    views.looks_of_tissues = document.tissues;
+    views.looks_of_visibility = document.visibility;
+  }
+  scene.display = views.display;
+  scene.clip = {};
+  if (const auto& shown = document.visibility) {
+    if (shown->clip_box.enabled) scene.clip.box = {shown->clip_box.low, shown->clip_box.high};
+    if (shown->clip_plane.enabled) scene.clip.plane = {shown->clip_plane.point, shown->clip_plane.normal};
+  }
+  scene.outlined = selection.tissue;
+  scene.armature = document.armature;
+  scene.bones_in_front = views.display == render::Display::XRay;
+  scene.bones.assign(document.armature ? document.armature->bones.size() : 0, {});
+  for (const int bone : selection.bones)
+    if (bone < std::ssize(scene.bones)) scene.bones[bone].selected = true;
+  if (selection.bone && *selection.bone < std::ssize(scene.bones)) scene.bones[*selection.bone].active = scene.bones[*selection.bone].selected = true;
+  scene.grid = views.grid;
+  scene.dark_background = dark_theme;
+}
+
+Box world_box(const Document& document) {
+  if (!document.volume) return {glm::dvec3(-150), glm::dvec3(150)};
+  return box_of_voxels(document.volume->grid, glm::dvec3(-0.5), glm::dvec3(document.volume->grid.size) - 0.5);
+}
+
+Box tissue_box(const Document& document, std::optional<Label> tissue) {
+  if (!document.volume) return world_box(document);
+  const LabelVolume& volume = *document.volume;
+  std::vector<bool> wanted(65536, false);
+  if (tissue) wanted[*tissue] = true;
+  else if (document.tissues)
+    for (const Tissue& t : document.tissues->tissues) {
+      const auto look = document.visibility ? document.visibility->looks.find(t.label) : decltype(document.visibility->looks.end()){};
+      wanted[t.label] = !document.visibility || look == document.visibility->looks.end() || look->second.visible;
+    }
+  glm::ivec3 low = volume.grid.size, high(-1);
+  std::int64_t i = 0;
+  for (int z = 0; z < volume.grid.size.z; ++z)
+    for (int y = 0; y < volume.grid.size.y; ++y)
+      for (int x = 0; x < volume.grid.size.x; ++x)
+        if (wanted[volume.voxels[i++]]) {
+          low = glm::min(low, glm::ivec3(x, y, z));
+          high = glm::max(high, glm::ivec3(x, y, z));
+        }
+  if (high.x < 0) return world_box(document);
+  return box_of_voxels(volume.grid, glm::dvec3(low) - 0.5, glm::dvec3(high) + 0.5);
+}
+
+glm::dvec3 world_of(const render::SliceCamera& camera, const glm::vec2& pixel, const glm::vec2& size) {
+  const render::SliceFrame frame = render::frame_of(camera.axis);
+  const glm::dvec2 millimetres = glm::dvec2(pixel - size * 0.5f) * camera.millimetres_per_pixel;
+  return camera.centre + frame.right * millimetres.x + frame.down * millimetres.y;
+}
+
+glm::vec2 pixel_of(const render::SliceCamera& camera, const glm::dvec3& world, const glm::vec2& size) {
+  const render::SliceFrame frame = render::frame_of(camera.axis);
+  const glm::dvec3 offset = (world - camera.centre) / camera.millimetres_per_pixel;
+  return size * 0.5f + glm::vec2(glm::dot(offset, frame.right), glm::dot(offset, frame.down));
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The pictures of the body in the middle of the window: one in 3D and three slices, linked by a cross-hair.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "core/project/document.h"
+#include "editor/layout.h"
+#include "render/scene.h"
+#include "render/view.h"
+
+namespace limber::editor {
+
+// A camera on its way: eased out over 180 ms, ended by any input.
+struct CameraMove {
+  render::Camera from, to;
+  double start = 0;
+};
+render::Camera between(const render::Camera& from, const render::Camera& to, double t);  // t in [0, 1]
+
+struct BodyView {
+  render::Camera camera;
+  std::optional<CameraMove> move;
+  std::string name;  // "Front", while seen from there; else empty
+  std::unique_ptr<render::View3D> picture;
+};
+
+struct SliceState {
+  render::SliceCamera camera;
+  std::unique_ptr<render::SliceView> picture;
+};
+
+// What is picked in the scene. Not a part of the document: choosing is no edit.
+struct Selection {
+  std::optional<Label> tissue;  // the active one
+  std::set<Label> tissues;      // with the active one
+  std::optional<int> bone;
+  std::set<int> bones;
+};
+
+// What the pointer is over.
+struct Hover {
+  std::optional<ViewId> view;
+  bool inside = false;  // of the body
+  Label label = 0;
+  glm::ivec3 voxel{0};
+  glm::dvec3 point{0};
+};
+
+struct Views {
+  // Needs a current context; throws Error when it is too old.
+  explicit Views(int largest_texture = 0);
+
+  render::Renderer renderer;
+  BodyView body;
+  std::array<SliceState, 3> slices;  // by render::SliceAxis
+  glm::dvec3 cross_hair{0};          // world, mm
+  bool show_cross_hair = true;
+  render::Display display = render::Display::Solid;
+  render::SliceDisplay slice_display = render::SliceDisplay::Labels;
+  bool grid = true, axes = true, scale_bar = true, letters = true;
+  ViewId active = ViewId::Body;
+  Hover hover;
+
+  render::Scene scene;  // of the last frame
+  std::shared_ptr<const TissueTable> looks_of_tissues;
+  std::shared_ptr<const Visibility> looks_of_visibility;
+};
+
+render::SliceAxis axis_of(ViewId id);
+ViewId view_of(render::SliceAxis axis);
+SliceState& slice_of(Views& views, ViewId id);
+std::string name_of(ViewId id);
+
+// The scene that shows this document.
+void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme);
+
+// World box of the volume's grid, or of 300 mm without one.
+struct Box {
+  glm::dvec3 low, high;
+};
+Box world_box(const Document& document);
+// The same around the visible voxels of one tissue, or of all when it is absent.
+Box tissue_box(const Document& document, std::optional<Label> tissue);
+
+// The slice picture of `camera`, `size` pixels large, as points of the world and back.
+glm::dvec3 world_of(const render::SliceCamera& camera, const glm::vec2& pixel, const glm::vec2& size);
+glm::vec2 pixel_of(const render::SliceCamera& camera, const glm::dvec3& world, const glm::vec2& size);
+
+}  // namespace limber::editor
