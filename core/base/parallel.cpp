@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include "core/base/progress.h"
 
 namespace limber {
 
@@ -17,9 +20,16 @@ namespace {
 // depend on it.
 std::atomic<tbb::task_arena*> current_arena = nullptr;
 
+// What the loops of this thread's present command or job listen to.
+thread_local const Progress* current_progress = nullptr;
+
 template <class Body>
-void for_blocks(std::int64_t count, std::int64_t grain, const Body& body) {
+void for_blocks(std::int64_t count, std::int64_t grain, const Body& each) {
   if (count <= 0) return;
+  const auto body = [&each, progress = current_progress](std::int64_t block, std::int64_t begin, std::int64_t end) {
+    if (progress && progress->cancelled()) throw Cancelled();
+    each(block, begin, end);
+  };
   grain = std::max<std::int64_t>(grain, 1);
   const std::int64_t blocks = (count + grain - 1) / grain;
   auto run = [&] {
@@ -54,6 +64,9 @@ ThreadCount::ThreadCount(int threads) {
 }
 
 ThreadCount::~ThreadCount() { current_arena = limit_->previous; }
+
+CancelScope::CancelScope(const Progress& progress) : previous_(std::exchange(current_progress, &progress)) {}
+CancelScope::~CancelScope() { current_progress = previous_; }
 
 void parallel_for(std::int64_t count, std::int64_t grain, const std::function<void(std::int64_t, std::int64_t)>& body) {
   for_blocks(count, grain, [&](std::int64_t, std::int64_t begin, std::int64_t end) { body(begin, end); });

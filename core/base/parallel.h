@@ -10,6 +10,8 @@
 
 namespace limber {
 
+class Progress;
+
 // Calls body(begin, end) for every block of at most `grain` items of [0, count). An exception thrown by any block is
 // rethrown here after all running blocks have ended.
 void parallel_for(std::int64_t count, std::int64_t grain, const std::function<void(std::int64_t, std::int64_t)>& body);
@@ -29,6 +31,19 @@ class ThreadCount {
  private:
   struct Limit;
   std::unique_ptr<Limit> limit_;
+};
+
+// While it lives, parallel loops that this thread starts stop before the next block once `progress` is cancelled, and throw
+// Cancelled. Made once around a command or a job, so that no step has to ask between its own loops.
+class CancelScope {
+ public:
+  explicit CancelScope(const Progress& progress);
+  ~CancelScope();
+  CancelScope(const CancelScope&) = delete;
+  CancelScope& operator=(const CancelScope&) = delete;
+
+ private:
+  const Progress* previous_;
 };
 
 }  // namespace limber

@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/base/parallel.h"
 #include "core/base/progress.h"
 
 namespace limber::cmd {
@@ -53,6 +54,7 @@ class CommandProgress final : public Progress {
   void on_update(std::string_view stage, double fraction) override;
 
  private:
+  CancelScope cancels_loops_{*this};
   enum class Mode { Silent, Bar, Json } mode_;
   std::string stage_;
   double shown_ = -1;

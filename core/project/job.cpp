@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 
 namespace limber {
 
@@ -108,6 +109,7 @@ void Jobs::work_on(const std::shared_ptr<Job>& job, const std::shared_ptr<Board>
   Edit edit;
   const std::string label = job->status.label;  // constant
   try {
+    const CancelScope cancels_loops(*job);
     edit = job->work(*job);
   } catch (const Cancelled&) {
     state = JobState::Cancelled;
