@@ -107,6 +107,17 @@ bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel) {
   return bits_hang_together(same);
 }
 
+bool touches_air(const LabelVolume& volume, const glm::ivec3& voxel) {
+  bool air = false;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side : {-1, 1}) {
+      glm::ivec3 beside = voxel;
+      beside[axis] += side;
+      air |= volume.at_or_air(beside) == 0;
+    }
+  return air;
+}
+
 bool is_beside_air(const LabelVolume& volume, const glm::ivec3& voxel) {
   bool air = false;
   for_each_around(volume, voxel, [&](int, Label label) { air |= label == 0; });

@@ -29,7 +29,10 @@ bool hang_together(const std::array<bool, 27>& marked);
 // Whether its tissue can spare the voxel: what is left of it around hangs together.
 bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel);
 
-// Whether the voxel or one beside it is air or outside the grid.
+// Whether one of the six voxels at its faces is air or outside the grid.
+bool touches_air(const LabelVolume& volume, const glm::ivec3& voxel);
+
+// Whether the voxel or one of the 26 around it is air or outside the grid.
 bool is_beside_air(const LabelVolume& volume, const glm::ivec3& voxel);
 
 }  // namespace limber

@@ -18,6 +18,7 @@ namespace limber {
 namespace {
 
 constexpr glm::ivec3 kTile{64, 64, 32};  // output voxels: 3 MB of map a thread
+constexpr double kSkinReach = 3;         // voxels below air: as deep as what touches a thin skin from below can lie
 constexpr int kReach = 8;                // voxels: as far as soft tissue is looked for where a joint opens between bones
 
 class Seconds {
@@ -27,6 +28,8 @@ class Seconds {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 Blend blend_of(const Method& method) {
   return std::holds_alternative<DualQuaternion>(method) ? Blend::DualQuaternion : Blend::Linear;
@@ -48,12 +51,13 @@ bool can_fold(const std::vector<RigidTransform>& motions) {
 }
 
 struct LabelSets {
-  LabelSet bone = LabelSet(65536, 0), soft = LabelSet(65536, 1);
+  LabelSet bone = LabelSet(65536, 0), soft = LabelSet(65536, 1), skin = LabelSet(65536, 0);
   std::vector<int> priority = std::vector<int>(65536, 0);
 
   explicit LabelSets(const TissueTable& tissues) {
     for (const Tissue& tissue : tissues.tissues) {
       priority[tissue.label] = tissue.priority;
+      skin[tissue.label] = tissue.kind == TissueKind::Skin;
       if (!is_bone(tissue.kind)) continue;
       bone[tissue.label] = 1;
       soft[tissue.label] = 0;
@@ -126,10 +130,17 @@ class GreySampler {
   AffineTransform voxel_from_world_;
 };
 
+// A posed voxel of soft tissue that was covered by skin at rest.
+struct UnderSkin {
+  std::int64_t at;
+  Label skin;
+};
+
 // What one tile saw.
 struct TileCounts {
   std::int64_t holes = 0, overlap = 0, bone_overlap = 0;
   std::vector<Label> lost;
+  std::vector<UnderSkin> under_skin;
   struct BoneCounts {
     std::int64_t voxels = 0;
     double residual_mm = 0;
@@ -195,10 +206,22 @@ class Resampling {
       fill(map, {output_.range.low + voxel, output_.range.low + voxel});
       return glm::dvec3(map.rest[0]);
     };
-    posed_.report.mended_voxels = std::ssize(bridges) + mend(posed_.volume, volume_, labels_.soft, rest_point);
+    posed_.report.mended_voxels = std::ssize(bridges) + close_skin() + mend(posed_.volume, volume_, labels_.soft, rest_point);
   }
 
  private:
+  // Skin is often one voxel thick; where the grid or a stretch opens it, what lay under it is skin now.
+  std::int64_t close_skin() {
+    std::int64_t closed = 0;
+    for (const UnderSkin& voxel : under_skin_) {
+      const glm::ivec3 v = voxel_at(output_.grid, voxel.at);
+      if (!touches_air(posed_.volume, v) || !can_spare(posed_.volume, v)) continue;
+      posed_.volume.voxels[voxel.at] = voxel.skin;
+      ++closed;
+    }
+    return closed;
+  }
+
   static bool meet(const VoxelRange& a, const VoxelRange& b) { return !intersect(a, b).empty(); }
 
   void run_tile(const VoxelRange& range, TileCounts& counts) {
@@ -241,8 +264,19 @@ class Resampling {
     const Label label = label_of(map, i);
     posed_.volume.voxels[at] = label;
     if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
+    if (mends_ && labels_.soft[label] && !labels_.skin[label])
+      if (const Label skin = skin_over(map.rest[i])) counts.under_skin.push_back({at, skin});
     write_fields(map, i, v, at);
     count(map, i, v, label, counts);
+  }
+
+  // The skin that touches the rest point's voxel, 0 when there is none or the voxel lay bare itself.
+  Label skin_over(const glm::dvec3& rest) const {
+    const glm::ivec3 voxel(glm::floor(rest + 0.5));
+    if (depth_->at_voxel(voxel) > skin_reach_ || touches_air(volume_, voxel)) return 0;
+    for (const glm::ivec3& step : neighbours())
+      if (const Label label = volume_.at_or_air(voxel + step); labels_.skin[label]) return label;
+    return 0;
   }
 
   Label label_of(const InverseMap& map, std::int64_t i) const {
@@ -275,13 +309,12 @@ class Resampling {
     counts.overlap += (map.flags[i] & InverseMap::kOverlap) != 0;
     counts.bone_overlap += (map.flags[i] & InverseMap::kBoneOverlap) != 0;
     if (!labels_.bone[label]) return;
-    const int bone = map.bone[i] != InverseMap::kNoBone ? map.bone[i] : bones_.owner(volume_voxel(map.cell[i]));
+    const int bone = map.bone[i] != InverseMap::kNoBone ? map.bone[i] : bones_.owner(voxel_at(volume_.grid, map.cell[i]));
     if (bone >= 0) counts.add_bone_voxel(bone, bones_.residual(bone, map.rest[i], v));
   }
 
-  glm::ivec3 volume_voxel(std::uint32_t cell) const {
-    const glm::ivec3& size = volume_.grid.size;
-    return {int(cell % size.x), int(cell / size.x % size.y), int(cell / size.x / size.y)};
+  static glm::ivec3 voxel_at(const Grid& grid, std::int64_t at) {
+    return {int(at % grid.size.x), int(at / grid.size.x % grid.size.y), int(at / grid.size.x / grid.size.y)};
   }
 
   void start_grey() {
@@ -307,6 +340,7 @@ class Resampling {
     report.overlap_voxels += tile.overlap;
     report.bone_overlap_voxels += tile.bone_overlap;
     for (Label label : tile.lost) ++report.overlap_by_label[label];
+    under_skin_.insert(under_skin_.end(), tile.under_skin.begin(), tile.under_skin.end());
     for (const auto& [bone, seen] : tile.bones) {
       report.bones[bone].voxels += seen.voxels;
       report.bones[bone].rigid_residual_mm = std::max(report.bones[bone].rigid_residual_mm, seen.residual_mm);
@@ -322,6 +356,8 @@ class Resampling {
   const OutputGrid& output_;
   const bool mends_;
   Posed& posed_;
+  const double skin_reach_ = kSkinReach * largest(volume_.grid.spacing);  // mm below air
+  std::vector<UnderSkin> under_skin_;
   LabelVolume posed_bones_;  // 1 + the rig bone of each voxel that a bone paints
   LabelSampler sampler_;
   AffineTransform world_from_rest_;

@@ -63,6 +63,24 @@ TEST_CASE("resample: a bent limb keeps every voxel, has no holes, and its bones 
   }
 }
 
+TEST_CASE("resample: skin of one voxel stays closed over a bent limb, and bare tissue stays bare") {
+  test::BentTube tube = test::bent_tube();
+  for (glm::ivec3 v(0); v.z < tube.volume.grid.size.z; ++v.z)  // cut open on one side
+    for (v.x = 0, v.y = 12; v.x < 11; ++v.x)
+      if (tube.volume.at(v) == test::kSkin) tube.volume.at(v) = test::kFat;
+  for (const Method& method : kMethods)
+    for (double degrees : {30.0, 60.0, 90.0}) {
+      const Posed result = posed(tube, tube.pose(degrees, 20), method);
+      const VolumeMetrics change = compare(tube.volume, result.volume, tube.tissues);
+      INFO("at ", degrees);
+      CHECK(change.skin_share_before < 0.99);
+      CHECK(change.skin_share_after > change.skin_share_before - 0.015);
+      CHECK(change.skin_share_after < 0.9);
+      const Posed as_it_falls = posed(tube, tube.pose(degrees, 20), method, {.nearest = true});
+      CHECK(compare(tube.volume, as_it_falls.volume, tube.tissues).skin_share_after < change.skin_share_after - 0.02);
+    }
+}
+
 TEST_CASE("resample: results are the same for 1, 2 and 4 threads, bit for bit") {
   const test::BentTube tube = test::bent_tube();
   for (const Method& method : kMethods) {
