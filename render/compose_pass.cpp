@@ -13,12 +13,11 @@ namespace {
 const char* const kBackground = R"(
 in vec2 ndc;
 uniform vec3 u_top, u_bottom;
-uniform float u_alpha;
 layout(location = 0) out vec4 colour;
 void main() {
   ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
   int order = ((cell.x ^ cell.y) & 1) * 8 + (cell.x & 1) * 4 + ((cell.x >> 1 ^ cell.y >> 1) & 1) * 2 + (cell.x >> 1);
-  colour = vec4(mix(u_bottom, u_top, ndc.y * 0.5 + 0.5) + (float(order) - 7.5) / (16.0 * 255.0), 1.0) * u_alpha;
+  colour = vec4(mix(u_bottom, u_top, ndc.y * 0.5 + 0.5) + (float(order) - 7.5) / (16.0 * 255.0), 1.0);
 }
 )";
 
@@ -106,10 +105,15 @@ void ComposePass::cover(const glm::ivec2& size, const PixelRect& rect) {
 
 void ComposePass::background(Background background, const glm::ivec2& size) {
   glDisable(GL_BLEND);
+  if (background == Background::Transparent) {
+    const float nothing[4] = {0, 0, 0, 0};
+    glDisable(GL_SCISSOR_TEST);
+    glClearBufferfv(GL_COLOR, 0, nothing);
+    return;
+  }
   background_.use();
   background_.set("u_top", background == Background::Light ? rgb(0x3E434B) : rgb(0x31343B));
   background_.set("u_bottom", background == Background::Light ? rgb(0x25282D) : rgb(0x1B1D21));
-  background_.set("u_alpha", background == Background::Transparent ? 0.0f : 1.0f);
   cover(size, {{0, 0}, size});
 }
 

@@ -103,7 +103,10 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
   glViewport(0, 0, surface.size().x, surface.size().y);
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
-  glDisable(GL_DEPTH_TEST);
+  // Drawn at the far plane: only where the hull lies in front.
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_FALSE);
   glDisable(GL_BLEND);
   program.use();
   set_rays(program, rays);

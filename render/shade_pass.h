@@ -12,7 +12,8 @@ class ShadePass {
  public:
   ShadePass();
 
-  // Into the framebuffer that is bound, which has the buffer's size: premultiplied colours where the volume shows, else 0.
+  // Into the framebuffer that is bound, which has the buffer's size and hull depth and is clear: premultiplied colours where
+  // the volume shows.
   //   bones  what lies under the ghost; nullptr: the surface is solid
   void draw(const VolumeTexture& volume, const VisibleField& field, const GBuffer& surface, const GBuffer* bones, const VisibleField* bone_field,
             const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect);

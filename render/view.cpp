@@ -38,6 +38,11 @@ class Target {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.name(), 0);
   }
+  // The depth of a buffer of the same size: passes can then leave out what it does not cover.
+  void share_depth(const gl::Texture& depth) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
+  }
   void bind() const {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, size_.x, size_.y);
@@ -192,16 +197,19 @@ struct View3D::Impl {
   }
 
   // The whole body at once, at every `scale`-th pixel.
+  static void lap(const char* n) { static double last=0; static double c0=0; glFinish(); timespec t; clock_gettime(CLOCK_PROCESS_CPUTIME_ID,&t); double c=t.tv_sec+1e-9*t.tv_nsec; (void)last; if(getenv("LAP")) fprintf(stderr,"%s %.2f ms\n",n,(c-c0)*1e3); c0=c; }
   void draw_at_once(const Source& source, int scale) {
+    lap("-");
     const glm::ivec2 size = glm::max((key.size + scale - 1) / scale, glm::ivec2(1));
     const ViewRays rays = rays_of(source, size, 0);
     rect = VolumePass::covered(*source.visible, rays, size);
     start(source, rays, surface, bones, size, rect);
-    march(source, rays, surface, bones, rect);
+    lap("hull");
+    march(source, rays, surface, bones, rect);lap("march");
     body.resize(size, GL_RGBA8);
+    body.share_depth(surface.hull_depth);
     body.clear();
-    body.bind();
-    shade(source, rays, surface, bones, rect);
+    shade(source, rays, surface, bones, rect);lap("shade");
     shown_scale = scale;
   }
 
@@ -225,13 +233,13 @@ struct View3D::Impl {
     if (next_tile < count) return false;
 
     body.resize(key.size, GL_RGBA8);
+    body.share_depth(surface_buffer.hull_depth);
     body.clear();
-    body.bind();
     shade(source, rays, surface_buffer, bone_buffer, part);
     average.resize(key.size, GL_RGBA16F);
     if (sample == 0) average.clear();
     average.bind();
-    parts.compose.accumulate(body.texture(), key.size, 1.0f / float(sample + 1), {{0, 0}, key.size});
+    parts.compose.accumulate(body.texture(), key.size, 1.0f / float(sample + 1), part);
     if (sample == 0) {
       std::swap(surface, jittered_surface);
       std::swap(bones, jittered_bones);
@@ -243,6 +251,12 @@ struct View3D::Impl {
     return true;
   }
 
+  // What the body can cover in the output, with a margin for outlines and for stretched pixels.
+  PixelRect shown_rect() const {
+    const int margin = shown_scale + 3;
+    return intersection({{0, 0}, key.size}, {rect.low * shown_scale - margin, rect.high * shown_scale + margin});
+  }
+
   void compose() {
     output.bind();
     const auto background = scene.transparent_background ? Background::Transparent : scene.dark_background ? Background::Dark : Background::Light;
@@ -251,8 +265,8 @@ struct View3D::Impl {
     if (scene.grid && !scene.transparent_background)
       parts.compose.grid(key.camera, key.size, (low + high) / 2.0, low.z, std::max(600.0, glm::length(high - low) * 1.5));
     const bool has_body = shown_scale > 0;
-    if (has_body) parts.compose.body(sample > 0 ? average.texture() : body.texture(), key.size, {{0, 0}, key.size});
-    if (has_body && scene.outlined) parts.compose.outline(surface, *scene.outlined, key.size, {{0, 0}, key.size});
+    if (has_body) parts.compose.body(sample > 0 ? average.texture() : body.texture(), key.size, shown_rect());
+    if (has_body && scene.outlined) parts.compose.outline(surface, *scene.outlined, key.size, shown_rect());
     parts.armature.draw(scene, key.camera, key.size, has_body && scene.display != Display::XRay ? &surface.depth : nullptr);
     gl::check_gl("drawing a picture");
   }
@@ -296,10 +310,11 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
     redraw |= my.refine(*source);
   }
   my.drawn = true;
-  if (redraw) my.compose();
+  if (redraw) {my.compose();my.lap("compose");}
 }
 
 bool View3D::complete() const { return impl_->complete(); }
+int View3D::scale() const { return impl_->shown_scale; }
 unsigned View3D::texture() const { return impl_->output.texture().name(); }
 Image View3D::read() const { return read_back(impl_->output, impl_->scene.transparent_background); }
 

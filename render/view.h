@@ -56,6 +56,7 @@ class View3D {
   //   now    seconds, of any steady clock
   void draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, double now, int scale = 0);
   bool complete() const;
+  int scale() const;         // of the body in the last picture; 0: there is none
   unsigned texture() const;  // RGBA8, `size` pixels, top row first when drawn with uv (0, 1) to (1, 0)
   Image read() const;        // the finished picture
 

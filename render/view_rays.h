@@ -22,6 +22,7 @@ struct ViewRays {
   glm::dmat4 padded_from_world;
   double nearest = 0;             // depth of the near plane
   bool perspective = true;
+  glm::vec3 label_shift{0};       // voxels by which labels are read beside their place: averaged pictures blend their borders
 };
 
 AffineTransform padded_from_world(const Grid& grid);

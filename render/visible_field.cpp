@@ -2,6 +2,7 @@
 #include "render/visible_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -283,13 +284,11 @@ void VisibleField::build_hull(const BlockLayout& layout) {
 
   // Lattice corners are shared between faces, so that no gap opens between them; two layers of the lattice are at hand.
   std::vector<glm::u16vec4> vertices;
-  std::array<std::vector<std::uint32_t>, 6> faces;
+  std::vector<std::uint32_t> indices;
   const auto lattice_layer = static_cast<size_t>(size.x + 1) * (size.y + 1);
   constexpr std::uint32_t kNone = ~0u;
   std::vector<std::uint32_t> below(lattice_layer, kNone), above(lattice_layer, kNone);
   glm::ivec3 low = size, high(0);
-  ranges_ = {};
-  for (Range& range : ranges_) range.low = 1 << 30, range.high = -1;
 
   for (int z = 0; z < size.z; ++z) {
     const auto corner = [&](const glm::ivec3& c) {
@@ -317,22 +316,13 @@ void VisibleField::build_hull(const BlockLayout& layout) {
           // Counter-clockwise from outside.
           c[up ? 1 : 3][u] += 1, c[2][u] += 1, c[2][v] += 1, c[up ? 3 : 1][v] += 1;
           const std::uint32_t ids[4] = {corner(c[0]), corner(c[1]), corner(c[2]), corner(c[3])};
-          for (const int i : {0, 1, 2, 0, 2, 3}) faces[side].push_back(ids[i]);
-          Range& range = ranges_[side];
-          range.low = std::min(range.low, c[0][axis] * kBrick);
-          range.high = std::max(range.high, c[0][axis] * kBrick);
+          for (const int i : {0, 1, 2, 0, 2, 3}) indices.push_back(ids[i]);
         }
       }
     std::swap(below, above);
     std::fill(above.begin(), above.end(), kNone);
   }
 
-  std::vector<std::uint32_t> indices;
-  for (int side = 0; side < 6; ++side) {
-    ranges_[side].first = static_cast<std::int64_t>(indices.size());
-    ranges_[side].count = static_cast<std::int64_t>(faces[side].size());
-    indices.insert(indices.end(), faces[side].begin(), faces[side].end());
-  }
   faces_ = static_cast<std::int64_t>(indices.size()) / 6;
   low_ = glm::vec3(low * kBrick);
   high_ = glm::vec3(high * kBrick);
@@ -380,18 +370,9 @@ int VisibleField::bind(const VolumeTexture& volume, gl::Program& program, int fi
   return first;
 }
 
-void VisibleField::draw_hull(const glm::vec3& eye_or_direction, bool perspective) const {
+void VisibleField::draw_hull() const {
   glBindVertexArray(array_.name());
-  for (int side = 0; side < 6; ++side) {
-    const Range& range = ranges_[static_cast<size_t>(side)];
-    if (range.count == 0) continue;
-    const int axis = side / 2;
-    const float at = eye_or_direction[axis];
-    const bool faces_eye = side % 2 ? (perspective ? at > float(range.low) : at < 0) : (perspective ? at < float(range.high) : at > 0);
-    if (!faces_eye) continue;
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(range.first * std::int64_t{sizeof(std::uint32_t)}));
-  }
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(faces_ * 6), GL_UNSIGNED_INT, nullptr);
   glBindVertexArray(0);
 }
 

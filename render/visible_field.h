@@ -10,7 +10,6 @@
 // place to start from, and pixels beside the body no work at all.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -40,17 +39,12 @@ class VisibleField {
 
   // Samplers u_field0 .., u_index, and u_texel; returns the next free unit.
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
-  // The faces that can look towards the eye (padded coordinates), or against the direction of view of an orthographic camera.
-  void draw_hull(const glm::vec3& eye_or_direction, bool perspective) const;
+  void draw_hull() const;  // its faces, counter-clockwise from outside in padded coordinates
 
   std::int64_t face_count() const { return faces_; }
   std::int64_t blocks_computed() const { return blocks_computed_; }  // by the last update
 
  private:
-  struct Range {
-    std::int64_t first = 0, count = 0;     // indices
-    int low = 0, high = 0;                 // of the faces along their axis, padded voxels
-  };
   void build_hull(const BlockLayout& layout);
   void build_occupancy(const VolumeTexture& volume);
 
@@ -61,7 +55,6 @@ class VisibleField {
   gl::Texture index_, occupancy_texture_;
   gl::Buffer vertices_, indices_;
   gl::VertexArray array_;
-  std::array<Range, 6> ranges_;  // -x +x -y +y -z +z
   std::int64_t faces_ = 0, blocks_computed_ = 0;
   glm::vec3 low_{0}, high_{0};
   std::vector<std::vector<Label>> labels_of_slot_;  // that its blurred voxels depend on

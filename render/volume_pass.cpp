@@ -21,16 +21,19 @@ void main() {
 }
 )";
 
+// The greatest of each channel is kept: the nearest front face, negated, and the farthest back face.
 const char* const kHullFragment = R"(
 in float depth;
-layout(location = 0) out float entry;
-void main() { entry = depth; }
+uniform bool u_front_is_clockwise;
+layout(location = 0) out vec2 range;
+void main() { range = gl_FrontFacing != u_front_is_clockwise ? vec2(-depth, -1e30) : vec2(-1e30, depth); }
 )";
 
 // Lengths of s are voxels of the axis along which the ray moves fastest, so that no step of 1 passes over a voxel layer.
 const char* const kMarch = R"(
 in vec2 ndc;
-uniform sampler2D u_entry;
+uniform sampler2D u_range;
+uniform float u_nearest;         // where a ray starts whose eye is inside the hull; else -1e30
 uniform usampler3D u_index;
 uniform usampler2D u_looks;
 uniform uint u_set;
@@ -43,7 +46,10 @@ layout(location = 0) out float out_depth;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out uint out_label;
 
-const float kBand = 64.0 / 255.0;           // from here on the surface may be near
+#define TAP 0.8
+uniform vec3 u_label_shift;
+
+const float kBand = 96.0 / 255.0;           // from here on the surface may be near
 const float kFirstFieldValue = 7.5 / 255.0;
 
 struct Slot { ivec3 offset; uint atlas; };
@@ -64,11 +70,12 @@ void main() {
   vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
   vec3 inverse_d = 1.0 / safe;
 
-  float s = texelFetch(u_entry, ivec2(gl_FragCoord.xy), 0).r * voxels_per_depth;
+  vec2 range = texelFetch(u_range, ivec2(gl_FragCoord.xy), 0).rg;
+  float s = (u_nearest > -1e29 ? u_nearest : -range.r) * voxels_per_depth;
   vec3 t0 = (u_low - base) * inverse_d, t1 = (u_high - base) * inverse_d;
   vec3 nearer = min(t0, t1), farther = max(t0, t1);
   float box_start = max(max(nearer.x, nearer.y), nearer.z);
-  float s_end = min(min(farther.x, farther.y), farther.z);
+  float s_end = min(min(min(farther.x, farther.y), farther.z), range.g * voxels_per_depth);
   bool cut = false;
   if (u_clipped) {
     float rate = dot(u_plane.xyz, d), room = u_plane.w - dot(u_plane.xyz, base);
@@ -80,12 +87,13 @@ void main() {
   }
   float s_start = s;
 
-  float found = -1e30, before = 0.0, after = 0.0;
-  vec3 block_exit = vec3(greaterThan(d, vec3(0.0))) * float(BLOCK);
+  float found = -1e30, before = 0.0, after = 0.0, s_before = 0.0;
+  vec3 block_exit = vec3(greaterThan(safe, vec3(0.0))) * float(BLOCK);
+  vec3 ahead = sign(safe) * 0.02;  // a block is left for good even where the ray runs along its face
   bool cap = false;
   for (int blocks = 0; blocks < 1024 && s < s_end && found < -1e29; ++blocks) {
     vec3 p = base + d * s;
-    ivec3 block = ivec3(p) >> BLOCK_SHIFT;
+    ivec3 block = ivec3(p + ahead) >> BLOCK_SHIFT;
     Slot slot = slot_of(block);
     vec3 leave = (vec3(block * BLOCK) + block_exit - base) * inverse_d;
     float s_leave = min(min(min(leave.x, leave.y), leave.z) + 1e-3, s_end);
@@ -96,15 +104,18 @@ void main() {
       if (value >= kBand) break;
       s_march += value < kFirstFieldValue ? max(1.0, value * (255.0 * BRICK) - float(BRICK - 1)) : 1.0;
     }
-    // From a voxel before, so that a surface is not met from its inside; the apron reaches far enough.
-    float s_near = max(s_march - 1.0, s_start), s_far = value >= kBand ? s_march + 1.5 : -1e30;
+    // From half a voxel before, so that a surface is not met from its inside. The field rises by at most 3/8 a voxel: as far
+    // as it must rise to one half, so far no surface is passed over. The apron reaches far enough.
+    float s_near = max(s_march - 0.5, s_start), s_far = value >= kBand ? s_march + 1.5 : -1e30;
     vec3 offset = vec3(slot.offset);
     before = 0.0;
+    s_before = s_near - 0.5;
     while (s_near < s_far) {
       after = field_at(slot.atlas, base + d * s_near + offset);
       if (after >= 0.5) { found = s_near; break; }
       before = after;
-      s_near += 0.5;
+      s_before = s_near;
+      s_near += max(0.4, (0.5 - after) * 3.0);
     }
     s = value >= kBand ? s_march + 1.5 : max(s_march, s_leave);
   }
@@ -116,38 +127,34 @@ void main() {
     return;
   }
   cap = cut && found == s_start;
+  // The secant.
+  if (!cap) found = mix(max(s_before, s_start), found, clamp((0.5 - before) / max(after - before, 1e-3), 0.0, 1.0));
   vec3 p = base + d * found;
   Slot slot = slot_at(p);
-  if (!cap) {
-    // Two steps of the secant.
-    float low = max(found - 0.5, s_start), high = found;
-    float middle = mix(low, high, clamp((0.5 - before) / max(after - before, 1e-3), 0.0, 1.0));
-    vec3 offset = vec3(slot.offset);
-    float value = field_at(slot.atlas, base + d * middle + offset);
-    found = value < 0.5 ? mix(middle, high, clamp((0.5 - value) / max(after - value, 1e-3), 0.0, 1.0))
-                        : mix(low, middle, clamp((0.5 - before) / max(value - before, 1e-3), 0.0, 1.0));
-    p = base + d * found;
-    slot = slot_at(p);
-  }
 
+  // Differences along the four corners of a tetrahedron.
   vec3 at = p + vec3(slot.offset);
-  vec3 gradient = vec3(field_at(slot.atlas, at + vec3(1, 0, 0)) - field_at(slot.atlas, at - vec3(1, 0, 0)),
-                       field_at(slot.atlas, at + vec3(0, 1, 0)) - field_at(slot.atlas, at - vec3(0, 1, 0)),
-                       field_at(slot.atlas, at + vec3(0, 0, 1)) - field_at(slot.atlas, at - vec3(0, 0, 1)));
+  const vec3 a = vec3(1, -1, -1) * TAP, b = vec3(-1, -1, 1) * TAP, c = vec3(-1, 1, -1) * TAP, e = vec3(TAP);
+  vec3 gradient = a * field_at(slot.atlas, at + a) + b * field_at(slot.atlas, at + b) + c * field_at(slot.atlas, at + c) + e * field_at(slot.atlas, at + e);
   vec3 steepness = abs(gradient);
   float steepest = max(max(steepness.x, steepness.y), steepness.z);
   vec3 inward = steepest < 1e-4 || cap ? d : gradient / steepest;
   vec3 normal = normalize(-(u_view_from_gradient * inward));
 
-  // The first label of the set, from the surface inward.
+  // The first label of the set, from a little outside the surface inward: first through air, then through hidden tissue.
   vec3 step = (cap ? d : inward) * 0.5;
-  vec3 inside = at + step * (cap ? 0.02 : 0.3);
-  uint label = 0u;
-  for (int i = 0; i < 6; ++i) {
-    label = label_at(slot.atlas, ivec3(inside));
-    if ((texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & u_set) != 0u) break;
-    label = 0u;
+  vec3 inside = at + u_label_shift + (cap ? step * 0.02 : inward * -0.75);
+  uint label = label_at(slot.atlas, ivec3(inside));
+  int steps = 0;
+  while (label == 0u && steps < 6) {
     inside += step;
+    ++steps;
+    label = label_at(slot.atlas, ivec3(inside));
+  }
+  while ((texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & u_set) == 0u) {
+    inside += step;
+    if (++steps > 6) { label = 0u; break; }
+    label = label_at(slot.atlas, ivec3(inside));
   }
 
   out_depth = found / voxels_per_depth;
@@ -196,13 +203,13 @@ PixelRect intersection(const PixelRect& a, const PixelRect& b) { return {glm::ma
 void GBuffer::resize(const glm::ivec2& size) {
   if (size == size_) return;
   if (!hull_target) {
-    for (gl::Texture* texture : {&depth, &normal, &label, &entry, &hull_depth}) *texture = gl::Texture::create();
+    for (gl::Texture* texture : {&depth, &normal, &label, &range, &hull_depth}) *texture = gl::Texture::create();
     hull_target = gl::Framebuffer::create();
     march_target = gl::Framebuffer::create();
   }
   size_ = size;
   glBindFramebuffer(GL_FRAMEBUFFER, hull_target.name());
-  attach(entry, size, GL_R32F, GL_RED, GL_FLOAT, GL_COLOR_ATTACHMENT0);
+  attach(range, size, GL_RG32F, GL_RG, GL_FLOAT, GL_COLOR_ATTACHMENT0);
   attach(hull_depth, size, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_DEPTH_ATTACHMENT);
   glBindFramebuffer(GL_FRAMEBUFFER, march_target.name());
   attach(depth, size, GL_R32F, GL_RED, GL_FLOAT, GL_COLOR_ATTACHMENT0);
@@ -241,24 +248,21 @@ void VolumePass::draw_hull(const VisibleField& field, const ViewRays& rays, cons
   set_scissor(rect);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
-  const bool from_eye = eye_inside(field, rays);
-  const float far = from_eye ? 0.5f : 1.0f, start = static_cast<float>(rays.nearest);
+  const float far = 1, nothing[4] = {-kNothingDepth, -kNothingDepth, 0, 0};
   glClearBufferfv(GL_DEPTH, 0, &far);
-  if (from_eye) {
-    glClearBufferfv(GL_COLOR, 0, &start);
-    return;
-  }
+  glClearBufferfv(GL_COLOR, 0, nothing);
+  // Any depth before the far plane marks a pixel as covered.
   glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
-  glEnable(GL_CULL_FACE);
-  const bool mirrored = glm::determinant(glm::dmat3(rays.padded_from_world)) < 0;
-  glFrontFace(mirrored ? GL_CW : GL_CCW);
+  glDepthFunc(GL_ALWAYS);
+  glEnable(GL_BLEND);
+  glBlendEquation(GL_MAX);
   hull_.use();
   hull_.set("u_clip", glm::mat4(rays.clip_from_padded));
   hull_.set("u_depth", glm::vec4(rays.depth_of_padded));
-  field.draw_hull(glm::vec3(rays.eye), rays.perspective);
-  glDisable(GL_CULL_FACE);
-  glFrontFace(GL_CCW);
+  hull_.set("u_front_is_clockwise", glm::determinant(glm::dmat3(rays.padded_from_world)) < 0 ? 1 : 0);
+  field.draw_hull();
+  glBlendEquation(GL_FUNC_ADD);
+  glDisable(GL_BLEND);
 }
 
 void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, const gl::Texture& looks, Sets set, const Clip& clip,
@@ -281,7 +285,9 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   march_.use();
   int unit = volume.bind(march_, 0);
   unit = field.bind(volume, march_, unit);
-  march_.set_texture("u_entry", unit++, GL_TEXTURE_2D, buffer.entry.name());
+  march_.set_texture("u_range", unit++, GL_TEXTURE_2D, buffer.range.name());
+  march_.set("u_nearest", eye_inside(field, rays) ? static_cast<float>(rays.nearest) : -kNothingDepth);
+  march_.set("u_label_shift", rays.label_shift);
   march_.set_texture("u_looks", unit++, GL_TEXTURE_2D, looks.name());
   march_.set("u_set", static_cast<unsigned>(set));
   set_rays(march_, rays);

@@ -38,7 +38,7 @@ class GBuffer {
   gl::Texture depth;   // R32F: mm before the eye along the direction of view; kNothingDepth
   gl::Texture normal;  // RGB10_A2: unit, of the view, halved and shifted to [0, 1]; alpha 0 nothing, 1/3 surface, 1 cap
   gl::Texture label;   // R16UI
-  gl::Texture entry;   // R32F: depth where the ray meets the hull
+  gl::Texture range;   // RG32F: depth where the ray enters the hull, negated, and where it leaves it for good
   gl::Texture hull_depth;
   gl::Framebuffer hull_target, march_target;
 
