@@ -36,7 +36,7 @@ struct DeformReport {
   std::int64_t new_hole_voxels = 0;       // posed voxels inside the image of a tissue cell that carry no label
   std::int64_t overlap_voxels = 0;        // posed voxels claimed by cells that are no neighbours at rest
   std::int64_t bone_overlap_voxels = 0;   // posed voxels claimed by two rig bones' bone tissue
-  std::int64_t mended_voxels = 0;         // soft voxels given to a neighbouring tissue that the pose had torn there (mend.h)
+  std::int64_t mended_voxels = 0;         // given to a neighbouring tissue where the pose had torn it: skin, connected parts (mend.h)
   std::vector<std::int64_t> overlap_by_label;  // [65536], rest voxels that lost their place, by label
   struct BoneResidual {
     std::string name;
