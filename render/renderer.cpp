@@ -23,12 +23,6 @@ bool same(const std::weak_ptr<T>& key, const std::shared_ptr<T>& owner) {
   return !key.owner_before(owner) && !owner.owner_before(key);
 }
 
-const VisibleField& current(std::unique_ptr<VisibleField>& field, const VolumeTexture& volume, const LabelSet& set) {
-  if (!field) field = std::make_unique<VisibleField>(volume, set);
-  else if (field->set() != set) field->update(volume, set);
-  return *field;
-}
-
 }  // namespace
 
 Renderer::Parts::Parts(int largest) : largest_texture(texture_limit(largest)) {}
@@ -44,16 +38,22 @@ Renderer::Parts::Body& Renderer::Parts::body(const std::shared_ptr<const LabelVo
   return *bodies_.emplace_back(std::move(fresh));
 }
 
-const LooksTexture& Renderer::Parts::looks(const std::shared_ptr<const LabelLooks>& looks) {
+const LooksTexture& Renderer::Parts::looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks, Display display) {
   for (const Looks& known : looks_)
-    if (same(known.key, looks)) return *known.texture;
-  std::erase_if(looks_, [](const Looks& known) { return known.key.expired(); });
-  return *looks_.emplace_back(Looks{looks, std::make_unique<LooksTexture>(*looks)}).texture;
+    if (same(known.key, looks) && same(known.volume, body.volume->original()) && known.display == display) return *known.texture;
+  std::erase_if(looks_, [](const Looks& known) { return known.key.expired() || known.volume.expired(); });
+  auto texture = std::make_unique<LooksTexture>(*looks, display, body.volume->exposure());
+  return *looks_.emplace_back(Looks{looks, body.volume->original(), display, std::move(texture)}).texture;
 }
 
-const VisibleField& Renderer::Parts::visible(Body& body, const LooksTexture& looks) { return current(body.visible, *body.volume, looks.visible()); }
-
-const VisibleField& Renderer::Parts::bones(Body& body, const LooksTexture& looks) { return current(body.bones, *body.volume, looks.bones()); }
+const VisibleField& Renderer::Parts::layer(Body& body, const LooksTexture& looks, size_t layer) {
+  if (body.layers.size() <= layer) body.layers.resize(layer + 1);
+  auto& field = body.layers[layer];
+  const LabelSet& set = looks.layers()[layer];
+  if (!field) field = std::make_unique<VisibleField>(*body.volume, set);
+  else if (field->set() != set) field->update(*body.volume, set);
+  return *field;
+}
 
 VolumePass& Renderer::Parts::volume_pass(const VolumeTexture& volume) {
   auto& pass = volume_passes_[volume.layout().atlases];

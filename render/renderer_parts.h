@@ -24,16 +24,16 @@ namespace limber::render {
 struct Renderer::Parts {
   explicit Parts(int largest);
 
-  // A volume on the card, with the sets of labels that rays look for.
+  // A volume on the card, with the layers that rays look for.
   struct Body {
     std::weak_ptr<const LabelVolume> key;
     std::unique_ptr<VolumeTexture> volume;
-    std::unique_ptr<VisibleField> visible, bones;  // bones: once X-ray was asked for
+    std::vector<std::unique_ptr<VisibleField>> layers;
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
-  const LooksTexture& looks(const std::shared_ptr<const LabelLooks>& looks);
-  const VisibleField& visible(Body& body, const LooksTexture& looks);
-  const VisibleField& bones(Body& body, const LooksTexture& looks);
+  const LooksTexture& looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks, Display display);
+  // The field of that layer, computed where it is not yet or no longer right.
+  const VisibleField& layer(Body& body, const LooksTexture& looks, size_t layer);
   VolumePass& volume_pass(const VolumeTexture& volume);
 
   int largest_texture;
@@ -46,6 +46,8 @@ struct Renderer::Parts {
  private:
   struct Looks {
     std::weak_ptr<const LabelLooks> key;
+    std::weak_ptr<const LabelVolume> volume;
+    Display display;
     std::unique_ptr<LooksTexture> texture;
   };
   std::vector<std::unique_ptr<Body>> bodies_;

@@ -16,32 +16,22 @@ uniform usampler2D u_label, u_looks;
 uniform sampler3D u_occupancy;
 uniform vec3 u_occupancy_texel;
 uniform mat3 u_padded_from_view;   // directions, scaled so that a unit normal moves one brick
+uniform uint u_layer;
 layout(location = 0) out vec4 colour;
-
-#ifdef GHOST
-uniform sampler2D u_bone_depth, u_bone_normal;
-uniform usampler2D u_bone_label;
-uniform sampler3D u_bone_occupancy;
-#endif
 
 const vec3 kKey = vec3(-0.428, 0.556, 0.713);
 
-vec3 tissue_colour(uint label) {
-  vec3 srgb = vec3(texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).rgb) / 255.0;
-  return srgb * srgb;
-}
 
 // How open the place is: 1 on a flat or bulging surface, less in a crease.
-float openness(sampler3D occupancy, float depth, vec3 normal) {
+float openness(float depth, vec3 normal) {
   vec3 p = u_base + ndc.x * u_base_x + ndc.y * u_base_y + depth * (u_toward + ndc.x * u_toward_x + ndc.y * u_toward_y);
   vec3 out_of = u_padded_from_view * normal;
-  float near = textureLod(occupancy, (p + out_of * 1.25) * u_occupancy_texel, 0.0).r;
-  float far = textureLod(occupancy, (p + out_of * 3.0) * u_occupancy_texel, 0.0).r;
+  float near = textureLod(u_occupancy, (p + out_of * 1.25) * u_occupancy_texel, 0.0).r;
+  float far = textureLod(u_occupancy, (p + out_of * 3.0) * u_occupancy_texel, 0.0).r;
   return 1.0 - clamp(1.5 * (near - 0.14) + 0.8 * far, 0.0, 0.75);
 }
 
-vec3 lit(uint label, vec3 normal, float open) {
-  vec3 albedo = tissue_colour(label);
+vec3 lit(vec3 albedo, vec3 normal, float open) {
   float toward = clamp(normal.z, 0.0, 1.0);
   float key = clamp(dot(normal, kKey) * 0.75 + 0.25, 0.0, 1.0);
   float sky = 0.5 + 0.5 * normal.y;
@@ -55,38 +45,25 @@ vec3 lit(uint label, vec3 normal, float open) {
   return albedo * (light + 0.10 * rim * sky) + 0.035 * gloss * open;
 }
 
-vec3 encoded(vec3 linear) { return sqrt(clamp(linear, 0.0, 1.0)); }
-
-vec3 surface(sampler3D occupancy, float depth, vec4 normal, uint label) {
-  vec3 n = normalize(normal.xyz * 2.0 - 1.0);
-  if (normal.a > 0.7) return encoded(tissue_colour(label));
-  return encoded(lit(label, n, openness(occupancy, depth, n)));
-}
-
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 normal = texelFetch(u_normal, at, 0);
-  float depth = texelFetch(u_depth, at, 0).r;
+  uint label = texelFetch(u_label, at, 0).r;
+  uvec4 look = texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0);
+  vec3 srgb = vec3(look.rgb) / 255.0;
+  bool cap = normal.a > 0.7;
+  float alpha = normal.a == 0.0 || (look.a & 7u) > u_layer + 1u ? 0.0 : 1.0;
 #ifdef GHOST
-  vec4 bone_normal = texelFetch(u_bone_normal, at, 0);
-  float bone_depth = texelFetch(u_bone_depth, at, 0).r;
-  vec4 bone = bone_normal.a > 0.0 ? vec4(surface(u_bone_occupancy, bone_depth, bone_normal, texelFetch(u_bone_label, at, 0).r), 1.0) : vec4(0.0);
-  if (normal.a == 0.0) { colour = bone; return; }
   float steep = clamp(1.0 - abs(normal.z * 2.0 - 1.0), 0.0, 1.0);
-  float alpha = 0.10 + 0.62 * steep * steep * steep;
-  vec3 ghost = vec3(0.624, 0.722, 0.839);
-  if (normal.a > 0.7) {
-    // A cut through flesh stays see-through, a cut through bone is solid.
-    ghost = encoded(tissue_colour(texelFetch(u_label, at, 0).r));
-    alpha = 0.28;
-  }
-  if (bone.a > 0.0 && bone_depth <= depth + 0.05) alpha = 0.0;
-  colour = vec4(mix(bone.rgb, ghost, alpha), alpha + bone.a * (1.0 - alpha));
-  colour.rgb = ghost * alpha + bone.rgb * (1.0 - alpha);
+  // A cut through flesh stays see-through.
+  alpha *= cap ? 0.30 : 0.10 + 0.62 * steep * steep * steep;
+  vec3 rgb = cap ? srgb : vec3(0.624, 0.722, 0.839);
 #else
-  if (normal.a == 0.0) { colour = vec4(0.0); return; }
-  colour = vec4(surface(u_occupancy, depth, normal, texelFetch(u_label, at, 0).r), 1.0);
+  alpha *= float(look.a >> 3) / 255.0;
+  vec3 n = normalize(normal.xyz * 2.0 - 1.0);
+  vec3 rgb = cap ? srgb : sqrt(clamp(lit(srgb * srgb, n, openness(texelFetch(u_depth, at, 0).r, n)), 0.0, 1.0));
 #endif
+  colour = vec4(rgb * alpha, alpha);
 }
 )";
 
@@ -97,30 +74,27 @@ ShadePass::ShadePass()
       ghost_("shade ghost", gl::kWholePicture, std::string(kRayUniforms) + kShade, "#define GHOST"),
       nothing_(gl::VertexArray::create()) {}
 
-void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, const GBuffer& surface, const GBuffer* bones,
-                     const VisibleField* bone_field, const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect) {
-  gl::Program& program = bones ? ghost_ : solid_;
-  glViewport(0, 0, surface.size().x, surface.size().y);
+void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, const GBuffer& buffer, const gl::Texture& looks,
+                     const ViewRays& rays, const PixelRect& rect, int layer, bool ghost) {
+  if (field.empty()) return;
+  gl::Program& program = ghost ? ghost_ : solid_;
+  glViewport(0, 0, buffer.size().x, buffer.size().y);
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
   // Drawn at the far plane: only where the hull lies in front.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);
-  glDisable(GL_BLEND);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   program.use();
   set_rays(program, rays);
-  program.set_texture("u_depth", 0, GL_TEXTURE_2D, surface.depth.name());
-  program.set_texture("u_normal", 1, GL_TEXTURE_2D, surface.normal.name());
-  program.set_texture("u_label", 2, GL_TEXTURE_2D, surface.label.name());
+  program.set("u_layer", static_cast<unsigned>(layer));
+  program.set_texture("u_depth", 0, GL_TEXTURE_2D, buffer.depth.name());
+  program.set_texture("u_normal", 1, GL_TEXTURE_2D, buffer.normal.name());
+  program.set_texture("u_label", 2, GL_TEXTURE_2D, buffer.label.name());
   program.set_texture("u_looks", 3, GL_TEXTURE_2D, looks.name());
   program.set_texture("u_occupancy", 4, GL_TEXTURE_3D, field.occupancy().name());
-  if (bones) {
-    program.set_texture("u_bone_depth", 5, GL_TEXTURE_2D, bones->depth.name());
-    program.set_texture("u_bone_normal", 6, GL_TEXTURE_2D, bones->normal.name());
-    program.set_texture("u_bone_label", 7, GL_TEXTURE_2D, bones->label.name());
-    program.set_texture("u_bone_occupancy", 8, GL_TEXTURE_3D, bone_field->occupancy().name());
-  }
   program.set("u_occupancy_texel", 1.0f / glm::vec3(volume.layout().bricks() * kBrick));
   // A normal of the view, in padded coordinates: one brick long whatever the spacing.
   const glm::dmat3 to_view = glm::transpose(rays.view_from_gradient);

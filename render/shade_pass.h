@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Lights what the rays met: a soft key light over the viewer's left shoulder, sky from above, a thin rim, and shade where
 // the body closes in on itself (from its blurred occupancy). Light adds up linearly; colours are sRGB by a gamma of two.
-// In X-ray the visible surface is a ghost over the solid bones. Cut faces show plain tissue colours.
+// In X-ray the outer layer is a ghost: nearly clear where it faces the viewer, denser at its rim. Cut faces show plain
+// tissue colours.
 #pragma once
 
 #include "render/volume_pass.h"
@@ -12,11 +13,12 @@ class ShadePass {
  public:
   ShadePass();
 
-  // Into the framebuffer that is bound, which has the buffer's size and hull depth and is clear: premultiplied colours where
-  // the volume shows.
-  //   bones  what lies under the ghost; nullptr: the surface is solid
-  void draw(const VolumeTexture& volume, const VisibleField& field, const GBuffer& surface, const GBuffer* bones, const VisibleField* bone_field,
-            const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect);
+  // Blends one layer over the framebuffer that is bound, which has the buffer's size and the first layer's hull depth:
+  // premultiplied colours. Layers are drawn from the innermost outward.
+  //   ghost  as the outer layer of X-ray
+  //   layer  labels that belong to a deeper layer too are left to it
+  void draw(const VolumeTexture& volume, const VisibleField& field, const GBuffer& buffer, const gl::Texture& looks, const ViewRays& rays,
+            const PixelRect& rect, int layer, bool ghost);
 
  private:
   gl::Program solid_, ghost_;

@@ -37,14 +37,14 @@ void main() {
   vec2 pixel = vec2(gl_FragCoord.x - u_size.x * 0.5, u_size.y * 0.5 - gl_FragCoord.y);
   uint label = label_of(pixel);
   uvec4 look = look_of(label);
-  bool seen = (look.a & 1u) != 0u;
+  bool seen = (look.a & 7u) != 0u;
   float alpha = seen ? 1.0 : 0.0;
   uint right = label_of(pixel + vec2(1, 0)), below = label_of(pixel + vec2(0, 1));
   bool border = right != label || below != label;
   if (u_outline) {
     // The border belongs to whichever side is seen.
-    if (!seen && border) look = look_of((look_of(right).a & 1u) != 0u ? right : below);
-    alpha = border && (look.a & 1u) != 0u ? 1.0 : seen ? 0.10 : 0.0;
+    if (!seen && border) look = look_of((look_of(right).a & 7u) != 0u ? right : below);
+    alpha = border && (look.a & 7u) != 0u ? 1.0 : seen ? 0.10 : 0.0;
   }
   vec3 rgb = vec3(look.rgb) / 255.0;
   if (u_outlined != 0u && border && (label == u_outlined || right == u_outlined || below == u_outlined)) { rgb = vec3(1.0, 0.624, 0.18); alpha = 1.0; }

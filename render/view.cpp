@@ -2,6 +2,7 @@
 #include "render/view.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -23,6 +24,24 @@ constexpr int kCoarsest = 6;
 double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+// The caller's framebuffer is bound again when this goes.
+class KeepFramebuffer {
+ public:
+  KeepFramebuffer() { glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound_); }
+  ~KeepFramebuffer() {
+    glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(bound_));
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+  }
+  KeepFramebuffer(const KeepFramebuffer&) = delete;
+  KeepFramebuffer& operator=(const KeepFramebuffer&) = delete;
+
+ private:
+  GLint bound_ = 0;
+};
 
 // A texture to draw into.
 class Target {
@@ -63,6 +82,7 @@ class Target {
 };
 
 Image read_back(const Target& target, bool premultiplied) {
+  const KeepFramebuffer keep;
   Image image;
   image.size = target.size();
   std::vector<std::uint8_t> rows(static_cast<size_t>(image.size.x) * image.size.y * 4);
@@ -127,14 +147,22 @@ std::array<glm::dvec3, 2> box_of(const Scene& scene) {
   return {low, high};
 }
 
-// Halton's sequence of bases 2 and 3 about the pixel's middle; the first sample is the middle.
+// Halton's sequence: evenly spread over [0, 1) however many are taken.
+double halton(int i, int base) {
+  double result = 0, f = 1;
+  for (; i > 0; i /= base) f /= base, result += f * (i % base);
+  return result;
+}
+// About the pixel's middle; the first sample is the middle.
 glm::dvec2 jitter_of(int sample) {
-  const auto halton = [](int i, int base) {
-    double result = 0, f = 1;
-    for (; i > 0; i /= base) f /= base, result += f * (i % base);
-    return result;
-  };
   return sample == 0 ? glm::dvec2(0) : glm::dvec2(halton(sample, 2) - 0.5, halton(sample, 3) - 0.5);
+}
+
+// Averaged pictures read each label a little beside its place, so that the borders of voxels blend.
+glm::vec3 label_shift_of(int sample) {
+  constexpr float kReach = 0.8f;  // voxels
+  if (sample == 0) return glm::vec3(0);
+  return glm::vec3(halton(sample, 3) - 0.5, halton(sample, 5) - 0.5, halton(sample, 7) - 0.5) * 2.0f * kReach;
 }
 
 }  // namespace
@@ -144,8 +172,9 @@ struct View3D::Impl {
 
   Renderer::Parts& parts;
   Target output, body, average;
-  GBuffer surface, bones;                    // of the picture that is shown
-  GBuffer jittered_surface, jittered_bones;  // of a sample being averaged
+  using Layers = std::array<GBuffer, kMostLayers>;
+  Layers shown;     // what the rays of the picture met, the outermost layer first
+  Layers jittered;  // of a sample being averaged
   BodyKey key;
   Scene scene;  // last drawn
   bool drawn = false;
@@ -160,40 +189,43 @@ struct View3D::Impl {
   struct Source {
     Renderer::Parts::Body* body = nullptr;
     const LooksTexture* looks = nullptr;
-    const VisibleField* visible = nullptr;
-    const VisibleField* bones = nullptr;  // X-ray
+    std::vector<const VisibleField*> layers;
   };
   std::optional<Source> source(const Scene& scene) {
     if (!scene.volume || !scene.looks) return std::nullopt;
     Source result;
     result.body = &parts.body(scene.volume);
-    result.looks = &parts.looks(scene.looks);
-    result.visible = &parts.visible(*result.body, *result.looks);
-    if (scene.display == Display::XRay) result.bones = &parts.bones(*result.body, *result.looks);
+    result.looks = &parts.looks(*result.body, scene.looks, scene.display);
+    for (size_t layer = 0; layer < result.looks->layers().size(); ++layer) result.layers.push_back(&parts.layer(*result.body, *result.looks, layer));
     return result;
   }
 
   ViewRays rays_of(const Source& source, const glm::ivec2& size, int sample) const {
-    return view_rays(key.camera, source.body->volume->drawn().grid, size, jitter_of(sample), source.visible->low(), source.visible->high());
+    const VisibleField& outer = *source.layers[0];
+    ViewRays rays = view_rays(key.camera, source.body->volume->drawn().grid, size, jitter_of(sample), outer.low(), outer.high());
+    rays.label_shift = label_shift_of(sample);
+    return rays;
   }
 
-  void start(const Source& source, const ViewRays& rays, GBuffer& surface_buffer, GBuffer& bone_buffer, const glm::ivec2& size, const PixelRect& part) {
+  void start(const Source& source, const ViewRays& rays, Layers& buffers, const glm::ivec2& size, const PixelRect& part) {
     VolumePass& pass = parts.volume_pass(*source.body->volume);
-    surface_buffer.resize(size);
-    pass.draw_hull(*source.visible, rays, surface_buffer, part);
-    if (!source.bones) return;
-    bone_buffer.resize(size);
-    pass.draw_hull(*source.bones, rays, bone_buffer, part);
+    for (size_t layer = 0; layer < source.layers.size(); ++layer) {
+      buffers[layer].resize(size);
+      pass.draw_hull(*source.layers[layer], rays, buffers[layer], part);
+    }
   }
-  void march(const Source& source, const ViewRays& rays, GBuffer& surface_buffer, GBuffer& bone_buffer, const PixelRect& part) {
+  void march(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
     VolumePass& pass = parts.volume_pass(*source.body->volume);
-    const gl::Texture& looks = source.looks->texture();
-    pass.march(*source.body->volume, *source.visible, looks, Sets::Visible, scene.clip, rays, surface_buffer, part);
-    if (source.bones) pass.march(*source.body->volume, *source.bones, looks, Sets::Bone, scene.clip, rays, bone_buffer, part);
+    for (size_t layer = 0; layer < source.layers.size(); ++layer)
+      pass.march(*source.body->volume, *source.layers[layer], source.looks->texture(), static_cast<int>(layer), scene.clip, rays, buffers[layer], part);
   }
-  void shade(const Source& source, const ViewRays& rays, const GBuffer& surface_buffer, const GBuffer& bone_buffer, const PixelRect& part) {
-    parts.shade.draw(*source.body->volume, *source.visible, surface_buffer, source.bones ? &bone_buffer : nullptr, source.bones, source.looks->texture(),
-                     rays, part);
+  void shade(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
+    body.resize(buffers[0].size(), GL_RGBA8);
+    body.share_depth(buffers[0].hull_depth);
+    body.clear();
+    for (size_t layer = source.layers.size(); layer-- > 0;)
+      parts.shade.draw(*source.body->volume, *source.layers[layer], buffers[layer], source.looks->texture(), rays, part, static_cast<int>(layer),
+                       layer == 0 && scene.display == Display::XRay);
   }
 
   // The whole body at once, at every `scale`-th pixel.
@@ -202,14 +234,10 @@ struct View3D::Impl {
     lap("-");
     const glm::ivec2 size = glm::max((key.size + scale - 1) / scale, glm::ivec2(1));
     const ViewRays rays = rays_of(source, size, 0);
-    rect = VolumePass::covered(*source.visible, rays, size);
-    start(source, rays, surface, bones, size, rect);
-    lap("hull");
-    march(source, rays, surface, bones, rect);lap("march");
-    body.resize(size, GL_RGBA8);
-    body.share_depth(surface.hull_depth);
-    body.clear();
-    shade(source, rays, surface, bones, rect);lap("shade");
+    rect = VolumePass::covered(*source.layers[0], rays, size);
+    start(source, rays, shown, size, rect);
+    march(source, rays, shown, rect);
+    shade(source, rays, shown, rect);
     shown_scale = scale;
   }
 
@@ -217,32 +245,26 @@ struct View3D::Impl {
   bool refine(const Source& source) {
     const double begin = seconds();
     const ViewRays rays = rays_of(source, key.size, sample);
-    const PixelRect part = VolumePass::covered(*source.visible, rays, key.size);
-    GBuffer& surface_buffer = jittered_surface;
-    GBuffer& bone_buffer = jittered_bones;
-    if (next_tile == 0) start(source, rays, surface_buffer, bone_buffer, key.size, part);
+    const PixelRect part = VolumePass::covered(*source.layers[0], rays, key.size);
+    if (next_tile == 0) start(source, rays, jittered, key.size, part);
     const glm::ivec2 tiles = (part.high - part.low + kTile - 1) / kTile;
     const int count = part.empty() ? 0 : tiles.x * tiles.y;
     do {
       if (next_tile >= count) break;
       const glm::ivec2 low = part.low + glm::ivec2(next_tile % tiles.x, next_tile / tiles.x) * kTile;
-      march(source, rays, surface_buffer, bone_buffer, intersection(part, {low, low + kTile}));
+      march(source, rays, jittered, intersection(part, {low, low + kTile}));
       ++next_tile;
       glFinish();
     } while (seconds() - begin < kTileBudget);
     if (next_tile < count) return false;
 
-    body.resize(key.size, GL_RGBA8);
-    body.share_depth(surface_buffer.hull_depth);
-    body.clear();
-    shade(source, rays, surface_buffer, bone_buffer, part);
+    shade(source, rays, jittered, part);
     average.resize(key.size, GL_RGBA16F);
     if (sample == 0) average.clear();
     average.bind();
     parts.compose.accumulate(body.texture(), key.size, 1.0f / float(sample + 1), part);
     if (sample == 0) {
-      std::swap(surface, jittered_surface);
-      std::swap(bones, jittered_bones);
+      std::swap(shown, jittered);
       rect = part;
     }
     shown_scale = 1;
@@ -266,8 +288,8 @@ struct View3D::Impl {
       parts.compose.grid(key.camera, key.size, (low + high) / 2.0, low.z, std::max(600.0, glm::length(high - low) * 1.5));
     const bool has_body = shown_scale > 0;
     if (has_body) parts.compose.body(sample > 0 ? average.texture() : body.texture(), key.size, shown_rect());
-    if (has_body && scene.outlined) parts.compose.outline(surface, *scene.outlined, key.size, shown_rect());
-    parts.armature.draw(scene, key.camera, key.size, has_body && scene.display != Display::XRay ? &surface.depth : nullptr);
+    if (has_body && scene.outlined) parts.compose.outline(shown[0], *scene.outlined, key.size, shown_rect());
+    parts.armature.draw(scene, key.camera, key.size, has_body && scene.display != Display::XRay ? &shown[0].depth : nullptr);
     gl::check_gl("drawing a picture");
   }
 
@@ -284,6 +306,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   const bool overlay_changed = !my.drawn || !same_overlay(scene, my.scene);
   if (!moved && !overlay_changed && my.complete()) return;
 
+  const KeepFramebuffer keep;
   my.key = key;
   my.scene = scene;
   my.output.resize(size, GL_RGBA8);
@@ -322,9 +345,10 @@ std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
   const Impl& my = *impl_;
   if (!my.drawn || my.shown_scale == 0 || !my.scene.volume) return std::nullopt;
   if (glm::any(glm::lessThan(pixel, glm::ivec2(0))) || glm::any(glm::greaterThanEqual(pixel, my.key.size))) return std::nullopt;
-  const glm::ivec2 buffer_size = my.surface.size();
+  const glm::ivec2 buffer_size = my.shown[0].size();
   const glm::ivec2 at(pixel.x * buffer_size.x / my.key.size.x, (my.key.size.y - 1 - pixel.y) * buffer_size.y / my.key.size.y);
 
+  const KeepFramebuffer keep;
   // In X-ray the bone under the ghost is meant, where there is one.
   const auto hit_in = [&](const GBuffer& buffer) -> std::optional<Hit> {
     float depth = 0;
@@ -366,8 +390,8 @@ std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
     return hit;
   };
   if (my.scene.display == Display::XRay)
-    if (auto bone = hit_in(my.bones)) return bone;
-  return hit_in(my.surface);
+    if (auto bone = hit_in(my.shown[1])) return bone;
+  return hit_in(my.shown[0]);
 }
 
 std::optional<int> View3D::pick_bone(const glm::ivec2& pixel) const {
@@ -396,11 +420,12 @@ SliceView::~SliceView() = default;
 
 void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay display, const glm::ivec2& size) {
   Impl& my = *impl_;
+  const KeepFramebuffer keep;
   my.output.resize(size, GL_RGBA8);
   my.output.bind();
   my.parts.compose.background(scene.dark_background ? Background::Dark : Background::Light, size);
   if (scene.volume && scene.looks)
-    my.parts.slice.draw(*my.parts.body(scene.volume).volume, my.parts.looks(scene.looks), camera, display, scene.outlined, size);
+    my.parts.slice.draw(*my.parts.body(scene.volume).volume, my.parts.looks(my.parts.body(scene.volume), scene.looks, Display::Solid), camera, display, scene.outlined, size);
   gl::check_gl("drawing a slice");
 }
 

@@ -36,7 +36,7 @@ uniform sampler2D u_range;
 uniform float u_nearest;         // where a ray starts whose eye is inside the hull; else -1e30
 uniform usampler3D u_index;
 uniform usampler2D u_looks;
-uniform uint u_set;
+uniform uint u_layer;
 uniform vec3 u_low, u_high;      // the hull's corners, cut by the clip box
 uniform vec4 u_plane;            // dot(xyz, p) <= w is kept
 uniform bool u_clipped;
@@ -151,7 +151,7 @@ void main() {
     ++steps;
     label = label_at(slot.atlas, ivec3(inside));
   }
-  while ((texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & u_set) == 0u) {
+  while ((texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & 7u) <= u_layer) {
     inside += step;
     if (++steps > 6) { label = 0u; break; }
     label = label_at(slot.atlas, ivec3(inside));
@@ -265,7 +265,7 @@ void VolumePass::draw_hull(const VisibleField& field, const ViewRays& rays, cons
   glDisable(GL_BLEND);
 }
 
-void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, const gl::Texture& looks, Sets set, const Clip& clip,
+void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, const gl::Texture& looks, int layer, const Clip& clip,
                        const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect) {
   glBindFramebuffer(GL_FRAMEBUFFER, buffer.march_target.name());
   glViewport(0, 0, buffer.size().x, buffer.size().y);
@@ -289,7 +289,7 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   march_.set("u_nearest", eye_inside(field, rays) ? static_cast<float>(rays.nearest) : -kNothingDepth);
   march_.set("u_label_shift", rays.label_shift);
   march_.set_texture("u_looks", unit++, GL_TEXTURE_2D, looks.name());
-  march_.set("u_set", static_cast<unsigned>(set));
+  march_.set("u_layer", static_cast<unsigned>(layer));
   set_rays(march_, rays);
   march_.set("u_view_from_gradient", glm::mat3(rays.view_from_gradient));
   glm::vec3 low = field.low(), high = field.high();

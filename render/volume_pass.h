@@ -46,9 +46,6 @@ class GBuffer {
   glm::ivec2 size_{0};
 };
 
-// Which bit of the look table (looks_texture.h) a label must have to be seen.
-enum class Sets { Visible = 1, Bone = 2 };
-
 class VolumePass {
  public:
   explicit VolumePass(int atlases);
@@ -58,8 +55,8 @@ class VolumePass {
 
   // The start of every ray inside `rect`.
   void draw_hull(const VisibleField& field, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);
-  // What the rays of `rect` meet.
-  void march(const VolumeTexture& volume, const VisibleField& field, const gl::Texture& looks, Sets set, const Clip& clip, const ViewRays& rays,
+  // What the rays of `rect` meet: labels of that layer (looks_texture.h), which are the field's.
+  void march(const VolumeTexture& volume, const VisibleField& field, const gl::Texture& looks, int layer, const Clip& clip, const ViewRays& rays,
              const GBuffer& buffer, const PixelRect& rect);
 
  private:

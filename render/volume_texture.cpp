@@ -28,6 +28,26 @@ void gather(const LabelVolume& volume, const glm::ivec3& block, std::vector<Labe
     }
 }
 
+// How much of each tissue touches air along the rows.
+class Exposure {
+ public:
+  void count(const std::vector<Label>& slot) {
+    for (size_t i = 0; i + 2 < slot.size(); i += 2) {
+      ++voxels_[slot[i + 1]];
+      touching_[slot[i + 1]] += slot[i] == 0 || slot[i + 2] == 0;
+    }
+  }
+  std::vector<float> shares() const {
+    std::vector<float> shares(voxels_.size());
+    for (size_t label = 1; label < shares.size(); ++label)
+      if (voxels_[label] > 0) shares[label] = float(touching_[label]) / float(voxels_[label]);
+    return shares;
+  }
+
+ private:
+  std::vector<std::uint32_t> voxels_ = std::vector<std::uint32_t>(65536), touching_ = std::vector<std::uint32_t>(65536);
+};
+
 std::string describe(const glm::ivec3& size) {
   return std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z) + " voxels";
 }
@@ -90,12 +110,15 @@ bool VolumeTexture::upload() {
     if (!allocate(atlases_.back(), size, kLabels)) return false;
   }
   std::vector<Label> slot;
+  Exposure exposure;
   for (size_t s = 0; s < layout_.block_of_slot.size(); ++s) {
     gather(*drawn_, layout_.block_of_slot[s], slot);
+    exposure.count(slot);
     const glm::ivec3 at = layout_.place_of(static_cast<int>(s)) * kSlot;
     glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<size_t>(layout_.atlas_of(static_cast<int>(s)))].name());
     glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, kSlot, kSlot, kSlot, kLabels.pixels, kLabels.type, slot.data());
   }
+  exposure_ = exposure.shares();
   if (!index_) index_ = gl::Texture::create();
   return glGetError() == GL_NO_ERROR && upload_index(index_, layout_, std::vector<std::uint8_t>(layout_.block_of_slot.size(), 1));
 }

@@ -24,6 +24,7 @@ class VolumeTexture {
   int halvings() const { return halvings_; }
   const BlockLayout& layout() const { return layout_; }
   int largest_texture() const { return largest_texture_; }
+  const std::vector<float>& exposure() const { return exposure_; }  // by label: the share of its rows' voxels that touch air
   const std::string& note() const { return note_; }  // what the user should know, or empty
 
   const gl::Texture& index() const { return index_; }  // 3D, RGBA8UI, a texel a block: place of its slot, atlas from 1, 0: no tissue
@@ -37,6 +38,7 @@ class VolumeTexture {
   BlockLayout layout_;
   std::vector<gl::Texture> atlases_;
   gl::Texture index_;
+  std::vector<float> exposure_;
   std::string note_;
   int halvings_ = 0, largest_texture_ = 0;
 };
