@@ -41,6 +41,13 @@ void move_camera(BodyView& body, double now, bool at_once) {
   if (t >= 1) body.move.reset();
 }
 
+// A press, a turn of the wheel, a key: any of them ends the move of a camera.
+bool begins_something(const Event& event) {
+  if (const auto* button = std::get_if<ButtonChanged>(&event)) return button->down;
+  if (const auto* key = std::get_if<KeyChanged>(&event)) return key->down && key->key < Key::Ctrl;
+  return std::holds_alternative<Wheeled>(event);
+}
+
 }  // namespace
 
 void Dialog::escape(Editor& editor) { editor.close_dialog(); }
@@ -65,7 +72,7 @@ Editor::Editor(Host& host, const Preferences& preferences)
   ImGui_ImplOpenGL3_Init("#version 330 core");
   views.emplace();
   for (int w = 0; w < 4; ++w) arrangements[w] = default_arrangement(static_cast<Workspace>(w));
-  apply_look(look, preferences.theme, static_cast<float>(preferences.scale * host.monitor_scale()));
+  apply_look(look, preferences.theme, scale_for(preferences, host));
   layout = arrange(host.size(), look.scale, arrangement());
 }
 
@@ -94,7 +101,7 @@ void Editor::take_input() {
   input.wheel = 0;
   for (const Event& event : events) input.apply(event);
   if (!events.empty()) touch();
-  if (!events.empty() && views->body.move && !std::holds_alternative<PointerMoved>(events.front())) views->body.move.reset();
+  if (std::any_of(events.begin(), events.end(), begins_something)) views->body.move.reset();
   tell_imgui(events, input);
   ImGui::NewFrame();
   dispatch(*this, events, before);

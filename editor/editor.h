@@ -113,7 +113,8 @@ struct Editor {
   std::optional<glm::vec3> edited_colour;
   Tool tool = Tool::Select;
   std::string open_menu;  // of the top bar
-  bool open_context_menu = false;
+  bool open_context_menu = false, open_pick_list = false;  // wanted, in the next frame
+  std::vector<Label> pick_list;  // tissues under the pointer, nearest first
   std::map<std::string, bool> open_sections;  // of the sidebar, by title
   InputState input;
   std::optional<Drag> drag;

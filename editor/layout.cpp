@@ -101,7 +101,7 @@ Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrange
   if (arrangement.console && !alone) {
     const float most = std::max(kBottomLow, unscaled.y / 2);
     const float height = unscaled.y < 720 ? kBottomInSmall : std::clamp(arrangement.bottom_height, kBottomLow, most);
-    views_bottom = bottom - px(height);
+    views_bottom = std::max(bottom - px(height), std::round((header_bottom + bottom) / 2));  // the views keep half of what there is
     layout.bottom = {{0, views_bottom}, {right, bottom}};
   }
 

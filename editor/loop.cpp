@@ -11,6 +11,8 @@ namespace limber::editor {
 
 namespace {
 
+constexpr double kMinimizedRest = 0.25;  // s: nothing is drawn, but jobs go on
+
 double steady_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 Preferences preferences_of(const StartOptions& options) {
@@ -36,7 +38,8 @@ void run_in_window(const StartOptions& options) {
   Editor editor(*host, preferences_of(options));
   editor.to_open = options.files;
   while (!editor.quit) {
-    host->wait(editor.rest());
+    const bool minimized = host->size().x == 0 || host->size().y == 0;
+    host->wait(minimized ? kMinimizedRest : editor.rest());
     if (host->close_requested()) {
       host->forget_close_request();
       run(editor, "file.quit");

@@ -10,13 +10,15 @@ namespace limber::editor {
 namespace {
 
 // The volume replaces the one that is open, and with it all that belongs to it.
-Work opening_volume(const Path& path) {
-  return [path](Progress& progress) -> Edit {
+Work opening_volume(Editor& editor, const Path& path) {
+  return [path, &editor](Progress& progress) -> Edit {
     VolumeFile file = read_volume(path, progress);
     auto volume = std::make_shared<const LabelVolume>(std::move(file.volume));
     auto tissues = std::make_shared<const TissueTable>(merge_tissue_tables(file.tissues, nullptr));
     auto type = std::make_shared<const FileType>(file.type);
-    return [volume, tissues, type](const Document&) {
+    auto extents = std::make_shared<const Extents>(extents_of(volume));
+    return [&editor, volume, tissues, type, extents](const Document&) {  // called in the editor's own thread
+      editor.views->extents = extents;
       Document opened;
       opened.volume = volume;
       opened.tissues = tissues;
@@ -43,8 +45,15 @@ double fitting_scale(const Box& box, const render::SliceFrame& frame, const glm:
 
 }  // namespace
 
+float scale_for(const Preferences& preferences, const Host& host) {
+  constexpr double kStep = 0.25;  // so that fonts are not built at every pixel of a resize
+  const glm::dvec2 most = glm::dvec2(host.size()) / glm::dvec2(800, 520);
+  const double fitting = std::floor(std::min(most.x, most.y) / kStep) * kStep;
+  return static_cast<float>(glm::clamp(std::min(preferences.scale * host.monitor_scale(), fitting), 0.75, 6.0));
+}
+
 void open_file(Editor& editor, const Path& path) {
-  editor.jobs.start("Open " + path.filename().string(), opening_volume(path));
+  editor.jobs.start("Open " + path.filename().string(), opening_volume(editor, path));
   editor.touch();
 }
 
@@ -78,23 +87,23 @@ void commit(Editor& editor, const std::string& label, Document next) {
 
 void frame_all(Editor& editor, bool animated) {
   Views& views = *editor.views;
-  const Box box = tissue_box(editor.document(), std::nullopt), all = world_box(editor.document());
+  const Box box = tissue_box(views, editor.document(), std::nullopt);
   const Rect* place = editor.layout.place_of(ViewId::Body);
   const double aspect = place && place->height() > 0 ? place->width() / place->height() : 1.5;
   const render::Camera framed = render::framing(views.body.camera, box.low, box.high, aspect);
   if (animated && !editor.preferences.reduce_motion) views.body.move = CameraMove{views.body.camera, framed, editor.now};
   else views.body.camera = framed;
-  views.cross_hair = (all.low + all.high) * 0.5;
+  if (!animated) views.cross_hair = (box.low + box.high) * 0.5;
   for (SliceState& slice : views.slices) {
     const Rect* shown = editor.layout.place_of(view_of(slice.camera.axis));
-    slice.camera.centre = views.cross_hair;
-    slice.camera.millimetres_per_pixel = fitting_scale(all, render::frame_of(slice.camera.axis), shown ? shown->size() : glm::vec2(400));
+    slice.camera.centre = (box.low + box.high) * 0.5;
+    slice.camera.millimetres_per_pixel = fitting_scale(box, render::frame_of(slice.camera.axis), shown ? shown->size() : glm::vec2(400));
   }
   editor.touch();
 }
 
 bool apply_look_if_changed(Editor& editor) {
-  const auto scale = static_cast<float>(editor.preferences.scale * editor.host.monitor_scale());
+  const float scale = scale_for(editor.preferences, editor.host);
   if (scale == editor.look.scale && editor.shown_theme == editor.preferences.theme) return false;
   editor.shown_theme = editor.preferences.theme;
   if (apply_look(editor.look, editor.preferences.theme, scale)) ImGui_ImplOpenGL3_DestroyFontsTexture(), ImGui_ImplOpenGL3_CreateFontsTexture();

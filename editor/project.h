@@ -18,6 +18,8 @@ void commit(Editor& editor, const std::string& label, Document next);
 // Puts cameras and cross-hair where the whole body is seen.
 void frame_all(Editor& editor, bool animated);
 
+// The user's scale times the monitor's, or less where the window is too small for it: the regions need 800 x 520.
+float scale_for(const Preferences& preferences, const Host& host);
 // Follows a change of the theme or scale. True when the look changed.
 bool apply_look_if_changed(Editor& editor);
 

@@ -32,7 +32,8 @@ render::Camera between(const render::Camera& from, const render::Camera& to, dou
 }
 
 Views::Views(int largest_texture) : renderer(largest_texture) {
-  body.camera = render::looking_from(render::StandardView::Front, body.camera);
+  // From the front, a little from the left and from above.
+  body.camera = render::orbited(render::looking_from(render::StandardView::Front, body.camera), {-75, 25});
   body.picture = std::make_unique<render::View3D>(renderer);
   for (int axis = 0; axis < 3; ++axis) {
     slices[axis].camera.axis = static_cast<render::SliceAxis>(axis);
@@ -86,27 +87,16 @@ Box world_box(const Document& document) {
   return box_of_voxels(document.volume->grid, glm::dvec3(-0.5), glm::dvec3(document.volume->grid.size) - 0.5);
 }
 
-Box tissue_box(const Document& document, std::optional<Label> tissue) {
+Box tissue_box(Views& views, const Document& document, std::optional<Label> tissue) {
   if (!document.volume) return world_box(document);
-  const LabelVolume& volume = *document.volume;
-  std::vector<bool> wanted(65536, false);
-  if (tissue) wanted[*tissue] = true;
+  if (!views.extents || views.extents->volume != document.volume) views.extents = std::make_shared<const Extents>(extents_of(document.volume));
+  VoxelBox box;
+  if (tissue) box = views.extents->boxes[*tissue];
   else if (document.tissues)
-    for (const Tissue& t : document.tissues->tissues) {
-      const auto look = document.visibility ? document.visibility->looks.find(t.label) : decltype(document.visibility->looks.end()){};
-      wanted[t.label] = !document.visibility || look == document.visibility->looks.end() || look->second.visible;
-    }
-  glm::ivec3 low = volume.grid.size, high(-1);
-  std::int64_t i = 0;
-  for (int z = 0; z < volume.grid.size.z; ++z)
-    for (int y = 0; y < volume.grid.size.y; ++y)
-      for (int x = 0; x < volume.grid.size.x; ++x)
-        if (wanted[volume.voxels[i++]]) {
-          low = glm::min(low, glm::ivec3(x, y, z));
-          high = glm::max(high, glm::ivec3(x, y, z));
-        }
-  if (high.x < 0) return world_box(document);
-  return box_of_voxels(volume.grid, glm::dvec3(low) - 0.5, glm::dvec3(high) + 0.5);
+    for (const Tissue& t : document.tissues->tissues)
+      if (!document.visibility || !document.visibility->looks.contains(t.label) || document.visibility->looks.at(t.label).visible) box.add(views.extents->boxes[t.label]);
+  if (box.empty()) return world_box(document);
+  return box_of_voxels(document.volume->grid, glm::dvec3(box.low) - 0.5, glm::dvec3(box.high) + 0.5);
 }
 
 glm::dvec3 world_of(const render::SliceCamera& camera, const glm::vec2& pixel, const glm::vec2& size) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/project/document.h"
+#include "editor/extents.h"
 #include "editor/layout.h"
 #include "render/scene.h"
 #include "render/view.h"
@@ -65,6 +66,7 @@ struct Views {
   ViewId active = ViewId::Body;
   Hover hover;
 
+  std::shared_ptr<const Extents> extents;  // of the document's volume
   render::Scene scene;  // of the last frame
   std::shared_ptr<const TissueTable> looks_of_tissues;
   std::shared_ptr<const Visibility> looks_of_visibility;
@@ -83,8 +85,8 @@ struct Box {
   glm::dvec3 low, high;
 };
 Box world_box(const Document& document);
-// The same around the visible voxels of one tissue, or of all when it is absent.
-Box tissue_box(const Document& document, std::optional<Label> tissue);
+// The same around one tissue, or around all that are visible.
+Box tissue_box(Views& views, const Document& document, std::optional<Label> tissue);
 
 // The slice picture of `camera`, `size` pixels large, as points of the world and back.
 glm::dvec3 world_of(const render::SliceCamera& camera, const glm::vec2& pixel, const glm::vec2& size);

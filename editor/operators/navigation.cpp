@@ -74,7 +74,7 @@ Operator orbit_step(const char* id, const char* label, glm::dvec2 direction) {
 }
 
 void frame_selected(Editor& editor) {
-  const Box box = tissue_box(editor.document(), editor.selection.tissue);
+  const Box box = tissue_box(*editor.views, editor.document(), editor.selection.tissue);
   const glm::vec2 size(view_size(editor));
   go_to(editor, render::framing(goal(editor), box.low, box.high, size.x / std::max(1.0f, size.y)));
 }
@@ -125,8 +125,8 @@ std::vector<Operator> navigation_operators() {
        [](const Editor& e) { return e.views->body.camera.projection == render::Projection::Perspective; }},
       orbit_step("view.orbit_down", "Turn down", {0, -1}),
       orbit_step("view.orbit_up", "Turn up", {0, 1}),
-      orbit_step("view.orbit_left", "Turn left", {-1, 0}),
-      orbit_step("view.orbit_right", "Turn right", {1, 0}),
+      orbit_step("view.orbit_left", "Turn left", {1, 0}),
+      orbit_step("view.orbit_right", "Turn right", {-1, 0}),
       {"view.opposite", "Opposite side", icon::kCamera, "View", "Looks from the other side.", opposite},
       {"view.frame_selected", "Frame selected", icon::kExpand, "View", "Brings the chosen tissue to fill the view.", frame_selected, needs_tissue},
       {"view.frame_all", "Frame all", icon::kExpand, "View", "Brings all that is visible to fill the views.", [](Editor& e) { frame_all(e, true); }},

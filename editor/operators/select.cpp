@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
 #include "editor/tissues.h"
@@ -18,6 +20,33 @@ void extend(Editor& editor) {
   if (editor.views->hover.inside) select_tissue(editor, editor.views->hover.label, true);
 }
 
+// Every visible tissue along the line of sight, nearest first. In a slice only the one under the pointer.
+std::vector<Label> tissues_below(const Editor& editor) {
+  const Hover& hover = editor.views->hover;
+  std::vector<Label> found;
+  if (!hover.inside) return found;
+  const LabelVolume& volume = *editor.document().volume;
+  const AffineTransform voxel = voxel_from_world(volume.grid);
+  const auto add = [&](Label label) {
+    if (label != 0 && look_of(editor.document(), label).visible && std::find(found.begin(), found.end(), label) == found.end()) found.push_back(label);
+  };
+  add(hover.label);
+  if (hover.view != ViewId::Body) return found;
+  const Rect* place = editor.layout.place_of(ViewId::Body);
+  const render::Ray ray = render::ray_through(editor.views->body.camera, editor.input.pointer - place->low, glm::ivec2(place->size()));
+  const double step = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z}) / 2;
+  const double reach = glm::length(volume.grid.spacing * glm::dvec3(volume.grid.size));
+  for (double t = 0; t < reach; t += step) add(volume.at_or_air(glm::ivec3(glm::round(voxel * (hover.point + ray.direction * t)))));
+  return found;
+}
+
+// The nearest one is chosen at once; a list offers what lies behind it.
+void pick_list(Editor& editor) {
+  pick(editor);
+  editor.pick_list = tissues_below(editor);
+  editor.open_pick_list = editor.pick_list.size() > 1;
+}
+
 Operator tool_operator(const char* id, const char* label, const char* icon, const char* sentence, Tool tool) {
   return {id, label, icon, "Tool", sentence, [tool](Editor& e) { e.tool = tool; }, nullptr, [tool](const Editor& e) { return e.tool == tool; }};
 }
@@ -28,6 +57,7 @@ std::vector<Operator> select_operators() {
   return {
       {"select.pick", "Select", icon::kSelect, "Select", "Chooses the tissue under the pointer.", pick, needs_volume},
       {"select.extend", "Extend selection", "", "Select", "Adds the tissue under the pointer to the chosen ones, or takes it out.", extend, needs_volume},
+      {"select.pick_list", "Select from list", icon::kPick, "Select", "Chooses the tissue under the pointer and lists what lies behind it.", pick_list, needs_volume},
       {"select.none", "Select nothing", "", "Select", "Chooses nothing.", [](Editor& e) { e.selection = {}; }},
       {"select.all", "Select all", "", "Select", "Chooses every tissue.",
        [](Editor& e) {

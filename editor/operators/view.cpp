@@ -63,6 +63,7 @@ std::vector<Operator> view_operators() {
        [](Editor& e) { e.arrangement().tool_strip = !e.arrangement().tool_strip; }, nullptr, [](const Editor& e) { return e.arrangement().tool_strip; }},
       {"view.console", "Console", icon::kConsole, "Help", "Opens or closes the list of messages below the views.",
        [](Editor& e) { e.arrangement().console = !e.arrangement().console; }, nullptr, [](const Editor& e) { return e.arrangement().console; }},
+      {"view.context_menu", "Menu", "", "View", "Lists what can be done with what is under the pointer.", [](Editor& e) { e.open_context_menu = true; }},
       {"view.full_screen", "Full screen", icon::kExpand, "View", "The window fills the screen, or shrinks back.", [](Editor& e) { e.host.toggle_full_screen(); }},
   };
 }

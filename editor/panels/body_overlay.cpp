@@ -37,20 +37,29 @@ void draw_axis_ball(Editor& editor, const Rect& rect) {
     order[i] = {seen.z, i};
   }
   std::sort(order.begin(), order.end());
+  // Of two ends at one place the nearer one is pressed, and hides the other.
+  const float radius = look.px(kEnd);
+  std::array<Pressed, 6> presses;
+  for (auto nearest = order.rbegin(); nearest != order.rend(); ++nearest) {
+    const int i = nearest->second;
+    const auto hides = [&](const auto& other) { return other.first > nearest->first && glm::distance(places[other.second], places[i]) < 2 * radius; };
+    if (std::any_of(order.begin(), order.end(), hides)) continue;
+    presses[i] = press_area(editor, std::string("axis ") + kEnds[i].letter, {places[i] - radius, places[i] + radius});
+    if (presses[i].hovered) operator_tooltip(editor, *find_operator(editor, kEnds[i].operator_id), {places[i] - radius, places[i] + radius});
+  }
   for (const auto& [depth, i] : order) {
     const AxisEnd& end = kEnds[i];
     const Colour colour = look.theme.axis[end.axis];
-    const float radius = look.px(kEnd);
     const Rect place{places[i] - radius, places[i] + radius};
-    const Pressed pressed = press_area(editor, std::string("axis ") + end.letter, place);
+    const Pressed& pressed = presses[i];
     if (end.positive) canvas.AddLine(im(centre), im(places[i]), colour, 2 * look.line());
     if (end.positive || pressed.hovered) canvas.AddCircleFilled(im(places[i]), radius, colour, 32);
     else {
+      canvas.AddCircleFilled(im(places[i]), radius - look.px(1), look.theme.view_bottom, 32);
       canvas.AddCircleFilled(im(places[i]), radius - look.px(1), with_alpha(colour, 0.3f), 32);
       canvas.AddCircle(im(places[i]), radius - look.px(1), colour, 32, 1.2f * look.scale);
     }
     if (end.positive || pressed.hovered) put_text(editor, look.fonts.small, 0xFF141210, place, end.letter, Align::Centre);
-    if (pressed.hovered) operator_tooltip(editor, *find_operator(editor, end.operator_id), place);
     if (pressed.clicked) run(editor, end.operator_id);
   }
 }

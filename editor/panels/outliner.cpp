@@ -27,7 +27,7 @@ Pressed draw_row(Editor& editor, Column& column, int index, const Row& row, bool
     if (press_area(editor, "fold", fold).clicked && open) *open = !*open;
     put_icon(look.fonts.regular, look.theme.text2, fold, row.open ? icon::kOpened : icon::kClosed);
   }
-  const Rect name{{x + look.px(20), rect.low.y}, {rect.high.x - look.px(84), rect.high.y}};
+  const Rect name{{x + look.px(20), rect.low.y}, {rect.high.x - look.px(104), rect.high.y}};
   const Pressed pressed = press_area(editor, "name", name);
   put_icon(look.fonts.regular, row.chosen ? look.theme.accent_text : look.theme.text2, Rect{name.low, {name.low.x + look.px(18), name.high.y}}, row.icon);
   put_text(editor, look.fonts.regular, look.theme.text, Rect{{name.low.x + look.px(24), name.low.y}, name.high}, row.name);

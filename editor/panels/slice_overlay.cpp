@@ -20,11 +20,12 @@ void draw_letters(Editor& editor, const render::SliceFrame& frame, const Rect& r
   const Look& look = editor.look;
   const auto put = [&](const glm::vec2& centre, const glm::dvec3& direction) {
     const char text[2] = {letter_of(direction), 0};
+    fill({centre - look.px(9), centre + look.px(9)}, with_alpha(look.theme.view_plate, 0.5f), look.px(4));
     put_text(editor, look.fonts.semibold, look.theme.view_text, Rect{centre - look.px(10), centre + look.px(10)}, text, Align::Centre);
   };
   const glm::vec2 middle = rect.centre();
   put({rect.low.x + look.px(15), middle.y}, -frame.right);
-  put({rect.high.x - look.px(15), middle.y}, frame.right);
+  put({rect.high.x - look.px(44), middle.y}, frame.right);  // left of the slice bar
   put({middle.x, rect.low.y + look.px(14)}, -frame.down);
   put({middle.x, rect.high.y - look.px(14)}, frame.down);
 }

@@ -51,9 +51,10 @@ float draw_saved(Editor& editor, const Rect& bar, float right) {
   if (!editor.document().volume) return right;
   const Look& look = editor.look;
   const bool unsaved = editor.history.unsaved();
-  const Rect slot{{right - look.px(96), bar.low.y}, {right, bar.high.y}};
+  const std::string words = unsaved ? "Not saved" : "Saved";
+  const Rect slot{{right - text_size(look.fonts.small, "Not saved").x - look.px(22), bar.low.y}, {right, bar.high.y}};  // as wide for either
   put_icon(look.fonts.small, unsaved ? look.theme.warn : look.theme.ok, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, unsaved ? icon::kDot : icon::kTick);
-  put_text(editor, look.fonts.small, look.theme.text2, Rect{{slot.low.x + look.px(20), slot.low.y}, slot.high}, unsaved ? "Not saved" : "Saved");
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{slot.low.x + look.px(20), slot.low.y}, {slot.high.x + 1, slot.high.y}}, words);
   return slot.low.x - look.px(12);
 }
 

@@ -6,6 +6,7 @@
 #include "editor/icons.h"
 #include "editor/menus.h"
 #include "editor/panels/panels.h"
+#include "editor/tissues.h"
 
 namespace limber::editor {
 
@@ -52,6 +53,38 @@ void draw_context_menu(Editor& editor) {
   ImGui::Separator();
   push_path(editor, "context");
   draw_menu(editor, menu);
+  pop_path(editor);
+  editor.place.region = Region::Views;
+  ImGui::EndPopup();
+}
+
+// What lies under the pointer, nearest first.
+void draw_pick_list(Editor& editor) {
+  if (editor.open_pick_list) {
+    ImGui::OpenPopup("pick list");
+    editor.open_pick_list = false;
+  }
+  if (!ImGui::BeginPopup("pick list", ImGuiWindowFlags_NoMove)) return;
+  const Look& look = editor.look;
+  editor.place.region = Region::Popup;
+  push_path(editor, "pick");
+  for (const Label label : editor.pick_list) {
+    const Tissue* tissue = editor.document().tissues->find(label);
+    if (!tissue) continue;
+    const glm::vec2 corner = from_im(ImGui::GetCursorScreenPos());
+    const Rect rect{corner, corner + glm::vec2(look.px(200), look.px(24))};
+    const Pressed pressed = press_area(editor, tissue->name, rect);
+    ImGui::Dummy(im(rect.size()));
+    if (pressed.hovered || editor.selection.tissue == label) fill(rect, pressed.hovered ? look.theme.hover : look.theme.accent_soft, look.px(4));
+    const float side = look.px(14), y = std::round(rect.centre().y - side / 2);
+    fill({{rect.low.x + look.px(8), y}, {rect.low.x + look.px(8) + side, y + side}}, rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
+    put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(30), rect.low.y}, {rect.high.x - look.px(40), rect.high.y}}, tissue->name);
+    put_text(editor, look.fonts.mono, look.theme.text2, Rect{rect.low, {rect.high.x - look.px(8), rect.high.y}}, std::to_string(label), Align::Right);
+    if (pressed.clicked) {
+      select_tissue(editor, label, false);
+      ImGui::CloseCurrentPopup();
+    }
+  }
   pop_path(editor);
   editor.place.region = Region::Views;
   ImGui::EndPopup();
@@ -125,6 +158,7 @@ void draw_views_region(Editor& editor) {
     ImGui::PopClipRect();
   }
   draw_context_menu(editor);
+  draw_pick_list(editor);
   end_region(editor);
 }
 

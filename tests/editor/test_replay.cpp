@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The real editor, played by scripts without a display.
+#include <epoxy/gl.h>
+
+#include "core/base/error.h"
+#include "render/gl/object.h"
+#include "tests/editor/small_editor.h"
+
+using namespace limber;
+using namespace limber::test;
+
+TEST_CASE("replay: menus, keys and buttons lead to the same operators") {
+  SmallEditor test;
+  test.play(R"(
+    expect layout one
+    click view.four
+    expect layout four
+    click "View/3D and slices"
+    expect layout split
+    key Ctrl+Alt+Q
+    expect layout four
+    click view.xray_display
+    expect display xray
+    key Alt+Z
+    expect display solid
+    click "View/Tissue"
+    expect display tissue
+    key Ctrl+3
+    expect workspace pose
+    expect layout one
+    key Ctrl+PageDown
+    expect workspace resample
+    click top/Rig
+    expect workspace rig
+    expect layout four
+  )");
+}
+
+TEST_CASE("replay: a key pressed and released between two frames is not lost") {
+  SmallEditor test;
+  for (int i = 0; i < 5; ++i)
+    for (const bool down : {true, false}) test.host->events.push(editor::KeyChanged{editor::Key::T, down});
+  test.player.settle();
+  CHECK(test.fact("strip") == "no");  // switched five times
+}
+
+TEST_CASE("replay: clicks faster than frames all arrive") {
+  SmallEditor test({1280, 720});
+  const editor::Widget* eye = test.editor->widgets.find("Muscle/17/eye");
+  REQUIRE(eye);
+  test.host->events.push(editor::PointerMoved{eye->rect.centre()});
+  for (int i = 0; i < 7; ++i)
+    for (const bool down : {true, false}) test.host->events.push(editor::ButtonChanged{editor::MouseButton::Left, down});
+  test.player.settle();
+  CHECK(test.fact("hidden") == "1");
+  CHECK(test.fact("history") == "8");
+}
+
+TEST_CASE("replay: tissues are hidden, shown alone and revealed, and each edit is undone and redone") {
+  SmallEditor test({1280, 720});
+  const std::string first = test.fact("document");
+  test.play(R"(
+    click Muscle/17/eye
+    expect hidden 1
+    expect edit "Hide Muscle"
+    click Muscle/17/eye Ctrl
+    expect hidden 3
+    click Blood/65/name
+    expect tissue 65
+    click Skin/143/name Ctrl
+    expect selected 2
+    key Alt+H
+    expect hidden 0
+    key H
+    expect hidden 2
+    key Shift+H
+    expect edit "Show only 2 tissues"
+    expect position 5
+    key Ctrl+Z
+    key Ctrl+Z
+    key Ctrl+Z
+    key Ctrl+Z
+    key Ctrl+Z
+    expect position 0
+    expect hidden 0
+  )");
+  CHECK(test.fact("document") != "");
+  const std::string undone = editor::document_hash(test.editor->document());
+  CHECK(undone == first);
+  test.play("key Ctrl+Shift+Z\n key Ctrl+Y\n expect position 2\n expect hidden 3");
+}
+
+TEST_CASE("replay: the 3D view turns, shifts and zooms with Blender's keys") {
+  SmallEditor test;
+  const auto camera = [&]() -> const render::Camera& { return test.editor->views->body.camera; };
+  const render::Camera first = camera();
+  test.play("drag \"3D view/view\" 60 20 MMB");
+  CHECK(camera().world_from_view != first.world_from_view);
+  CHECK(camera().centre == first.centre);
+  const render::Camera turned = camera();
+  test.play("drag \"3D view/view\" 60 20 MMB Shift");
+  CHECK(camera().world_from_view == turned.world_from_view);
+  CHECK(camera().centre != turned.centre);
+  const double distance = camera().distance;
+  test.play("drag \"3D view/view\" 0 40 MMB Ctrl");
+  CHECK(camera().distance > distance);
+  test.play("wheel \"3D view/view\" 3");
+  CHECK(camera().distance < distance * 1.2);
+  test.play("key Num1\n wait 0.3\n expect view Front\n key Ctrl+Num3\n wait 0.3\n expect view Right\n key Num5\n expect projection parallel");
+  const render::Camera right = camera();
+  test.play("drag \"3D view/view\" 40 0 LMB Alt");
+  CHECK(camera().world_from_view != right.world_from_view);
+  test.play("key Num7\n wait 0.05");
+  CHECK(test.editor->views->body.move);
+  test.play("key Home");
+  test.play("wait 0.3\n expect view Top");
+}
+
+TEST_CASE("replay: any input ends the move of a camera") {
+  SmallEditor test;
+  test.play("key Num3\n wait 0.05");
+  REQUIRE(test.editor->views->body.move);
+  test.play("wheel \"3D view/view\" 1");
+  CHECK_FALSE(test.editor->views->body.move);
+}
+
+TEST_CASE("replay: Escape drops a drag") {
+  SmallEditor test;
+  test.host->events.push(editor::PointerMoved{test.editor->widgets.find("3D view/view")->rect.centre()});
+  test.host->events.push(editor::ButtonChanged{editor::MouseButton::Middle, true});
+  test.player.settle();
+  CHECK(test.editor->drag);
+  test.play("key Escape");
+  CHECK_FALSE(test.editor->drag);
+}
+
+TEST_CASE("replay: slices step, zoom about the pointer, shift, and meet in the cross-hair") {
+  SmallEditor test({1280, 720});
+  test.play("click view.four\n move Axial/view");
+  const double z = test.editor->views->cross_hair.z;
+  test.play("wheel Axial/view 1");
+  CHECK(std::abs(test.editor->views->cross_hair.z - z) == doctest::Approx(3).epsilon(0.6));
+  const double stepped = test.editor->views->cross_hair.z;
+  test.play("wheel Axial/view 1 Shift");
+  CHECK(test.editor->views->cross_hair.z == doctest::Approx(stepped + 15));
+  test.play("wheel Axial/view -1 Shift\n key PageDown");
+  CHECK(test.editor->views->cross_hair.z == doctest::Approx(stepped - 3));
+  const double scale = test.editor->views->slices[2].camera.millimetres_per_pixel;
+  test.play("wheel Axial/view 2 Ctrl");
+  CHECK(test.editor->views->slices[2].camera.millimetres_per_pixel == doctest::Approx(scale / 1.44));
+  const glm::dvec3 centre = test.editor->views->slices[1].camera.centre;
+  test.play("drag Coronal/view 30 0 MMB");
+  CHECK(test.editor->views->slices[1].camera.centre.x == doctest::Approx(centre.x - 30 * test.editor->views->slices[1].camera.millimetres_per_pixel));
+  test.play("click tool.cross_hair\n drag Coronal/view 20 0");
+  CHECK(test.editor->views->cross_hair.x > centre.x - 30 * test.editor->views->slices[1].camera.millimetres_per_pixel);
+  test.play("key O\n expect slices outline");
+}
+
+TEST_CASE("replay: what the pointer is over is named, in the body and in slices") {
+  SmallEditor test({1280, 720});
+  test.play("wait-idle\n move \"3D view/view\"\n expect \"text:Skin\"");
+  CHECK(test.editor->views->hover.inside);
+  CHECK(test.editor->views->hover.label == 143);
+  test.play("click view.four\n wait-idle\n move Axial/view");
+  CHECK(test.editor->views->hover.label == 111);
+  test.play("click \"3D view/view\" Alt\n expect tissue 143");
+}
+
+TEST_CASE("replay: clip box and clip plane are edits like any other") {
+  SmallEditor test;
+  test.play(R"(
+    key Alt+B
+    expect clip-box yes
+    key Shift+Alt+B
+    expect clip-plane yes
+    click "View/Clipping/Reset clipping"
+    expect clip-box no
+    key Ctrl+Z
+    expect clip-box yes
+    expect clip-plane yes
+  )");
+}
+
+TEST_CASE("replay: splitters follow the pointer, and a double click restores them") {
+  SmallEditor test({1280, 720});
+  const float before = test.editor->layout.sidebar.width();
+  test.play("drag \"splitter sidebar/grip\" -60 0");
+  CHECK(test.editor->layout.sidebar.width() == doctest::Approx(before + 60).epsilon(0.02));
+  test.play("double-click \"splitter sidebar/grip\"");
+  CHECK(test.editor->layout.sidebar.width() == before);
+  test.play("click view.four\n drag \"splitter four-y/grip\" 0 50");
+  CHECK(test.editor->arrangement().four_y > 0.55f);
+  test.play("key Ctrl+2\n key Ctrl+1");
+  CHECK(test.editor->arrangement().four_y > 0.55f);  // kept per workspace
+}
+
+TEST_CASE("replay: the area under the pointer is maximized and shrinks back") {
+  SmallEditor test({1280, 720});
+  test.play("click view.four\n move Coronal/view\n key Ctrl+Space\n expect maximized Coronal\n key Ctrl+Space\n expect maximized no\n expect layout four");
+}
+
+TEST_CASE("replay: the same script gives the same document and the same picture") {
+  const char* script = R"(
+    click Muscle/17/eye
+    key Alt+B
+    drag "3D view/view" 80 30 MMB
+    click view.four
+    wheel Axial/view 2
+    click Skin/143/name
+    wait-idle
+  )";
+  std::string hash[2];
+  render::Image picture[2];
+  for (int i = 0; i < 2; ++i) {
+    SmallEditor test({1280, 720});
+    test.play(script);
+    hash[i] = test.fact("document");
+    picture[i] = test.host->picture();
+  }
+  CHECK(hash[0] == hash[1]);
+  REQUIRE(picture[0].size == picture[1].size);
+  std::int64_t different = 0;
+  for (std::size_t i = 0; i < picture[0].rgba.size(); ++i) different += std::abs(picture[0].rgba[i] - picture[1].rgba[i]) > 4;
+  CHECK(different < std::ssize(picture[0].rgba) / 1000);
+}
+
+TEST_CASE("replay: a volume opens in the background while the editor goes on, and what cannot be read is told") {
+  TemporaryFolder folder;
+  const Document body = small_body();
+  write_volume(*body.volume, folder / "ball.nrrd", *body.tissues);
+  SmallEditor test({1024, 640}, {}, false);
+  test.editor->to_open = {folder / "ball.nrrd"};
+  test.play("wait-job\n expect volume yes\n expect name ball");
+  CHECK(*test.editor->document().volume->voxels.data() == 0);
+  CHECK(test.editor->document().volume->voxels == body.volume->voxels);
+  test.host->events.push(editor::FilesDropped{{folder / "missing.nrrd"}});
+  test.play("wait-job\n expect volume yes");
+  CHECK(test.fact("toast") != "none");
+}
+
+TEST_CASE("replay: named widgets lie in their regions and none covers another") {
+  for (const auto& [size, scale] : {std::pair{glm::ivec2(1600, 900), 1.0}, {glm::ivec2(1024, 640), 1.0}, {glm::ivec2(2048, 1280), 2.0}}) {
+    SmallEditor test(size, {.scale = scale});
+    for (const char* arrangement : {"click view.one", "click view.four", "click view.split\n click \"Help/Console\""}) {
+      test.play(arrangement);
+      const editor::Layout& layout = test.editor->layout;
+      const auto region_of = [&](editor::Region region) {
+        switch (region) {
+          case editor::Region::TopBar: return layout.top_bar;
+          case editor::Region::ToolHeader: return layout.tool_header;
+          case editor::Region::ToolStrip: return layout.tool_strip;
+          case editor::Region::Sidebar: return layout.sidebar.empty() ? layout.sidebar_handle : layout.sidebar;
+          case editor::Region::Bottom: return layout.bottom;
+          case editor::Region::Status: return layout.status;
+          default: return layout.window;
+        }
+      };
+      const auto& widgets = test.editor->widgets.widgets();
+      CHECK(widgets.size() > 15);
+      for (std::size_t i = 0; i < widgets.size(); ++i) {
+        INFO(size.x, "x", size.y, ": ", widgets[i].name);
+        CHECK(region_of(widgets[i].region).contains(widgets[i].rect));
+        for (std::size_t k = 0; k < i; ++k) {
+          if (widgets[i].region != widgets[k].region || widgets[i].name.ends_with("/view") || widgets[k].name.ends_with("/view")) continue;
+          if (widgets[i].name.ends_with("/grip") || widgets[k].name.ends_with("/grip")) continue;
+          INFO("and ", widgets[k].name);
+          CHECK_FALSE(widgets[i].rect.overlaps(widgets[k].rect));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("replay: an editor at rest draws nothing and leaves no OpenGL error; closed, no OpenGL object") {
+  {
+    SmallEditor test;
+    test.play("wait-idle\n click view.four\n wait-idle");
+    CHECK(test.editor->rest() > 1);
+    CHECK(glGetError() == GL_NO_ERROR);
+    CHECK(render::gl::live_objects() > 0);
+    test.editor.reset();
+    CHECK(glGetError() == GL_NO_ERROR);
+    CHECK(render::gl::live_objects() == 0);
+  }
+}
+
+TEST_CASE("replay: every operator that can run without more words does, and leaves the editor alive") {
+  SmallEditor test({1024, 640});
+  for (const editor::Operator& op : editor::gather_operators()) {
+    if (op.id == "file.quit" || op.label.ends_with("...")) continue;
+    INFO(op.id);
+    run(*test.editor, op.id);
+    test.play("key Escape");
+    CHECK(test.fact("error") == "none");
+    test.editor->drag.reset();
+  }
+}
+
+TEST_CASE("script: a wrong line is named") {
+  SmallEditor test;
+  CHECK_THROWS_WITH_AS(test.play("key Ctrl+1\nclick Nowhere"), doctest::Contains("line 2"), Error);
+  CHECK_THROWS_WITH_AS(test.play("expect workspace skin"), doctest::Contains("it is 'rig'"), Error);
+  CHECK_THROWS_WITH_AS(test.play("type \"no end"), doctest::Contains("line 1"), Error);
+}
