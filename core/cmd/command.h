@@ -21,6 +21,7 @@ void add_info(CLI::App& app);
 void add_job(CLI::App& app);
 void add_phantom(CLI::App& app);
 void add_prepare(CLI::App& app);
+void add_project(CLI::App& app);
 void add_report(CLI::App& app);
 void add_resample(CLI::App& app);
 void add_skin_points(CLI::App& app);
@@ -36,6 +37,9 @@ void check_distinct(const std::vector<std::string>& outputs);
 
 // The text without control characters, which could break a message into two.
 std::string one_line(std::string text);
+
+// A description of a file on stdout: as JSON, or as text.
+void print_description(const std::string& json, bool as_json);
 
 // One line on stderr: "limber: warning: ...".
 void warn(const std::string& line);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber info FILE [--json]: what a file is. Each kind is described once, as JSON; without --json the same is shown as text.
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/cmd/command.h"
+#include "core/cmd/info_project.h"
 #include "core/cmd/info_rig.h"
+#include "core/project/project_io.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/volume_io.h"
 
@@ -68,39 +68,11 @@ Json describe_weights(const Path& path) {
 }
 
 Json describe(const Path& path) {
+  if (is_project(path) || path.extension() == ".limber") return Json::parse(describe_project(path));
   if (is_tissue_table(path)) return describe_tissues(path);
   if (path.extension() == ".json" || is_rig_or_motion(path)) return Json::parse(describe_rig_or_motion(path));
   if (is_weights_path(path)) return describe_weights(path);
   return describe_volume(path);
-}
-
-// ---- as text
-
-std::string in_words(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (!value.is_array()) return value.dump();
-  std::string text;
-  for (const Json& part : value) text += (text.empty() ? "" : "  ") + part.dump();
-  return text;
-}
-
-void show_list(const std::string& name, const Json& list) {
-  constexpr std::size_t kShown = 200;
-  std::printf("%-11s %zu\n", name.c_str(), list.size());
-  for (std::size_t i = 0; i < std::min(list.size(), kShown); ++i) {
-    std::string line = "           ";
-    for (const auto& [key, value] : list[i].items()) line += " " + (value.is_number() || value.is_string() ? in_words(value) + " " : key + " " + in_words(value) + " ");
-    std::printf("%s\n", line.c_str());
-  }
-  if (list.size() > kShown) std::printf("            and %zu more (--json lists all)\n", list.size() - kShown);
-}
-
-void show(const Json& json) {
-  for (const auto& [key, value] : json.items())
-    if (value.is_array() && !value.empty() && value[0].is_object())
-      show_list(key, value);
-    else
-      std::printf("%-11s %s\n", key.c_str(), in_words(value).c_str());
 }
 }  // namespace
 
@@ -111,14 +83,10 @@ void add_info(CLI::App& app) {
   };
   auto* command = app.add_subcommand("info", "what a file is: header, labels, bones, joints");
   auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "a volume, a folder with DICOM images, a rig, motion, weights, mesh or label table")->required();
+  command->add_option("FILE", options->file, "a volume, a folder with DICOM images, a rig, motion, weights, mesh, label table or project")->required();
   command->add_flag("--json", options->json, "as JSON");
   command->callback([options] {
-    const Json json = describe(options->file);
-    if (options->json)
-      std::printf("%s\n", json.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
-    else
-      show(json);
+    print_description(describe(options->file).dump(-1, ' ', false, Json::error_handler_t::replace), options->json);
   });
 }
 

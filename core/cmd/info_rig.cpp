@@ -84,13 +84,17 @@ Json describe_obj(const Path& file) {
           {"lower", json_of(obj.lower)}, {"upper", json_of(obj.upper)}};
 }
 
-// What "bones" is in our JSON: a list in a rig, a table in a pose.
+// What "bones" is in our JSON: a list in a rig, a table of rotations in a pose. Others have such a table too.
 enum class JsonFile { Rig, Pose, Other };
+
+bool is_rotation(const nlohmann::json& json) { return json.is_object() && (json.contains("rotation_wxyz") || json.contains("axis")); }
 
 JsonFile kind_of_json(const Path& file) {
   const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
   if (!json.is_object() || !json.contains("bones")) return JsonFile::Other;
-  return json["bones"].is_object() ? JsonFile::Pose : JsonFile::Rig;
+  const auto& bones = json["bones"];
+  if (bones.is_object()) return std::all_of(bones.begin(), bones.end(), is_rotation) ? JsonFile::Pose : JsonFile::Other;
+  return JsonFile::Rig;
 }
 
 Json describe_pose(const Path& file) {

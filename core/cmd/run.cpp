@@ -18,6 +18,7 @@ void add_commands(CLI::App& app) {
   add_job(app);
   add_phantom(app);
   add_prepare(app);
+  add_project(app);
   add_report(app);
   add_resample(app);
   add_skin_points(app);

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber project NAME.limber [inspect] [--json]           what is in it
+// limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P] [--motion F.bvh]
+// limber project NAME.limber verify                        checks every byte; exit code 1 when something is wrong
+// limber project NAME.limber recover -o OUT.limber         with the edits that a crash left; of a damaged one, what is whole
+// limber project NAME.limber export PART -o OUT            volume, tissues, rig, weights, pose, motion, or a result by its name
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "core/base/error.h"
+#include "core/cmd/command.h"
+#include "core/cmd/info_project.h"
+#include "core/pose/pose_io.h"
+#include "core/project/journal.h"
+#include "core/project/project_io.h"
+#include "core/rig/armature_io.h"
+#include "core/skin/weights_io.h"
+
+namespace limber::cmd {
+
+namespace {
+
+struct Options {
+  std::string file, action = "inspect", part;
+  std::string tissues, rig, weights, pose, motion, output, progress;
+  bool json = false, replace = false;
+};
+
+template <class T>
+std::shared_ptr<const T> shared(T value) {
+  return std::make_shared<const T>(std::move(value));
+}
+
+void require(bool holds, const std::string& what, const std::string& where, const std::string& what_to_do) {
+  if (!holds) throw Error(what, where, what_to_do);
+}
+
+void require_new(const Path& path, bool replace) {
+  check_place(path);
+  require(replace || !std::filesystem::exists(path), "a file of that name is there already", path.string(), "choose another name, or say --replace");
+}
+
+// ---- create
+
+void read_body_parts(const Options& options, Document& document, Progress& progress) {
+  VolumeFile file = read_volume(options.part, progress);
+  warn(file.warnings);
+  std::optional<TissueTable> user;
+  if (!options.tissues.empty()) user = read_tissue_table(options.tissues);
+  document.tissues = shared(merge_tissue_tables(file.tissues, user ? &*user : nullptr));
+  document.volume_type = shared(std::move(file.type));
+  document.volume = shared(std::move(file.volume));
+}
+
+Document read_parts(const Options& options, Progress& progress) {
+  Document document;
+  require(options.part.empty() ? options.tissues.empty() && options.weights.empty() : true, "tissues and weights belong to a volume",
+          options.file, "name it behind create");
+  require(options.rig.empty() ? options.weights.empty() && options.pose.empty() : true, "weights and poses belong to a rig", options.file,
+          "name it with --rig");
+  if (!options.part.empty()) read_body_parts(options, document, progress);
+  if (!options.rig.empty()) {
+    ArmatureFile rig = read_armature_file(options.rig);
+    warn(rig.warnings);
+    document.armature = shared(std::move(rig.armature));
+    document.pose = shared(options.pose.empty() ? rest_pose(*document.armature) : read_pose(options.pose, *document.armature));
+  }
+  if (!options.weights.empty()) {
+    WeightsFile weights = read_weights(options.weights, *document.volume, TissueVoxels(*document.volume), *document.armature);
+    warn(weights.warnings);
+    document.weights = shared(std::move(weights.weights));
+  }
+  if (!options.motion.empty()) {
+    document.motion = shared(read_bvh(options.motion));
+    warn(document.motion->warnings);
+  }
+  return document;
+}
+
+void create(const Options& options) {
+  require_new(options.file, options.replace);
+  CommandProgress progress(options.progress);
+  DocumentWriter writer;
+  create_project({.document = read_parts(options, progress)}, options.file, writer, progress);
+}
+
+// ---- verify and recover
+
+void verify(const Options& options) {
+  CommandProgress progress(options.progress);
+  const auto wrong = verify_project(options.file, progress);
+  for (const std::string& line : wrong) warn(line);
+  require(wrong.empty(), "the project is damaged", options.file,
+          "open an earlier copy, or keep what is whole: limber project " + options.file + " recover -o OUT.limber");
+  std::printf("%s is whole\n", options.file.c_str());
+}
+
+void recover(const Options& options) {
+  require(!options.output.empty(), "recover needs a file to write", options.file, "name it with -o OUT.limber");
+  require_new(options.output, options.replace);
+  CommandProgress progress(options.progress);
+  Project project;
+  auto left = recoverable(options.file);  // a journal itself
+  if (!left) left = recoverable(journal_path(std::filesystem::absolute(options.file)));
+  if (left) {
+    Recovered recovered = limber::recover(left->journal, progress);
+    warn(recovered.warnings);
+    project.document = std::move(recovered.document);
+    std::printf("edits recovered up to: %s\n", recovered.label.c_str());
+  } else {
+    ReadLimits limits;
+    limits.leave_out_damaged = true;
+    project = read_project(options.file, progress, limits);
+    warn(project.warnings);
+    std::printf("no unsaved edits were found; what the project holds is kept\n");
+  }
+  DocumentWriter writer;
+  create_project(project, options.output, writer, progress);
+}
+
+// ---- export
+
+template <class T>
+const T& there(const std::shared_ptr<const T>& part, const Options& options) {
+  require(part != nullptr, "the project has no such part", options.file + ", " + options.part, "see what it has: limber project " + options.file);
+  return *part;
+}
+
+const LabelVolume& result_named(const Document& document, const Options& options) {
+  for (const auto& result : document.results)
+    if (result->name == options.part && result->volume) return *result->volume;
+  throw Error("the project has no such part or result", options.file + ", " + options.part,
+              "name volume, tissues, rig, weights, pose, motion, or a result that limber project " + options.file + " lists");
+}
+
+void export_part(const Options& options) {
+  require(!options.part.empty() && !options.output.empty(), "export needs a part and a file to write", options.file,
+          "as in: export volume -o volume.nrrd");
+  check_place(options.output);
+  CommandProgress progress(options.progress);
+  const Project project = read_project(options.file, progress);
+  warn(project.warnings);
+  const Document& document = project.document;
+  const TissueTable tissues = document.tissues ? *document.tissues : TissueTable{};
+  const FileType type = document.volume_type ? *document.volume_type : FileType{};
+  if (options.part == "volume")
+    write_volume(there(document.volume, options), options.output, tissues, type);
+  else if (options.part == "tissues")
+    write_tissue_table(there(document.tissues, options), options.output);
+  else if (options.part == "rig")
+    write_armature(there(document.armature, options), options.output);
+  else if (options.part == "weights")
+    write_weights(there(document.weights, options), *document.volume, TissueVoxels(*document.volume), options.output);
+  else if (options.part == "pose")
+    write_pose(there(document.pose, options), *document.armature, options.output);
+  else if (options.part == "motion")
+    write_bvh(there(document.motion, options), options.output);
+  else
+    write_volume(result_named(document, options), options.output, tissues, type);
+}
+
+void run(const Options& options) {
+  if (options.action == "create") return create(options);
+  if (options.action == "verify") return verify(options);
+  if (options.action == "recover") return recover(options);
+  if (options.action == "export") return export_part(options);
+  print_description(describe_project(options.file), options.json);
+}
+
+}  // namespace
+
+void add_project(CLI::App& app) {
+  auto* command = app.add_subcommand("project", "creates, inspects, verifies, recovers and takes parts out of a project file");
+  auto options = std::make_shared<Options>();
+  command->add_option("NAME", options->file, "NAME.limber")->required();
+  command->add_option("ACTION", options->action, "inspect (as without), create, verify, recover or export")
+      ->check(CLI::IsMember({"inspect", "info", "create", "verify", "recover", "export"}));
+  command->add_option("PART", options->part, "of create: a label volume; of export: volume, tissues, rig, weights, pose, motion, or a result's name");
+  command->add_flag("--json", options->json, "inspect as JSON");
+  command->add_option("--tissues", options->tissues, "of create: tissue table");
+  command->add_option("--rig", options->rig, "of create: rig");
+  command->add_option("--weights", options->weights, "of create: W.nrrd, or a folder with Bender's weights");
+  command->add_option("--pose", options->pose, "of create: pose (default: at rest)");
+  command->add_option("--motion", options->motion, "of create: BVH");
+  command->add_option("-o,--output", options->output, "of recover and export: the file to write");
+  command->add_flag("--replace", options->replace, "of create and recover: write over a file of that name");
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace limber::cmd

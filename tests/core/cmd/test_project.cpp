@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <fstream>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+#include "core/project/session.h"
+#include "tests/support/documents.h"
+#include "tests/support/program.h"
+#include "tests/support/shared_data.h"
+
+using namespace limber;
+using namespace limber::test;
+
+namespace {
+ProgramRun project(const TemporaryFolder& folder, std::vector<std::string> words) {
+  words.insert(words.begin(), {"project", folder / "arm.limber"});
+  return run_limber(words);
+}
+
+void make_arm(const TemporaryFolder& folder) {
+  REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
+  const std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", tissues = folder / "tissues.json", weights = folder / "weights.nrrd";
+  REQUIRE(run_limber({"weights", volume, "--rig", rig, "--tissues", tissues, "--method", "rigid", "-o", weights}).exit_code == 0);
+  const auto made = project(folder, {"create", volume, "--rig", rig, "--tissues", tissues, "--weights", weights, "--motion", folder / "motion.bvh"});
+  INFO(made.err);
+  REQUIRE(made.exit_code == 0);
+}
+}  // namespace
+
+TEST_CASE("project command: what create puts in, inspect and info tell and export gives back") {
+  const TemporaryFolder folder;
+  make_arm(folder);
+  const auto inspected = project(folder, {"--json"});
+  REQUIRE(inspected.exit_code == 0);
+  const auto json = nlohmann::json::parse(inspected.out);
+  const auto volume = nlohmann::json::parse(run_limber({"info", folder / "volume.nrrd", "--json"}).out);
+  CHECK(json["kind"] == "project");
+  CHECK(json["volume"]["size"] == volume["size"]);
+  CHECK(json["weights"]["voxels"] == json["volume"]["tissue_voxels"]);
+  CHECK(json["bones"].size() == json["weights"]["bones"]);
+  CHECK(json["posed_bones"].empty());
+  CHECK(json["motion"]["frames"] > 0);
+  CHECK(run_limber({"info", folder / "arm.limber", "--json"}).out == inspected.out);
+  CHECK(run_limber({"info", folder / "arm.limber"}).out.starts_with("kind        project"));
+  CHECK(project(folder, {"verify"}).exit_code == 0);
+
+  REQUIRE(project(folder, {"export", "volume", "-o", folder / "again.nrrd"}).exit_code == 0);
+  CHECK(read_volume(folder / "again.nrrd").volume.voxels == read_volume(folder / "volume.nrrd").volume.voxels);
+  REQUIRE(project(folder, {"export", "weights", "-o", folder / "again-weights.nrrd"}).exit_code == 0);
+  CHECK(read_file(folder / "again-weights.nrrd") == read_file(folder / "weights.nrrd"));
+  REQUIRE(project(folder, {"export", "rig", "-o", folder / "again-rig.json"}).exit_code == 0);
+  CHECK(read_file(folder / "again-rig.json") == read_file(folder / "rig.json"));
+  REQUIRE(project(folder, {"export", "motion", "-o", folder / "again.bvh"}).exit_code == 0);
+}
+
+TEST_CASE("project command: recover writes the edits that a crash left, or what is whole of a damaged project") {
+  const TemporaryFolder folder;
+  make_arm(folder);
+  {
+    Project arm;
+    const auto session = Session::open(folder / "arm.limber", arm, no_progress(), {.edits_folder = folder / "state"});
+    Pose pose = *arm.document.pose;
+    pose.rotation[1] = {0.6, 0.8, 0, 0};
+    arm.document.pose = std::make_shared<const Pose>(pose);
+    session->keep(arm.document, "Turn");
+    REQUIRE(session->flush(30));
+  }
+  CHECK(nlohmann::json::parse(project(folder, {"--json"}).out)["unsaved_edits"] == 1);
+  const auto recovered = project(folder, {"recover", "-o", folder / "out.limber"});
+  CHECK(recovered.exit_code == 0);
+  CHECK(recovered.out == "edits recovered up to: Turn\n");
+  CHECK(nlohmann::json::parse(run_limber({"info", folder / "out.limber", "--json"}).out)["posed_bones"].size() == 1);
+  CHECK(project(folder, {"recover", "-o", folder / "out.limber"}).exit_code == 1);  // it is there
+
+  std::string bytes = read_file(folder / "out.limber");
+  const std::size_t first_chunk = bytes.find("\x28\xb5\x2f\xfd");  // as zstd's frames begin
+  REQUIRE(first_chunk != std::string::npos);
+  for (std::size_t at = first_chunk + 16; at < first_chunk + 24; ++at) bytes[at] ^= 0x55;
+  std::ofstream(folder / "bad.limber", std::ios::binary) << bytes;
+  const auto verified = run_limber({"project", folder / "bad.limber", "verify"});
+  CHECK(verified.exit_code == 1);
+  CHECK(verified.err.find("damaged") != std::string::npos);
+  CHECK(run_limber({"project", folder / "bad.limber", "recover", "-o", folder / "saved.limber"}).exit_code == 0);
+  CHECK(run_limber({"project", folder / "saved.limber", "verify"}).exit_code == 0);
+}
+
+TEST_CASE("project command: what cannot be done is refused in one line and writes nothing") {
+  const TemporaryFolder folder;
+  make_arm(folder);
+  std::ofstream(folder / "text.limber") << "hello";
+  std::vector<std::vector<std::string>> requests = {{"create", folder / "volume.nrrd"},  // it is there
+                                                    {"export"},
+                                                    {"export", "volume"},
+                                                    {"export", "pictures", "-o", folder / "new"},
+                                                    {"export", "volume", "-o", folder / "new.xyz"},
+                                                    {"recover"}};
+  for (auto& words : requests) words.insert(words.begin(), folder / "arm.limber");
+  requests.push_back({folder / "none.limber"});
+  requests.push_back({folder / "text.limber"});
+  requests.push_back({folder / "new.limber", "create", folder / "none.nrrd"});
+  requests.push_back({folder / "new.limber", "create", "--weights", folder / "weights.nrrd"});
+  for (auto words : requests) {
+    words.insert(words.begin(), "project");
+    const auto run = run_limber(words);
+    INFO(words.back(), " -> ", run.err);
+    CHECK(run.exit_code == 1);
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    CHECK(run.err.starts_with("limber: "));
+  }
+  for (const char* name : {"new", "new.xyz", "new.limber"}) CHECK_FALSE(std::filesystem::exists(folder / name));
+  CHECK(run_limber({"project", folder / "arm.limber", "dance"}).exit_code == 2);
+}
+
+TEST_CASE("info: a JSON with a table of bones that holds no rotations is no pose") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "weights.json") << R"({"vertices": 2, "bones": {"Head": [[0, 1.0], [1, 1.0]]}})";
+  std::ofstream(folder / "pose.json") << R"({"bones": {"Head": {"axis": [1, 0, 0], "degrees": 5}}})";
+  const auto weights = run_limber({"info", folder / "weights.json", "--json"});
+  INFO(weights.out, weights.err);
+  CHECK(weights.exit_code == 1);
+  CHECK(weights.out.find("pose") == std::string::npos);
+  CHECK(nlohmann::json::parse(run_limber({"info", folder / "pose.json", "--json"}).out)["kind"] == "pose");
+  NEEDS_SHARED("data/makehuman/surface_weights.json");
+  CHECK(run_limber({"info", shared_path("data/makehuman/surface_weights.json").string(), "--json"}).out.find("pose") == std::string::npos);
+}
