@@ -40,7 +40,11 @@ void on_key(Editor& editor, const KeyChanged& event) {
     return;
   }
   const Chord chord{Chord::Kind::Key, editor.input.modifiers(), event.key};
-  if (editor.drag || dialog_open(editor)) return;
+  if (editor.drag || !editor.messages.errors.empty()) return;
+  if (editor.dialog) {
+    editor.dialog->key(editor, chord);
+    return;
+  }
   if (ImGui::GetIO().WantTextInput && belongs_to_text(chord)) return;
   if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) return;
   run_chord(editor, chord);

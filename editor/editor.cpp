@@ -48,6 +48,18 @@ bool begins_something(const Event& event) {
   return std::holds_alternative<Wheeled>(event);
 }
 
+void show_preferred(Editor& editor) {
+  const Preferences& preferences = editor.preferences;
+  Views& views = *editor.views;
+  views.grid = preferences.grid;
+  views.axes = preferences.axes;
+  views.scale_bar = preferences.scale_bar;
+  views.letters = preferences.letters;
+  views.show_cross_hair = preferences.cross_hair;
+  views.display = preferences.display == "xray" ? render::Display::XRay : preferences.display == "tissue" ? render::Display::Tissue : render::Display::Solid;
+  apply_preferences(editor);
+}
+
 }  // namespace
 
 void Dialog::escape(Editor& editor) { editor.close_dialog(); }
@@ -71,12 +83,14 @@ Editor::Editor(Host& host, const Preferences& preferences)
   teach_imgui_keys();
   ImGui_ImplOpenGL3_Init("#version 330 core");
   views.emplace();
+  show_preferred(*this);
   for (int w = 0; w < 4; ++w) arrangements[w] = default_arrangement(static_cast<Workspace>(w));
   apply_look(look, preferences.theme, scale_for(preferences, host));
   layout = arrange(host.size(), look.scale, arrangement());
 }
 
 Editor::~Editor() {
+  write_preferences(*this);
   ImGui::SetCurrentContext(imgui);
   views.reset();
   ImGui_ImplOpenGL3_Shutdown();
@@ -128,7 +142,7 @@ void Editor::draw() {
   draw_sidebar(*this);
   draw_splitters(*this);
   draw_toasts(*this);
-  if (dialog) dialog->draw(*this);
+  if (dialog && messages.errors.empty()) dialog->draw(*this);
   draw_error_message(*this);
   draw_tooltip(*this);
   widgets.end_frame();

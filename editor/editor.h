@@ -19,19 +19,13 @@
 #include "editor/look.h"
 #include "editor/messages.h"
 #include "editor/operators/operator.h"
+#include "editor/preferences.h"
 #include "editor/views.h"
 #include "editor/widget_registry.h"
 
 struct ImGuiContext;
 
 namespace limber::editor {
-
-struct Preferences {
-  std::string theme = "dark";
-  double scale = 1;           // times the monitor's, [0.75, 3]
-  double tooltip_delay = 0.5;  // s
-  bool reduce_motion = false;
-};
 
 // What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
 struct Drag {
@@ -53,6 +47,8 @@ class Dialog {
   virtual ~Dialog() = default;
   virtual void draw(Editor& editor) = 0;  // between begin_dialog and end_dialog of dialog.h
   virtual void escape(Editor& editor);    // closes it
+  // A key that was pressed, before a text field sees it; true when the dialog took it.
+  virtual bool key(Editor&, const Chord&) { return false; }
 };
 
 // What a click can do to the left button in a view.
@@ -80,6 +76,8 @@ struct Editor {
 
   Host& host;
   Preferences preferences;
+  Path preferences_path;             // empty: they are not kept
+  bool preferences_problem = false;  // the last time they could not be
   std::string shown_theme;
   Look look;
   WidgetRegistry widgets;
@@ -90,6 +88,8 @@ struct Editor {
   // The project
   History history;
   Jobs jobs;
+  std::map<int, std::function<void(Editor&, const JobStatus&)>> after_job;  // what follows the end of a job, by id
+  Path worker_program = "/proc/self/exe";                                  // what runs `limber job`
   Path project_path;  // empty: never saved
   std::string name;   // of the project or of the volume opened last
   std::vector<Path> to_open;  // dropped on the window, or given on the command line

@@ -15,17 +15,16 @@ constexpr double kMinimizedRest = 0.25;  // s: nothing is drawn, but jobs go on
 
 double steady_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-Preferences preferences_of(const StartOptions& options) {
-  Preferences preferences;
-  preferences.scale = glm::clamp(options.scale, 0.75, 3.0);
-  preferences.theme = options.theme;
+Preferences with_options(Preferences preferences, const StartOptions& options) {
+  if (options.scale) preferences.scale = glm::clamp(*options.scale, 0.75, 3.0);
+  if (options.theme) preferences.theme = *options.theme;
   return preferences;
 }
 
 void play(const StartOptions& options) {
   const auto script = parse_script(read_file(options.script));
   const auto host = open_offscreen(options.size);
-  Editor editor(*host, preferences_of(options));
+  Editor editor(*host, with_options({}, options));
   editor.to_open = options.files;
   Player player(editor, *host);
   player.step();
@@ -35,7 +34,10 @@ void play(const StartOptions& options) {
 
 void run_in_window(const StartOptions& options) {
   const auto host = open_window(options.size, "Limber");
-  Editor editor(*host, preferences_of(options));
+  std::string problem;
+  Editor editor(*host, with_options(read_preferences(preferences_path(), problem), options));
+  editor.preferences_path = preferences_path();
+  if (!problem.empty()) editor.messages.warn("Preferences could not be read", problem);
   editor.to_open = options.files;
   while (!editor.quit) {
     const bool minimized = host->size().x == 0 || host->size().y == 0;

@@ -70,6 +70,7 @@ bool poll_jobs(Editor& editor) {
   for (const JobStatus& job : editor.jobs.statuses()) {
     if (job.active()) continue;
     tell_of_ended(editor, job);
+    if (const auto follow = editor.after_job.extract(job.id)) follow.mapped()(editor, job);
     if (job.state == JobState::Done && job.label.starts_with("Open ")) editor.name = Path(job.label.substr(5)).stem().string();
     editor.jobs.dismiss(job.id);
   }

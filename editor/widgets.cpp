@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/widgets.h"
 
+#include <imgui_internal.h>
+
 #include "editor/dispatch.h"
 #include "editor/icons.h"
 
@@ -56,6 +58,8 @@ void begin_region(Editor& editor, Region region, const std::string& name, const 
   ImGui::Begin(("##" + name).c_str(), nullptr, kRegionFlags);
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();
+  // A new window goes behind the others; a dialog stands before them, and what it opens before itself.
+  if (region == Region::Dialog && ImGui::IsWindowAppearing()) ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
   push_path(editor, name);
 }
 

@@ -51,6 +51,7 @@ class Jobs {
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
+  void set_at_once(int count) { at_once_ = count; }  // for those that start from now on
   int start(std::string label, Work work);  // returns its id
   void cancel(int id);
   void cancel_all();

@@ -31,8 +31,8 @@ void add_editor(CLI::App& app) {
   CLI::App* command = app.add_subcommand("editor", "Opens the editor (as limber alone does), or plays a script in it");
   command->add_option("FILE", options->files, "what to open");
   command->add_option("--size", options->size, "WIDTHxHEIGHT of the window, pixels")->capture_default_str();
-  command->add_option("--scale", options->start.scale, "size of texts and buttons, 0.75 to 3")->capture_default_str();
-  command->add_option("--theme", options->start.theme, "dark or light")->check(CLI::IsMember({"dark", "light"}))->capture_default_str();
+  command->add_option("--scale", options->start.scale, "size of texts and buttons, 0.75 to 3 (default: as preferred)");
+  command->add_option("--theme", options->start.theme, "dark or light")->check(CLI::IsMember({"dark", "light"}));
   command->add_option("--play", options->script, "a script of clicks and keys, played without a display");
   command->callback([options] {
     options->start.size = size_of(options->size);

@@ -9,10 +9,25 @@
 
 namespace limber::editor {
 
+namespace {
+
+// For Repeat and for the search, which offers what was used last and most.
+void note_use(Editor& editor, const Operator& op) {
+  if (op.id == "search.commands" || op.id == "edit.repeat_last" || needs_pointer(editor, op)) return;
+  editor.last_operator = op.id;
+  auto& recent = editor.preferences.recent_commands;
+  std::erase(recent, op.id);
+  recent.insert(recent.begin(), op.id);
+  if (recent.size() > Preferences::kMostRecent) recent.pop_back();
+  editor.preferences.command_counts[op.id] += 1;
+}
+
+}  // namespace
+
 std::vector<Operator> gather_operators() {
   std::vector<Operator> all;
   for (auto list : {file_operators, edit_operators, workspace_operators, view_operators, navigation_operators, clip_operators, slice_operators,
-                    tissue_operators, select_operators})
+                    tissue_operators, select_operators, search_operators, preferences_operators})
     for (Operator& op : list()) all.push_back(std::move(op));
   return all;
 }
@@ -29,6 +44,7 @@ void run(Editor& editor, const Operator& op) {
   if (const std::string reason = why_not(editor, op); !reason.empty()) return editor.messages.info(op.label, reason);
   try {
     op.run(editor);
+    note_use(editor, op);
   } catch (const Cancelled&) {
   } catch (const Error& error) {
     editor.messages.show_error(error.what());
@@ -37,6 +53,17 @@ void run(Editor& editor, const Operator& op) {
   } catch (const std::exception& error) {
     editor.messages.show_error(std::string("A mistake of the program itself: ") + op.label + ": " + error.what());
   }
+}
+
+bool needs_pointer(const Editor& editor, const Operator& op) {
+  bool any = false;
+  for (const auto& [context, bindings] : editor.keymap.contexts)
+    for (const Binding& binding : bindings) {
+      if (binding.operator_id != op.id) continue;
+      if (binding.chord.kind == Chord::Kind::Key) return false;
+      any = true;
+    }
+  return any;
 }
 
 void run(Editor& editor, std::string_view id) {

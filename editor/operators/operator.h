@@ -33,6 +33,8 @@ std::vector<Operator> clip_operators();
 std::vector<Operator> slice_operators();
 std::vector<Operator> tissue_operators();
 std::vector<Operator> select_operators();
+std::vector<Operator> search_operators();
+std::vector<Operator> preferences_operators();
 // All of the above.
 std::vector<Operator> gather_operators();
 
@@ -41,5 +43,7 @@ std::string why_not(const Editor& editor, const Operator& op);             // ""
 // Runs it, or says why not. What it throws becomes a message: the only place of the editor that catches.
 void run(Editor& editor, const Operator& op);
 void run(Editor& editor, std::string_view id);
+// Whether it is for the pointer alone: its keys are buttons and wheels, and it means nothing away from them.
+bool needs_pointer(const Editor& editor, const Operator& op);
 
 }  // namespace limber::editor
