@@ -38,6 +38,7 @@ void run_edit_script(const Path& path, const SessionSettings& settings, const Ed
     if (random() % 40 == 0) session->save(project);
     const double pause = script.pause * static_cast<double>(random() % 2000) / 1000;
     std::this_thread::sleep_for(std::chrono::duration<double>(pause));
+    if (script.after_pause) script.after_pause(edit, session->status().kept);
   }
 }
 

@@ -13,7 +13,8 @@ struct EditScript {
   int edits = 200;
   double pause = 0.01;  // seconds between two, on average
   std::uint32_t seed = 0;
-  std::function<void(int edit)> after_edit;  // it was handed to the session
+  std::function<void(int edit)> after_edit;                 // it was handed to the session
+  std::function<void(int edit, bool all_kept)> after_pause;  // and whether the session says it is on the disk
 };
 
 // The edit that a document comes from; 0 for the one at the start.
