@@ -230,18 +230,34 @@ Path edits_folder() {
 
 Path journal_path(const Path& project) { return project.string() + "-edits"; }
 
+namespace {
+// The root that was saved last; none when that cannot be told.
+std::optional<ChunkHash> saved_root(const Path& project) {
+  try {
+    if (is_project(project)) return read_mark(project).root;
+  } catch (const Error&) {  // damaged or in use: then the edits are all the more worth offering
+  }
+  return std::nullopt;
+}
+}  // namespace
+
 std::optional<Recoverable> recoverable(const Path& journal) {
   try {
+    std::error_code error;
+    if (!fs::is_regular_file(journal, error)) return std::nullopt;
     const FileLock lock(journal);
     if (!lock.taken()) return std::nullopt;
     const JournalReader reader(journal);
-    if (reader.edits().empty()) return std::nullopt;
-    const JournalReader::Edit& last = reader.edits().back();
-    if (!reader.project().empty() && is_project(reader.project()) && read_mark(reader.project()).root == last.root) return std::nullopt;
-    return Recoverable{journal, reader.project(), last.label, last.time, std::ssize(reader.edits())};
+    if (reader.edits().empty() || saved_root(reader.project()) == reader.edits().back().root) return std::nullopt;
+    return recoverable(reader, journal);
   } catch (const Error&) {
     return std::nullopt;
   }
+}
+
+Recoverable recoverable(const JournalReader& reader, const Path& journal) {
+  const JournalReader::Edit& last = reader.edits().back();
+  return {journal, reader.project(), last.label, last.time, std::ssize(reader.edits())};
 }
 
 std::vector<Recoverable> all_recoverable(const Path& folder) {

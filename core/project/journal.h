@@ -97,6 +97,8 @@ Path journal_path(const Path& project);
 
 // Nothing when the journal is in use, cannot be read, or holds no edit that the project lacks.
 std::optional<Recoverable> recoverable(const Path& journal);
+// Of a journal that is open and has edits.
+Recoverable recoverable(const JournalReader& reader, const Path& journal);
 // All that the edits folder knows of, the latest first.
 std::vector<Recoverable> all_recoverable(const Path& folder = edits_folder());
 

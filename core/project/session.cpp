@@ -74,12 +74,7 @@ std::unique_ptr<Session> Session::open(const Path& path, Project& project, Progr
   session->base_ = session->mark_ = project.mark;
   session->identity_ = identity_of(file);
   session->saved_ = session->last_ = project.document;
-  // The lock must be free to be asked for again, by the one who has it.
-  if (session->leftover_lock_) {
-    session->leftover_lock_.reset();
-    session->leftover_ = recoverable(session->journal_path_);
-    if (session->leftover_) session->leftover_lock_.emplace(session->journal_path_);
-  }
+  if (session->leftover_lock_) session->look_at_leftover();
   if (!session->leftover_) {
     try {
       session->begin_journal(nullptr, "");
@@ -165,8 +160,22 @@ void Session::begin_journal(const Document* document, const std::string& label) 
   note_journal();
 }
 
+// What an earlier session left: edits to offer, nothing new, or what another version wrote, which is not ours to remove.
+void Session::look_at_leftover() {
+  try {
+    const JournalReader reader(journal_path_);
+    if (!reader.edits().empty() && reader.edits().back().root != mark_->root) leftover_ = recoverable(reader, journal_path_);
+  } catch (const Error& error) {
+    status_.message = error.what();
+    move_leftover_aside();
+  }
+}
+
 void Session::set_leftover_aside() {
-  if (!leftover_) return;
+  if (leftover_) move_leftover_aside();
+}
+
+void Session::move_leftover_aside() {
   for (int number = 1;; ++number) {
     const Path aside = journal_path_.string() + "-" + std::to_string(number);
     std::error_code error, ignored;

@@ -92,7 +92,9 @@ class Session {
   void after_save(const Document& saved, const SaveMark& mark);
   void write_file(const std::function<SaveMark()>& write, const Document& saved);
   Document last() const;
+  void look_at_leftover();
   void set_leftover_aside();
+  void move_leftover_aside();
   void watch_project();
   void choose_journal_path(const Path& project);
   void note_journal() const;

@@ -210,6 +210,19 @@ TEST_CASE("session: edits that are neither recovered nor dropped are set aside a
   CHECK(all_recoverable(folder / "state").size() == 1);
 }
 
+TEST_CASE("session: a journal that cannot be read, as one of another version, is set aside and not overwritten") {
+  const TemporaryFolder folder;
+  const Path path = make_project(folder);
+  std::ofstream(journal_path(path)) << "from the future";
+  Project project;
+  const auto session = Session::open(path, project, no_progress(), settings_in(folder));
+  CHECK_FALSE(session->leftover());
+  CHECK(session->status().message.find("not a journal") != std::string::npos);
+  CHECK(read_file(journal_path(path).string() + "-1") == "from the future");
+  session->keep(with_pose(project.document, 1), "Pose");
+  CHECK(session->flush(kLong));
+}
+
 TEST_CASE("session: a project removed underneath loses nothing: the journal holds all of it, and a save writes it anew") {
   const TemporaryFolder folder;
   const Path path = make_project(folder);
