@@ -20,9 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::duration;
 
-// A journal that has become this large, and several times as large as when it began, begins anew.
-constexpr std::int64_t kLargeJournal = std::int64_t{256} << 20;
-constexpr std::int64_t kMostGrowth = 4;
+constexpr std::int64_t kMostGrowth = 4;  // of a large journal
 
 constexpr const char* kGone = "The project's file was removed or replaced by another program. Your edits are kept; save to write it anew.";
 
@@ -191,7 +189,7 @@ void Session::move_leftover_aside() {
 
 void Session::write_journal(const Document& document, const std::string& label) {
   if (leftover_) set_leftover_aside();
-  const bool large = journal_ && journal_->bytes() > kLargeJournal && journal_->bytes() > kMostGrowth * fresh_bytes_;
+  const bool large = journal_ && journal_->bytes() > settings_.large_journal && journal_->bytes() > kMostGrowth * fresh_bytes_;
   if (!journal_ || journal_->broken() || large)
     begin_journal(&document, label);
   else

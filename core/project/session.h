@@ -34,6 +34,8 @@ struct SessionSettings {
   std::function<void()> on_change;  // called from any thread when status() has changed
   double retry_seconds = 1;         // after a failure
   double watch_seconds = 2;         // how often the project file is looked after
+  // A journal that has become this large, and several times as large as when it began, begins anew.
+  std::int64_t large_journal = std::int64_t{256} << 20;  // bytes
 };
 
 struct SessionStatus {

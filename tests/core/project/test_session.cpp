@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include <doctest/doctest.h>
+#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -280,6 +281,60 @@ TEST_CASE("session: on a full disk nothing is lost, the message is clear, and al
 
   REQUIRE(session->flush(kLong));
   REQUIRE(soon([&] { return session->status().message.empty(); }));
+  CHECK(same_contents(recover(journal_path(path)).document, large));
+  session->save({.document = large});
+  CHECK(same_contents(read_project(path).document, large));
+}
+
+TEST_CASE("session: a journal does not grow without end") {
+  const TemporaryFolder folder;
+  SessionSettings settings = settings_in(folder);
+  settings.large_journal = 100'000;
+  const Path path = make_project(folder, large_document(0));
+  Project project;
+  const auto session = Session::open(path, project, no_progress(), settings);
+  Document document = project.document;
+  std::uintmax_t one = 0, largest = 0;
+  for (std::uint32_t i = 1; i <= 20; ++i) {
+    document.weights = large_document(i).weights;
+    session->keep(document, "Weights");
+    REQUIRE(session->flush(kLong));
+    const std::uintmax_t size = fs::file_size(journal_path(path));
+    if (i == 1) one = size;
+    largest = std::max(largest, size);
+  }
+  CHECK(largest < 6 * one);
+  CHECK(same_contents(recover(journal_path(path)).document, document));
+}
+
+TEST_CASE("session: on a disk that is full to its last byte the journal and the project stay whole") {
+  const TemporaryFolder folder;
+  if (::mount("tmpfs", folder.path().c_str(), "tmpfs", 0, "size=6m") != 0) {
+    MESSAGE("skipped: no disk can be mounted here");
+    return;
+  }
+  struct Unmount {
+    const Path path;
+    ~Unmount() { ::umount2(path.c_str(), MNT_DETACH); }
+  } unmount{folder.path()};
+  const Path path = make_project(folder);
+  Project project;
+  auto session = Session::open(path, project, no_progress(), settings_in(folder));
+  const Document small = with_pose(project.document, 1), large = large_document(1);
+  session->keep(small, "Pose");
+  REQUIRE(session->flush(kLong));
+  const std::string filling(std::size_t{8} << 20, 'x');
+  std::ofstream(folder / "filling") << filling;
+
+  session->keep(large, "Import");
+  REQUIRE(soon([&] { return !session->status().message.empty(); }));
+  CHECK(session->status().message.find("the disk is full") != std::string::npos);
+  CHECK(message_of([&] { session->save({.document = large}); }).find("the disk is full") != std::string::npos);
+  CHECK(same_contents(recover(journal_path(path)).document, small));
+  CHECK(verify_project(path).empty());
+
+  fs::remove(folder / "filling");
+  REQUIRE(session->flush(kLong));
   CHECK(same_contents(recover(journal_path(path)).document, large));
   session->save({.document = large});
   CHECK(same_contents(read_project(path).document, large));
