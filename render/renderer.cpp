@@ -18,8 +18,8 @@ int texture_limit(int largest_texture) {
 }
 
 // Weak pointers tell whether they were made from the same owner even after it has gone.
-template <class T>
-bool same(const std::weak_ptr<T>& key, const std::shared_ptr<T>& owner) {
+template <class T, class Owner>
+bool same(const std::weak_ptr<T>& key, const Owner& owner) {
   return !key.owner_before(owner) && !owner.owner_before(key);
 }
 

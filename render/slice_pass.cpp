@@ -65,7 +65,7 @@ void SlicePass::draw(const VolumeTexture& volume, const LooksTexture& looks, con
                                             define("SLOT", kSlot) + define("APRON", kApron) + define("BLOCK", kBlock) +
                                                 atlas_functions(volume.layout().atlases) + kSlice);
   }
-  const AffineTransform to_padded = padded_from_world(volume.drawn().grid);
+  const AffineTransform to_padded = padded_from_world(volume.grid());
   const SliceFrame frame = frame_of(camera.axis);
   program->use();
   int unit = volume.bind(*program, 0);

@@ -202,7 +202,7 @@ struct View3D::Impl {
 
   ViewRays rays_of(const Source& source, const glm::ivec2& size, int sample) const {
     const VisibleField& outer = *source.layers[0];
-    ViewRays rays = view_rays(key.camera, source.body->volume->drawn().grid, size, jitter_of(sample), outer.low(), outer.high());
+    ViewRays rays = view_rays(key.camera, source.body->volume->grid(), size, jitter_of(sample), outer.low(), outer.high());
     rays.label_shift = label_shift_of(sample);
     return rays;
   }

@@ -20,7 +20,7 @@ constexpr Format3D kField = {GL_R8, GL_RED, GL_UNSIGNED_BYTE, true};
 constexpr int kReach = 2;                        // voxels that two blurs carry
 constexpr int kRead = kSlot + 2 * kReach;        // voxels an axis that a slot's field depends on
 constexpr int kHalf = 128;                       // the body's surface
-constexpr int kSwallowed = 102, kRaised = 134;   // under 0.4 a voxel of the set would vanish; just above one half it stays
+constexpr int kSwallowed = 102, kRaised = 230;   // under 0.4 a voxel of the set would vanish; raised it keeps its size
 constexpr int kFarthest = kFirstFieldValue - 1;  // bricks that a texel can tell
 constexpr size_t kSlotTexels = size_t{kSlot} * kSlot * kSlot;
 
@@ -199,6 +199,7 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
   const glm::ivec3 bricks = layout.bricks();
   const auto brick_count = static_cast<size_t>(bricks.x) * bricks.y * bricks.z;
   const bool first = set_.empty();
+  const std::shared_ptr<const LabelVolume> labels = volume.drawn();
   if (first) {
     labels_of_slot_.resize(slots);
     slot_present_.assign(slots, 0);
@@ -216,7 +217,7 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
     std::vector<std::uint8_t> along_x;
     std::vector<std::uint16_t> along_y;
     const glm::ivec3 block = layout.block_of_slot[s];
-    const int members = gather(volume.drawn(), block, set, member, first ? &labels_of_slot_[s] : nullptr);
+    const int members = gather(*labels, block, set, member, first ? &labels_of_slot_[s] : nullptr);
     if (members == 0) fields[s].assign(kSlotTexels, 0);
     else if (members == kRead * kRead * kRead) fields[s].assign(kSlotTexels, 255);
     else blur(member, fields[s], along_x, along_y);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A set of labels as a smooth body that rays can find: whether a voxel belongs to the set, blurred twice by [1 2 1]/4 an
 // axis into 8 bits (the body ends at one half), in atlases laid out like the volume's labels. What the blur would
-// swallow (sheets and threads of one voxel) is raised back to just above one half.
+// swallow (sheets and threads of one voxel) is raised so that it keeps its size.
 //
 // A texel under kFirstFieldValue is far from the set, and tells how far: v bricks away in the largest of the three axes,
 // 0 for next to it. So a ray reads one texel for both, and skips 4 (v - 1) + 1 voxels.

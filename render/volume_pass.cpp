@@ -104,8 +104,8 @@ void main() {
       if (value >= kBand) break;
       s_march += value < kFirstFieldValue ? max(1.0, value * (255.0 * BRICK) - float(BRICK - 1)) : 1.0;
     }
-    // From half a voxel before, so that a surface is not met from its inside. The field rises by at most 3/8 a voxel: as far
-    // as it must rise to one half, so far no surface is passed over. The apron reaches far enough.
+    // From half a voxel before, so that a surface is not met from its inside. The field rises by about 3/8 a voxel, which gives
+    // the step; it is short enough not to pass over a thread. The apron reaches far enough.
     float s_near = max(s_march - 0.5, s_start), s_far = value >= kBand ? s_march + 1.5 : -1e30;
     vec3 offset = vec3(slot.offset);
     before = 0.0;
@@ -115,7 +115,7 @@ void main() {
       if (after >= 0.5) { found = s_near; break; }
       before = after;
       s_before = s_near;
-      s_near += max(0.4, (0.5 - after) * 3.0);
+      s_near += clamp((0.5 - after) * 3.0, 0.4, 0.7);
     }
     s = value >= kBand ? s_march + 1.5 : max(s_march, s_leave);
   }

@@ -2,7 +2,6 @@
 #include "render/volume_texture.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <epoxy/gl.h>
 
@@ -87,23 +86,24 @@ int bind_atlases(gl::Program& program, const std::string& name, const std::vecto
   return first;
 }
 
-VolumeTexture::VolumeTexture(std::shared_ptr<const LabelVolume> volume, int largest_texture)
-    : original_(volume), drawn_(std::move(volume)), largest_texture_(largest_texture) {
+VolumeTexture::VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, int largest_texture)
+    : original_(volume), largest_texture_(largest_texture) {
   for (;;) {
-    layout_ = block_layout(*drawn_);
-    if (place_slots(layout_, largest_texture) && upload()) break;
+    const LabelVolume& drawn = coarse_ ? *coarse_ : *volume;
+    layout_ = block_layout(drawn);
+    if (place_slots(layout_, largest_texture) && upload(drawn)) break;
     atlases_.clear();
     if (halvings_ == kMostHalvings)
-      throw Error("the volume cannot be shown: the graphics driver has no room for it", describe(original_->grid.size),
-                  "re-grid it with a larger spacing");
-    drawn_ = std::make_shared<const LabelVolume>(halved(*drawn_));
+      throw Error("the volume cannot be shown: the graphics driver has no room for it", describe(volume->grid.size), "re-grid it with a larger spacing");
+    coarse_ = std::make_shared<const LabelVolume>(halved(drawn));
     ++halvings_;
   }
+  grid_ = coarse_ ? coarse_->grid : volume->grid;
   if (halvings_ > 0)
-    note_ = "Shown at 1/" + std::to_string(1 << halvings_) + " of its resolution: the graphics driver has no room for " + describe(original_->grid.size);
+    note_ = "Shown at 1/" + std::to_string(1 << halvings_) + " of its resolution: the graphics driver has no room for " + describe(volume->grid.size);
 }
 
-bool VolumeTexture::upload() {
+bool VolumeTexture::upload(const LabelVolume& volume) {
   const glm::ivec3 size = layout_.slots * kSlot;
   for (int a = 0; a < layout_.atlases; ++a) {
     atlases_.push_back(gl::Texture::create());
@@ -112,7 +112,7 @@ bool VolumeTexture::upload() {
   std::vector<Label> slot;
   Exposure exposure;
   for (size_t s = 0; s < layout_.block_of_slot.size(); ++s) {
-    gather(*drawn_, layout_.block_of_slot[s], slot);
+    gather(volume, layout_.block_of_slot[s], slot);
     exposure.count(slot);
     const glm::ivec3 at = layout_.place_of(static_cast<int>(s)) * kSlot;
     glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<size_t>(layout_.atlas_of(static_cast<int>(s)))].name());

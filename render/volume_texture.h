@@ -17,10 +17,11 @@ class VolumeTexture {
  public:
   // Where the volume does not fit textures of that size, or the driver has no memory for it, it is halved until it does.
   // Throws Error when even an eighth of the resolution does not fit.
-  VolumeTexture(std::shared_ptr<const LabelVolume> volume, int largest_texture);
+  VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, int largest_texture);
 
-  const std::shared_ptr<const LabelVolume>& original() const { return original_; }
-  const LabelVolume& drawn() const { return *drawn_; }  // the original, or a coarser one
+  const std::weak_ptr<const LabelVolume>& original() const { return original_; }  // not kept alive: the document owns it
+  std::shared_ptr<const LabelVolume> drawn() const { return coarse_ ? coarse_ : original_.lock(); }
+  const Grid& grid() const { return grid_; }  // of what is drawn: the original, or a coarser one
   int halvings() const { return halvings_; }
   const BlockLayout& layout() const { return layout_; }
   int largest_texture() const { return largest_texture_; }
@@ -32,9 +33,11 @@ class VolumeTexture {
   int bind(gl::Program& program, int first) const;
 
  private:
-  bool upload();
+  bool upload(const LabelVolume& volume);
 
-  std::shared_ptr<const LabelVolume> original_, drawn_;
+  std::weak_ptr<const LabelVolume> original_;
+  std::shared_ptr<const LabelVolume> coarse_;
+  Grid grid_;
   BlockLayout layout_;
   std::vector<gl::Texture> atlases_;
   gl::Texture index_;
