@@ -33,16 +33,16 @@ float openness(float depth, vec3 normal) {
 
 vec3 lit(vec3 albedo, vec3 normal, float open) {
   float toward = clamp(normal.z, 0.0, 1.0);
-  float key = clamp(dot(normal, kKey) * 0.75 + 0.25, 0.0, 1.0);
+  float key = clamp(dot(normal, kKey) * 0.86 + 0.14, 0.0, 1.0);
   float sky = 0.5 + 0.5 * normal.y;
   float half_way = clamp(dot(normal, normalize(kKey + vec3(0, 0, 1))), 0.0, 1.0);
   float gloss = half_way * half_way;
   gloss *= gloss; gloss *= gloss; gloss *= gloss;
   float rim = (1.0 - toward) * (1.0 - toward);
   // Light that leaves flesh again is warmer in the shade.
-  vec3 shade = mix(vec3(0.52, 0.40, 0.36), vec3(1.0), open);
-  vec3 light = (0.95 * key * vec3(1.0, 0.98, 0.95) + mix(0.10, 0.30, sky) * vec3(0.92, 0.97, 1.06)) * shade * open;
-  return albedo * (light + 0.10 * rim * sky) + 0.035 * gloss * open;
+  vec3 shade = mix(vec3(0.55, 0.42, 0.38), vec3(1.0), open);
+  vec3 light = (0.92 * key * vec3(1.0, 0.975, 0.945) + mix(0.06, 0.18, sky) * vec3(0.95, 0.97, 1.03)) * shade * open * (0.72 + 0.28 * toward);
+  return albedo * (light + 0.06 * rim * sky) + 0.04 * gloss * open;
 }
 
 void main() {

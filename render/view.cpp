@@ -204,6 +204,7 @@ struct View3D::Impl {
     const VisibleField& outer = *source.layers[0];
     ViewRays rays = view_rays(key.camera, source.body->volume->grid(), size, jitter_of(sample), outer.low(), outer.high());
     rays.label_shift = label_shift_of(sample);
+    rays.mirrored_taps = sample % 2 != 0;
     return rays;
   }
 

@@ -23,6 +23,7 @@ struct ViewRays {
   double nearest = 0;             // depth of the near plane
   bool perspective = true;
   glm::vec3 label_shift{0};       // voxels by which labels are read beside their place: averaged pictures blend their borders
+  bool mirrored_taps = false;     // gradients by the other tetrahedron: averaged pictures use both
 };
 
 AffineTransform padded_from_world(const Grid& grid);

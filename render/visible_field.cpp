@@ -68,16 +68,28 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
     for (int y = 0; y < kSlot; ++y)
       blur_line(along_x.data() + (z * kRead + y) * kSlot, kSlot, along_y.data() + (z * kSlot + y) * kSlot, kSlot);
   std::array<std::uint16_t, kSlot> sum;
+  std::vector<int> swallowed;
   for (int z = 0; z < kSlot; ++z)
     for (int y = 0; y < kSlot; ++y) {
       blur_line(along_y.data() + (z * kSlot + y) * kSlot, kSlot * kSlot, sum.data(), kSlot);
-      std::uint8_t* out = field.data() + (z * kSlot + y) * kSlot;
+      const int row = (z * kSlot + y) * kSlot;
       const std::uint8_t* in = member.data() + ((z + kReach) * kRead + y + kReach) * kRead + kReach;
       for (int x = 0; x < kSlot; ++x) {
         const int value = (sum[x] * 255 + 2048) >> 12;
-        out[x] = static_cast<std::uint8_t>(value < kFirstFieldValue ? 0 : in[x] && value < kSwallowed ? kRaised : value);
+        field[static_cast<size_t>(row + x)] = static_cast<std::uint8_t>(value < kFirstFieldValue ? 0 : value);
+        if (in[x] && value < kSwallowed) swallowed.push_back(row + x);
       }
     }
+
+  // A bump on something thick may go; what stands alone must stay.
+  const auto stands_alone = [&](int at) {
+    for (const int step : {1, kSlot, kSlot * kSlot})
+      for (const int next : {at - step, at + step})
+        if (next >= 0 && next < static_cast<int>(kSlotTexels) && field[static_cast<size_t>(next)] >= kHalf) return false;
+    return true;
+  };
+  std::erase_if(swallowed, [&](int at) { return !stands_alone(at); });
+  for (const int at : swallowed) field[static_cast<size_t>(at)] = kRaised;
 }
 
 // What a brick of a slot holds.

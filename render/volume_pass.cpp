@@ -46,7 +46,7 @@ layout(location = 0) out float out_depth;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out uint out_label;
 
-#define TAP 0.8
+uniform float u_tap;               // voxels; of either sign, which mirrors the tetrahedron
 uniform vec3 u_label_shift;
 
 const float kBand = 96.0 / 255.0;           // from here on the surface may be near
@@ -134,7 +134,7 @@ void main() {
 
   // Differences along the four corners of a tetrahedron.
   vec3 at = p + vec3(slot.offset);
-  const vec3 a = vec3(1, -1, -1) * TAP, b = vec3(-1, -1, 1) * TAP, c = vec3(-1, 1, -1) * TAP, e = vec3(TAP);
+  vec3 a = vec3(1, -1, -1) * u_tap, b = vec3(-1, -1, 1) * u_tap, c = vec3(-1, 1, -1) * u_tap, e = vec3(u_tap);
   vec3 gradient = a * field_at(slot.atlas, at + a) + b * field_at(slot.atlas, at + b) + c * field_at(slot.atlas, at + c) + e * field_at(slot.atlas, at + e);
   vec3 steepness = abs(gradient);
   float steepest = max(max(steepness.x, steepness.y), steepness.z);
@@ -143,17 +143,17 @@ void main() {
 
   // The first label of the set, from a little outside the surface inward: first through air, then through hidden tissue.
   vec3 step = (cap ? d : inward) * 0.5;
-  vec3 inside = at + u_label_shift + (cap ? step * 0.02 : inward * -0.75);
+  vec3 inside = at + u_label_shift + (cap ? step * 0.02 : inward * -1.4);
   uint label = label_at(slot.atlas, ivec3(inside));
   int steps = 0;
-  while (label == 0u && steps < 6) {
+  while (label == 0u && steps < 8) {
     inside += step;
     ++steps;
     label = label_at(slot.atlas, ivec3(inside));
   }
   while ((texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & 7u) <= u_layer) {
     inside += step;
-    if (++steps > 6) { label = 0u; break; }
+    if (++steps > 8) { label = 0u; break; }
     label = label_at(slot.atlas, ivec3(inside));
   }
 
@@ -162,6 +162,8 @@ void main() {
   out_label = label;
 }
 )";
+
+constexpr float kTap = 1.4f;  // voxels: smooths the steps of voxels without leaving the apron
 
 std::string march_source(int atlases) {
   const auto define = [](const char* name, int value) { return "#define " + std::string(name) + " " + std::to_string(value) + "\n"; };
@@ -288,6 +290,7 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   march_.set_texture("u_range", unit++, GL_TEXTURE_2D, buffer.range.name());
   march_.set("u_nearest", eye_inside(field, rays) ? static_cast<float>(rays.nearest) : -kNothingDepth);
   march_.set("u_label_shift", rays.label_shift);
+  march_.set("u_tap", rays.mirrored_taps ? -kTap : kTap);
   march_.set_texture("u_looks", unit++, GL_TEXTURE_2D, looks.name());
   march_.set("u_layer", static_cast<unsigned>(layer));
   set_rays(march_, rays);
