@@ -29,7 +29,10 @@ void run_chord(Editor& editor, const Chord& chord) {
 void on_key(Editor& editor, const KeyChanged& event) {
   if (!event.down || event.key >= Key::Ctrl) return;
   if (event.key == Key::Escape) {
-    if (editor.drag) {
+    if (editor.views->preview_visibility || editor.views->preview_tissues) {
+      editor.views->preview_visibility.reset();
+      editor.views->preview_tissues.reset();
+    } else if (editor.drag) {
       if (editor.drag->cancelled) editor.drag->cancelled(editor);
       editor.drag.reset();
     } else if (!editor.messages.errors.empty()) {
@@ -50,10 +53,19 @@ void on_key(Editor& editor, const KeyChanged& event) {
   run_chord(editor, chord);
 }
 
+// Buttons, handles and bars in the views take the left button for themselves.
+bool over_widget(const Editor& editor) {
+  const auto& widgets = editor.widgets.widgets();
+  return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
+    return widget.region == Region::Views && !widget.name.ends_with("/view") && widget.rect.contains(editor.input.pointer);
+  });
+}
+
 // A press that may become a drag.
 void on_press(Editor& editor, MouseButton button) {
   const ViewPlace* view = hovered_view(editor);
   if (!view || editor.drag || dialog_open(editor)) return;
+  if (button == MouseButton::Left && over_widget(editor)) return;
   editor.views->active = view->id;
   const Modifiers modifiers = editor.input.modifiers();
   const Chord press{Chord::Kind::Press, modifiers, Key::None, button}, drag{Chord::Kind::Drag, modifiers, Key::None, button};

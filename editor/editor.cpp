@@ -21,7 +21,7 @@ constexpr double kLongestRest = 60;   // s; only so that a wait ends at all
 constexpr double kJobPulse = 0.1;     // s between frames while a job runs
 constexpr int kJobsAtOnce = 2;
 
-void draw_view_picture(Views& views, const ViewPlace& place, double now) {
+void draw_view_picture(Views& views, const Document& document, const ViewPlace& place, double now) {
   const glm::ivec2 size(place.rect.size());
   if (size.x < 1 || size.y < 1) return;
   if (place.id == ViewId::Body) {
@@ -29,6 +29,7 @@ void draw_view_picture(Views& views, const ViewPlace& place, double now) {
     return;
   }
   SliceState& slice = slice_of(views, place.id);
+  if (!slice.fitted) fit(slice, tissue_box(views, document, std::nullopt), place.rect.size());
   const glm::dvec3 normal = render::frame_of(slice.camera.axis).normal;
   slice.camera.centre += normal * glm::dot(views.cross_hair - slice.camera.centre, normal);
   slice.picture->draw(views.scene, slice.camera, views.slice_display, size);
@@ -124,7 +125,7 @@ void Editor::take_input() {
 void Editor::draw_views() {
   update_scene(*views, document(), selection, preferences.theme == "dark");
   move_camera(views->body, now, preferences.reduce_motion);
-  for (const ViewPlace& place : layout.view_places) draw_view_picture(*views, place, now);
+  for (const ViewPlace& place : layout.view_places) draw_view_picture(*views, document(), place, now);
   hover_views(*this);
 }
 

@@ -22,7 +22,7 @@ inline constexpr char kVisible[] = "\uf06e", kHidden[] = "\uf070", kOneView[] = 
                       kSpace[] = "\uf0ac";
 
 // Tools
-inline constexpr char kSelect[] = "\uf245", kMove[] = "\uf047", kRotate[] = "\uf01e", kScale[] = "\uf0b2", kPick[] = "\uf1fb",
+inline constexpr char kSelect[] = "\uf245", kMove[] = "\uf047", kRotate[] = "\uf01e", kScale[] = "\uf0b2", kPick[] = "\uf1fb", kCut[] = "\uf0c4",
                       kMirror[] = "\uf0ec", kLinkViews[] = "\uf0c1";
 
 // States

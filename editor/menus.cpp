@@ -35,8 +35,12 @@ void draw_entries(Editor& editor, Entry begin, Entry end) {
       if (!submenu) operator_menu_item(editor, *entry);
       else {
         const std::string title = entry->substr(2);
-        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + editor.look.px(34));
+        // As high as the other rows: 22 and the spacing.
+        const float above = std::round((editor.look.px(22) - ImGui::GetFontSize()) / 2), spacing = ImGui::GetStyle().ItemSpacing.y;
+        ImGui::SetCursorPos({ImGui::GetCursorPosX() + editor.look.px(34), ImGui::GetCursorPosY() + above});
+        ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ImGui::GetStyle().ItemSpacing.x, editor.look.px(22) - ImGui::GetFontSize() - above + spacing));
         const bool open = ImGui::BeginMenu(title.c_str());
+        ImGui::PopStyleVar();
         if (!open) register_widget(editor, title, {from_im(ImGui::GetItemRectMin()), from_im(ImGui::GetItemRectMax())});
         if (open) {
           push_path(editor, title);

@@ -36,13 +36,6 @@ void tell_of_ended(Editor& editor, const JobStatus& job) {
   if (job.state == JobState::Cancelled) editor.messages.info(job.label, "cancelled");
 }
 
-double fitting_scale(const Box& box, const render::SliceFrame& frame, const glm::vec2& view) {
-  const glm::dvec3 size = box.high - box.low;
-  const glm::dvec2 millimetres{glm::dot(glm::abs(frame.right), size), glm::dot(glm::abs(frame.down), size)};
-  const glm::dvec2 pixels = glm::max(glm::dvec2(view) * 0.86, 1.0);
-  return std::max({millimetres.x / pixels.x, millimetres.y / pixels.y, 1e-4});
-}
-
 }  // namespace
 
 float scale_for(const Preferences& preferences, const Host& host) {
@@ -94,11 +87,10 @@ void frame_all(Editor& editor, bool animated) {
   const render::Camera framed = render::framing(views.body.camera, box.low, box.high, aspect);
   if (animated && !editor.preferences.reduce_motion) views.body.move = CameraMove{views.body.camera, framed, editor.now};
   else views.body.camera = framed;
-  if (!animated) views.cross_hair = (box.low + box.high) * 0.5;
+  if (!animated) views.cross_hair = middle_of_body(editor.document(), box);
   for (SliceState& slice : views.slices) {
-    const Rect* shown = editor.layout.place_of(view_of(slice.camera.axis));
-    slice.camera.centre = (box.low + box.high) * 0.5;
-    slice.camera.millimetres_per_pixel = fitting_scale(box, render::frame_of(slice.camera.axis), shown ? shown->size() : glm::vec2(400));
+    slice.fitted = false;
+    if (const Rect* shown = editor.layout.place_of(view_of(slice.camera.axis))) fit(slice, box, shown->size());
   }
   editor.touch();
 }

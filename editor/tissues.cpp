@@ -32,7 +32,22 @@ TissueLook look_of(const Document& document, Label label) {
 }
 
 void set_look(Editor& editor, const std::string& label, Label tissue, const TissueLook& look) {
+  editor.views->preview_visibility.reset();
   commit_looks(editor, label, [&](auto& looks) { looks[tissue] = look; });
+}
+
+void preview_look(Editor& editor, Label tissue, const TissueLook& look) {
+  Visibility visibility = editor.document().visibility ? *editor.document().visibility : Visibility{};
+  visibility.looks[tissue] = look;
+  editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(visibility));
+  editor.touch();
+}
+
+void preview_tissue(Editor& editor, const Tissue& tissue) {
+  TissueTable table = *editor.document().tissues;
+  if (Tissue* place = table.find(tissue.label)) *place = tissue;
+  editor.views->preview_tissues = std::make_shared<const TissueTable>(std::move(table));
+  editor.touch();
 }
 
 void show_tissues(Editor& editor, const std::set<Label>& tissues, bool visible) {
@@ -58,6 +73,7 @@ void reveal_tissues(Editor& editor) {
 }
 
 void set_tissue(Editor& editor, const std::string& what, const Tissue& tissue) {
+  editor.views->preview_tissues.reset();
   TissueTable table = *editor.document().tissues;
   Tissue* place = table.find(tissue.label);
   if (!place) return;

@@ -10,6 +10,9 @@ namespace limber::editor {
 
 TissueLook look_of(const Document& document, Label label);
 void set_look(Editor& editor, const std::string& label, Label tissue, const TissueLook& look);
+// The same, shown but not yet an edit; set_look() or Escape ends it.
+void preview_look(Editor& editor, Label tissue, const TissueLook& look);
+void preview_tissue(Editor& editor, const Tissue& tissue);
 void show_tissues(Editor& editor, const std::set<Label>& tissues, bool visible);
 void solo_tissues(Editor& editor, const std::set<Label>& tissues);  // a second time: shows all again
 void reveal_tissues(Editor& editor);

@@ -58,19 +58,18 @@ std::string name_of(ViewId id) {
 
 void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme) {
   render::Scene& scene = views.scene;
+  const auto tissues = views.preview_tissues ? views.preview_tissues : document.tissues;
+  const auto visibility = views.preview_visibility ? views.preview_visibility : document.visibility;
   scene.volume = document.volume;
-  if (!scene.looks || views.looks_of_tissues != document.tissues || views.looks_of_visibility != document.visibility) {
-    scene.looks = std::make_shared<const render::LabelLooks>(
-        document.tissues ? render::looks_of(*document.tissues, document.visibility ? *document.visibility : Visibility{}) : render::LabelLooks{});
-    views.looks_of_tissues = document.tissues;
-    views.looks_of_visibility = document.visibility;
+  if (!scene.looks || views.looks_of_tissues != tissues || views.looks_of_visibility != visibility) {
+    scene.looks = std::make_shared<const render::LabelLooks>(tissues ? render::looks_of(*tissues, visibility ? *visibility : Visibility{}) : render::LabelLooks{});
+    views.looks_of_tissues = tissues;
+    views.looks_of_visibility = visibility;
   }
   scene.display = views.display;
   scene.clip = {};
-  if (const auto& shown = document.visibility) {
-    if (shown->clip_box.enabled) scene.clip.box = {shown->clip_box.low, shown->clip_box.high};
-    if (shown->clip_plane.enabled) scene.clip.plane = {shown->clip_plane.point, shown->clip_plane.normal};
-  }
+  if (visibility && visibility->clip_box.enabled) scene.clip.box = {visibility->clip_box.low, visibility->clip_box.high};
+  if (visibility && visibility->clip_plane.enabled) scene.clip.plane = {visibility->clip_plane.point, visibility->clip_plane.normal};
   scene.outlined = selection.tissue;
   scene.armature = document.armature;
   scene.bones_in_front = views.display == render::Display::XRay;
@@ -97,6 +96,33 @@ Box tissue_box(Views& views, const Document& document, std::optional<Label> tiss
       if (!document.visibility || !document.visibility->looks.contains(t.label) || document.visibility->looks.at(t.label).visible) box.add(views.extents->boxes[t.label]);
   if (box.empty()) return world_box(document);
   return box_of_voxels(document.volume->grid, glm::dvec3(box.low) - 0.5, glm::dvec3(box.high) + 0.5);
+}
+
+void fit(SliceState& slice, const Box& box, const glm::vec2& size) {
+  constexpr double kShare = 0.86;  // of the picture that the body fills
+  const render::SliceFrame frame = render::frame_of(slice.camera.axis);
+  const glm::dvec3 extent = box.high - box.low;
+  const glm::dvec2 millimetres{glm::dot(glm::abs(frame.right), extent), glm::dot(glm::abs(frame.down), extent)};
+  const glm::dvec2 pixels = glm::max(glm::dvec2(size) * kShare, 1.0);
+  slice.camera.centre = (box.low + box.high) * 0.5;
+  slice.camera.millimetres_per_pixel = std::max({millimetres.x / pixels.x, millimetres.y / pixels.y, 1e-4});
+  slice.fitted = true;
+}
+
+glm::dvec3 middle_of_body(const Document& document, const Box& box) {
+  const glm::dvec3 middle = (box.low + box.high) * 0.5;
+  if (!document.volume) return middle;
+  const LabelVolume& volume = *document.volume;
+  const int z = static_cast<int>(std::lround(glm::clamp((voxel_from_world(volume.grid) * middle).z, 0.0, volume.grid.size.z - 1.0)));
+  glm::dvec2 sum(0);
+  std::int64_t count = 0;
+  for (int y = 0; y < volume.grid.size.y; ++y)
+    for (int x = 0; x < volume.grid.size.x; ++x)
+      if (volume.at({x, y, z}) != 0) {
+        sum += glm::dvec2(x, y);
+        ++count;
+      }
+  return count == 0 ? middle : world_from_voxel(volume.grid) * glm::dvec3(glm::round(sum / static_cast<double>(count)), z);
 }
 
 glm::dvec3 world_of(const render::SliceCamera& camera, const glm::vec2& pixel, const glm::vec2& size) {

@@ -31,6 +31,7 @@ struct BodyView {
 
 struct SliceState {
   render::SliceCamera camera;
+  bool fitted = false;  // to the body, which waits until the slice is shown and has a size
   std::unique_ptr<render::SliceView> picture;
 };
 
@@ -67,6 +68,10 @@ struct Views {
   Hover hover;
 
   std::shared_ptr<const Extents> extents;  // of the document's volume
+  // What is shown instead of the document's while the user drags; dropped or committed at the end.
+  std::shared_ptr<const Visibility> preview_visibility;
+  std::shared_ptr<const TissueTable> preview_tissues;
+  glm::vec2 handle_from{0};  // where the pointer pressed the handle that is dragged
   render::Scene scene;  // of the last frame
   std::shared_ptr<const TissueTable> looks_of_tissues;
   std::shared_ptr<const Visibility> looks_of_visibility;
@@ -87,6 +92,11 @@ struct Box {
 Box world_box(const Document& document);
 // The same around one tissue, or around all that are visible.
 Box tissue_box(Views& views, const Document& document, std::optional<Label> tissue);
+
+// The slice's camera sees that box, `size` pixels large.
+void fit(SliceState& slice, const Box& box, const glm::vec2& size);
+// A point inside the body near the middle of that box: the middle of what its axial slice there holds.
+glm::dvec3 middle_of_body(const Document& document, const Box& box);
 
 // The slice picture of `camera`, `size` pixels large, as points of the world and back.
 glm::dvec3 world_of(const render::SliceCamera& camera, const glm::vec2& pixel, const glm::vec2& size);

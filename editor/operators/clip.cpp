@@ -59,7 +59,7 @@ void reset_clips(Editor& editor) {
 std::vector<Operator> clip_operators() {
   return {
       {"view.clip_box", "Clip box", icon::kClip, "View", "Cuts the volume open by a box; drag the squares on its faces.", toggle_box, needs_volume, box_on},
-      {"view.clip_plane", "Clip plane", icon::kClip, "View", "Cuts the volume open at the cross-hair, across the line of sight.", toggle_plane, needs_volume, plane_on},
+      {"view.clip_plane", "Clip plane", icon::kCut, "View", "Cuts the volume open at the cross-hair, across the line of sight.", toggle_plane, needs_volume, plane_on},
       {"view.reset_clipping", "Reset clipping", "", "View", "Shows the whole volume again.", reset_clips,
        [](const Editor& e) { return box_on(e) || plane_on(e) ? std::string() : std::string("Nothing is clipped"); }},
   };

@@ -27,12 +27,19 @@ std::string needs_chosen(const Editor& editor) {
   return chosen(editor).empty() ? "Choose a tissue, or point at one" : "";
 }
 
+// Only the chosen tissues, filling the view; once more: all again.
+void isolate(Editor& editor) {
+  solo_tissues(editor, chosen(editor));
+  run(editor, any_hidden(editor) ? "view.frame_selected" : "view.frame_all");
+}
+
 }  // namespace
 
 std::vector<Operator> tissue_operators() {
   return {
       {"view.hide", "Hide", icon::kHidden, "View", "Hides the chosen tissues.", [](Editor& e) { show_tissues(e, chosen(e), false); }, needs_chosen},
       {"view.isolate_selected", "Show only", icon::kVisible, "View", "Hides every tissue but the chosen ones.", [](Editor& e) { solo_tissues(e, chosen(e)); }, needs_chosen},
+      {"view.isolate", "Isolate", icon::kVisible, "View", "Shows only the chosen tissues and brings them to fill the view, or brings all back.", isolate, needs_tissue},
       {"view.reveal", "Reveal all", icon::kVisible, "View", "Shows every hidden tissue again.", [](Editor& e) { reveal_tissues(e); },
        [](const Editor& e) { return any_hidden(e) ? std::string() : std::string("Nothing is hidden"); }},
   };

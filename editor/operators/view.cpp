@@ -3,6 +3,7 @@
 #include "editor/dispatch.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
+#include "editor/tissues.h"
 
 namespace limber::editor {
 
@@ -34,6 +35,13 @@ void maximize(Editor& editor) {
   maximized = view ? view->id : editor.views->active;
 }
 
+// What is under the pointer becomes what the menu's commands work on.
+void open_context_menu(Editor& editor) {
+  const Hover& hover = editor.views->hover;
+  if (hover.inside && !editor.selection.tissues.contains(hover.label)) select_tissue(editor, hover.label, false);
+  editor.open_context_menu = true;
+}
+
 void toggle_xray(Editor& editor) {
   editor.views->display = editor.views->display == render::Display::XRay ? render::Display::Solid : render::Display::XRay;
 }
@@ -63,7 +71,7 @@ std::vector<Operator> view_operators() {
        [](Editor& e) { e.arrangement().tool_strip = !e.arrangement().tool_strip; }, nullptr, [](const Editor& e) { return e.arrangement().tool_strip; }},
       {"view.console", "Console", icon::kConsole, "Help", "Opens or closes the list of messages below the views.",
        [](Editor& e) { e.arrangement().console = !e.arrangement().console; }, nullptr, [](const Editor& e) { return e.arrangement().console; }},
-      {"view.context_menu", "Menu", "", "View", "Lists what can be done with what is under the pointer.", [](Editor& e) { e.open_context_menu = true; }},
+      {"view.context_menu", "Menu", "", "View", "Lists what can be done with what is under the pointer.", open_context_menu},
       {"view.full_screen", "Full screen", icon::kExpand, "View", "The window fills the screen, or shrinks back.", [](Editor& e) { e.host.toggle_full_screen(); }},
   };
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "editor/clip_handles.h"
 #include "editor/panels/panels.h"
 
 namespace limber::editor {
@@ -82,6 +83,7 @@ void draw_body_overlay(Editor& editor, const Rect& rect) {
   draw_view_title(editor, rect, title, state_of(editor));
   draw_axis_ball(editor, rect);
   if (!editor.document().volume) return draw_empty_view(editor, rect);
+  draw_clip_handles(editor, rect);
   const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
   draw_scale_bar(editor, rect, visible_height / rect.height());
 }

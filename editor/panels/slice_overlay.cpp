@@ -82,7 +82,8 @@ void draw_slice_overlay(Editor& editor, ViewId id, const Rect& rect) {
   const render::SliceCamera& camera = slice_of(*editor.views, id).camera;
   const render::SliceFrame frame = render::frame_of(camera.axis);
   if (!editor.document().volume) return draw_view_title(editor, rect, name_of(id), "");
-  const Grid& grid = editor.document().volume->grid;
+  const auto volume = editor.document().volume;
+  const Grid& grid = volume->grid;
   const int axis = grid_axis_of(grid, frame.normal);
   const int slice = static_cast<int>(std::lround((voxel_from_world(grid) * editor.views->cross_hair)[axis]));
   draw_cross_hair(editor, camera, frame, rect);

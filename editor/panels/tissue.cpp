@@ -31,7 +31,10 @@ void draw_opacity(Editor& editor, Column& column, const Tissue& tissue) {
   auto& edited = editor.edited_number;
   double percent = edited.name == "Opacity" ? edited.value : shown.opacity * 100.0;
   bool committed = false;
-  if (number_field(editor, "Opacity", rect, percent, 0, 100, "%.0f", "%", true, committed)) edited = {"Opacity", percent};
+  if (number_field(editor, "Opacity", rect, percent, 0, 100, "%.0f", "%", true, committed)) {
+    edited = {"Opacity", percent};
+    preview_look(editor, tissue.label, {shown.visible, static_cast<float>(percent / 100)});
+  }
   if (!committed || edited.name != "Opacity") return;
   const auto opacity = static_cast<float>(edited.value / 100);
   edited = {};
@@ -50,7 +53,12 @@ void draw_colour(Editor& editor, Column& column, const Tissue& tissue) {
   put_text(editor, look.fonts.mono, look.theme.text2, Rect{{swatch.high.x, rect.low.y}, rect.high}, hex, Align::Right);
   if (ImGui::BeginPopup("colour")) {
     float picked[3] = {colour.r, colour.g, colour.b};
-    if (ImGui::ColorPicker3("##picker", picked, ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoSmallPreview)) editor.edited_colour = {picked[0], picked[1], picked[2]};
+    if (ImGui::ColorPicker3("##picker", picked, ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoSmallPreview)) {
+      Tissue next = tissue;
+      next.colour = {picked[0], picked[1], picked[2]};
+      editor.edited_colour = next.colour;
+      preview_tissue(editor, next);
+    }
     ImGui::EndPopup();
   } else if (editor.edited_colour) {
     Tissue next = tissue;

@@ -30,13 +30,15 @@ void draw_eye(Editor& editor, const Rect& rect, const Tissue& tissue, const Tiss
 void draw_opacity(Editor& editor, const Rect& rect, const Tissue& tissue, const TissueLook& shown) {
   const Look& look = editor.look;
   const Pressed pressed = press_area(editor, "opacity", rect);
+  const bool released = ImGui::IsItemDeactivated();
   const Rect bar{{rect.low.x, rect.centre().y - look.px(3)}, {rect.high.x, rect.centre().y + look.px(3)}};
   const float share = std::clamp((editor.input.pointer.x - bar.low.x) / bar.width(), 0.0f, 1.0f);
   const float value = pressed.held ? share : shown.opacity;
   fill(bar, look.theme.field, look.px(3));
   fill({bar.low, {bar.low.x + bar.width() * value, bar.high.y}}, look.theme.text3, look.px(3));
   if (pressed.hovered) tooltip(editor, rect, "Opacity", std::to_string(static_cast<int>(value * 100 + 0.5f)) + " %, in the X-ray and tissue displays.");
-  if (ImGui::IsItemDeactivated() && share != shown.opacity) set_look(editor, "Opacity of " + tissue.name, tissue.label, {shown.visible, share});
+  if (pressed.held) preview_look(editor, tissue.label, {shown.visible, share});
+  if (released && editor.views->preview_visibility) set_look(editor, "Opacity of " + tissue.name, tissue.label, {shown.visible, share});
 }
 
 void draw_row(Editor& editor, Column& column, int index, const Tissue& tissue) {
@@ -66,19 +68,19 @@ void draw_row(Editor& editor, Column& column, int index, const Tissue& tissue) {
 
 void draw_tissues(Editor& editor, Column& column) {
   const Look& look = editor.look;
-  const Document& document = editor.document();
-  const std::string count = document.tissues ? std::to_string(document.tissues->tissues.size()) : "";
+  const auto tissues = editor.document().tissues;  // kept, since a row may commit
+  const std::string count = tissues ? std::to_string(tissues->tissues.size()) : "";
   if (column.begin_section("Tissues", count)) {
-    if (!document.tissues) {
+    if (!tissues) {
       const Rect rect = column.row(30);
       put_text(editor, look.fonts.regular, look.theme.text2, Rect{{rect.low.x + look.px(14), rect.low.y}, rect.high}, "Open a volume to see its tissues");
     } else {
-      if (document.tissues->tissues.size() > 16) {
+      if (tissues->tissues.size() > 16) {
         const Rect rect = column.row(32);
         text_field(editor, "search", {rect.low + glm::vec2(look.px(10), look.px(4)), rect.high - glm::vec2(look.px(10), look.px(4))}, editor.tissue_search, "Search tissues");
       }
       int index = 0;
-      for (const Tissue& tissue : document.tissues->tissues)
+      for (const Tissue& tissue : tissues->tissues)
         if (contains_ignoring_case(tissue.name, editor.tissue_search) || std::to_string(tissue.label) == editor.tissue_search) draw_row(editor, column, index++, tissue);
       if (index == 0 && empty_state(editor, column.row(72), "No tissue named '" + editor.tissue_search + "'", "Clear search")) editor.tissue_search.clear();
     }

@@ -48,9 +48,26 @@ class Header {
     right_ = x_;
     segments({"view.one", "view.split", "view.four"});
   }
+  // What did not fit goes behind "...", left of the layout buttons.
+  void more() {
+    if (dropped_.empty()) return;
+    const float height = px(26), y = std::round(bar_.centre().y - height / 2);
+    if (button(editor_, "More", {{x_, y}, {x_ + px(30), y + height}}, {icon::kMore})) ImGui::OpenPopup("more");
+    if (!ImGui::BeginPopup("more", ImGuiWindowFlags_NoMove)) return;
+    editor_.place.region = Region::Popup;
+    push_path(editor_, "more");
+    for (const std::string& id : dropped_) operator_menu_item(editor_, id);
+    pop_path(editor_);
+    editor_.place.region = Region::ToolHeader;
+    ImGui::EndPopup();
+  }
+  // Whether a group of that width fits; if not, its operators go behind "...".
+  bool fits(float width, std::initializer_list<const char*> ids) {
+    if (dropped_.empty() && x_ + px(width) < right_ - px(44)) return true;
+    dropped_.insert(dropped_.end(), ids.begin(), ids.end());
+    return false;
+  }
   void to_left() { x_ = bar_.low.x + px(8); }
-  // Whether as much still fits before the layout buttons.
-  bool room(float width) const { return x_ + px(width) < right_ - px(12); }
 
  private:
   float px(float size) const { return editor_.look.px(size); }
@@ -68,6 +85,7 @@ class Header {
   Editor& editor_;
   Rect bar_;
   float x_, right_ = 1e9f;
+  std::vector<std::string> dropped_;
 };
 
 }  // namespace
@@ -83,13 +101,16 @@ void draw_tool_header(Editor& editor) {
   header.to_left();
   header.segments({"view.solid", "view.xray_display", "view.tissue"});
   header.line();
-  if (editor.layout.view_places.size() > 1 && header.room(240)) {
-    header.label("Slices");
-    header.segments({"slice.show_labels", "slice.show_outlines"});
-    if (header.room(140)) header.toggle("view.cross_hair");
+  if (editor.layout.view_places.size() > 1) {
+    if (header.fits(210, {"slice.show_labels", "slice.show_outlines"})) {
+      header.label("Slices");
+      header.segments({"slice.show_labels", "slice.show_outlines"});
+    }
+    if (header.fits(100, {"view.cross_hair"})) header.toggle("view.cross_hair");
   }
   for (const char* id : {"view.clip_box", "view.clip_plane"})
-    if (header.room(130)) header.toggle(id);
+    if (header.fits(editor.layout.short_labels ? 36 : 120, {id})) header.toggle(id);
+  header.more();
   end_region(editor);
 }
 

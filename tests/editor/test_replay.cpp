@@ -163,7 +163,6 @@ TEST_CASE("replay: what the pointer is over is named, in the body and in slices"
   CHECK(test.editor->views->hover.label == 143);
   test.play("click view.four\n wait-idle\n move Axial/view");
   CHECK(test.editor->views->hover.label == 111);
-  test.play("click \"3D view/view\" Alt\n expect tissue 143");
 }
 
 TEST_CASE("replay: clip box and clip plane are edits like any other") {
@@ -301,4 +300,80 @@ TEST_CASE("script: a wrong line is named") {
   CHECK_THROWS_WITH_AS(test.play("key Ctrl+1\nclick Nowhere"), doctest::Contains("line 2"), Error);
   CHECK_THROWS_WITH_AS(test.play("expect workspace skin"), doctest::Contains("it is 'rig'"), Error);
   CHECK_THROWS_WITH_AS(test.play("type \"no end"), doctest::Contains("line 1"), Error);
+}
+
+TEST_CASE("replay: a face of the clip box follows its handle, shown while dragged, one edit at the end") {
+  SmallEditor test;
+  test.play("key Num1\n wait 0.3\n key Alt+B\n wait-idle");
+  const auto box = [&] { return test.editor->document().visibility->clip_box; };
+  const ClipBox before = box();
+  REQUIRE(test.editor->widgets.find("Clip face z+"));
+  const int steps = static_cast<int>(test.editor->history.steps().size());
+  test.play("press \"Clip face z+\"");
+  const glm::vec2 at = test.editor->input.pointer;
+  for (int i = 1; i <= 5; ++i) {
+    test.host->events.push(editor::PointerMoved{at + glm::vec2(0, 12.0f * i)});
+    test.player.settle();
+  }
+  CHECK(box() == before);  // not yet an edit
+  REQUIRE(test.editor->views->preview_visibility);
+  CHECK(test.editor->views->preview_visibility->clip_box.high.z < before.high.z);
+  test.play("release\n expect edit \"Move clip box\"");
+  CHECK(box().high.z < before.high.z);
+  CHECK(box().low == before.low);
+  CHECK(test.editor->history.steps().size() == steps + 1u);
+  // The face is where the pointer is, to a voxel.
+  glm::dvec2 pixel;
+  const AffineTransform world = world_from_voxel(test.editor->document().volume->grid);
+  glm::dvec3 face = (box().low + box().high) * 0.5;
+  face.z = box().high.z;
+  REQUIRE(render::project(test.editor->views->body.camera, world * face, glm::ivec2(test.editor->layout.views.size()), pixel));
+  CHECK(std::abs(pixel.y + test.editor->layout.views.low.y - (at.y + 60)) < 10);
+  test.play("key Ctrl+Z");
+  CHECK(box() == before);
+  test.play("press \"Clip face z+\"");
+  test.host->events.push(editor::PointerMoved{at + glm::vec2(0, 60)});
+  test.play("key Escape\n release");
+  CHECK(box() == before);
+}
+
+TEST_CASE("replay: a handle or button in a view keeps the press to itself") {
+  SmallEditor test;
+  test.play("wait-idle\n click \"axis S\"\n wait 0.3\n expect view Top\n expect selected 0");
+}
+
+TEST_CASE("replay: opacity is dragged live and is one edit") {
+  SmallEditor test({1280, 720});
+  test.play("drag Muscle/17/opacity -15 0\n expect edit \"Opacity of Muscle\"\n expect history 2");
+  CHECK(test.editor->document().visibility->looks.at(17).opacity < 0.5f);
+  CHECK_FALSE(test.editor->views->preview_visibility);
+}
+
+TEST_CASE("replay: the right button chooses what it lists commands for") {
+  SmallEditor test({1280, 720});
+  test.play("wait-idle\n right-click \"3D view/view\"\n expect tissue 143\n expect \"widget:context/Hide\"\n click context/Hide\n expect hidden 1\n expect edit \"Hide Skin\"");
+}
+
+TEST_CASE("replay: Alt and a click choose, and list what lies behind") {
+  SmallEditor test({1280, 720});
+  test.play("wait-idle\n click \"3D view/view\" Alt\n expect tissue 143\n expect \"widget:pick/Muscle\"\n click pick/Muscle\n expect tissue 17");
+}
+
+TEST_CASE("replay: what does not fit the header goes behind three dots") {
+  SmallEditor test({1200, 640});
+  test.play("click view.four\n drag \"splitter sidebar/grip\" -240 0\n expect \"widget:header/More\"\n click header/More\n click \"more/Clip plane\"\n expect clip-plane yes");
+}
+
+TEST_CASE("replay: the cross-hair starts inside the body, and slices show all of it whichever layout comes first") {
+  SmallEditor test({1280, 720});
+  const LabelVolume& volume = *test.editor->document().volume;
+  CHECK(volume.at(glm::ivec3(glm::round(voxel_from_world(volume.grid) * test.editor->views->cross_hair))) != 0);
+  test.play("click view.four");
+  for (const editor::ViewId id : {editor::ViewId::Axial, editor::ViewId::Coronal, editor::ViewId::Sagittal}) {
+    const glm::vec2 size = test.editor->layout.place_of(id)->size();
+    for (const double side : {-40.0, 40.0}) {
+      const glm::vec2 pixel = editor::pixel_of(editor::slice_of(*test.editor->views, id).camera, glm::dvec3(side), size);
+      CHECK(editor::Rect{{0, 0}, size}.contains(pixel));
+    }
+  }
 }

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The clip box and clip plane in the 3D view: edges, and squares that are dragged along their axis. While one is dragged
+// the picture follows a preview; the document changes once, when it is released.
+#pragma once
+
+#include "editor/editor.h"
+
+namespace limber::editor {
+
+// Into the current window, over the 3D view that fills `rect`.
+void draw_clip_handles(Editor& editor, const Rect& rect);
+
+// How far a point moves along `direction` (world, any length) when the pointer moves by `pixels`: multiples of it.
+// 0 where the direction points at the eye.
+double along(const render::Camera& camera, const glm::ivec2& size, const glm::dvec3& point, const glm::dvec3& direction, const glm::dvec2& pixels);
+
+}  // namespace limber::editor
