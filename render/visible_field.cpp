@@ -19,8 +19,7 @@ constexpr Format3D kField = {GL_R8, GL_RED, GL_UNSIGNED_BYTE, true};
 
 constexpr int kReach = 2;                        // voxels that two blurs carry
 constexpr int kRead = kSlot + 2 * kReach;        // voxels an axis that a slot's field depends on
-constexpr int kHalf = 128;                       // the body's surface
-constexpr int kSwallowed = 102, kRaised = 230;   // under 0.4 a voxel of the set would vanish; raised it keeps its size
+constexpr int kRaised = 230;                     // gives a voxel that would vanish its size back
 constexpr int kFarthest = kFirstFieldValue - 1;  // bricks that a texel can tell
 constexpr size_t kSlotTexels = size_t{kSlot} * kSlot * kSlot;
 
@@ -77,7 +76,7 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
       for (int x = 0; x < kSlot; ++x) {
         const int value = (sum[x] * 255 + 2048) >> 12;
         field[static_cast<size_t>(row + x)] = static_cast<std::uint8_t>(value < kFirstFieldValue ? 0 : value);
-        if (in[x] && value < kSwallowed) swallowed.push_back(row + x);
+        if (in[x] && value < kSurface) swallowed.push_back(row + x);
       }
     }
 
@@ -85,7 +84,7 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
   const auto stands_alone = [&](int at) {
     for (const int step : {1, kSlot, kSlot * kSlot})
       for (const int next : {at - step, at + step})
-        if (next >= 0 && next < static_cast<int>(kSlotTexels) && field[static_cast<size_t>(next)] >= kHalf) return false;
+        if (next >= 0 && next < static_cast<int>(kSlotTexels) && field[static_cast<size_t>(next)] >= kSurface) return false;
     return true;
   };
   std::erase_if(swallowed, [&](int at) { return !stands_alone(at); });
@@ -109,7 +108,7 @@ BrickFacts facts_of(const Slot& field, const glm::ivec3& brick) {
       most = std::max(most, inner);
       sum += row[0] + row[1] + row[2] + row[3];
     }
-  return {most > 0, most_around >= kHalf, static_cast<std::uint8_t>(sum / (kBrick * kBrick * kBrick))};
+  return {most > 0, most_around >= kSurface, static_cast<std::uint8_t>(sum / (kBrick * kBrick * kBrick))};
 }
 
 // Chebyshev distance to the nearest zero, in place, at most kFarthest: forward and backward over the 13 earlier neighbours.

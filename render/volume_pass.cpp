@@ -49,7 +49,8 @@ layout(location = 2) out uint out_label;
 uniform float u_tap;               // voxels; of either sign, which mirrors the tetrahedron
 uniform vec3 u_label_shift;
 
-const float kBand = 96.0 / 255.0;           // from here on the surface may be near
+const float kSurface = float(SURFACE) / 255.0;
+const float kBand = 72.0 / 255.0;           // from here on the surface may be near
 const float kFirstFieldValue = 7.5 / 255.0;
 
 struct Slot { ivec3 offset; uint atlas; };
@@ -112,10 +113,10 @@ void main() {
     s_before = s_near - 0.5;
     while (s_near < s_far) {
       after = field_at(slot.atlas, base + d * s_near + offset);
-      if (after >= 0.5) { found = s_near; break; }
+      if (after >= kSurface) { found = s_near; break; }
       before = after;
       s_before = s_near;
-      s_near += clamp((0.5 - after) * 3.0, 0.4, 0.7);
+      s_near += clamp((kSurface - after) * 3.0, 0.4, 0.7);
     }
     s = value >= kBand ? s_march + 1.5 : max(s_march, s_leave);
   }
@@ -128,7 +129,7 @@ void main() {
   }
   cap = cut && found == s_start;
   // The secant.
-  if (!cap) found = mix(max(s_before, s_start), found, clamp((0.5 - before) / max(after - before, 1e-3), 0.0, 1.0));
+  if (!cap) found = mix(max(s_before, s_start), found, clamp((kSurface - before) / max(after - before, 1e-3), 0.0, 1.0));
   vec3 p = base + d * found;
   Slot slot = slot_at(p);
 
@@ -167,7 +168,7 @@ constexpr float kTap = 1.4f;  // voxels: smooths the steps of voxels without lea
 
 std::string march_source(int atlases) {
   const auto define = [](const char* name, int value) { return "#define " + std::string(name) + " " + std::to_string(value) + "\n"; };
-  return define("SLOT", kSlot) + define("APRON", kApron) + define("BLOCK", kBlock) + define("BLOCK_SHIFT", 5) + define("BRICK", kBrick) +
+  return define("SURFACE", kSurface) + define("SLOT", kSlot) + define("APRON", kApron) + define("BLOCK", kBlock) + define("BLOCK_SHIFT", 5) + define("BRICK", kBrick) +
          kRayUniforms + atlas_functions(atlases) + kMarch;
 }
 static_assert(kBlock == 1 << 5);

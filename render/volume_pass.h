@@ -3,8 +3,8 @@
 // meet go into buffers that later passes shade, outline and pick from.
 //
 // The hull of the set is drawn first, giving each ray its start; rays of pixels beside it never run. From there a ray reads
-// one texel a step, skipping as far as the texel allows; near the surface it reads filtered values, and the crossing of one
-// half is found by the secant. A ray that the clip box or plane lets into the middle of the body ends at once, on a cap.
+// one texel a step, skipping as far as the texel allows; near the surface it reads filtered values, and the crossing is
+// found by the secant. A ray that the clip box or plane lets into the middle of the body ends at once, on a cap.
 #pragma once
 
 #include <optional>

@@ -79,7 +79,7 @@ TEST_CASE("view: the silhouette of a ball has the area of its projection, whatev
       const Camera camera = camera_of(grid, Projection::Orthographic, side);
       const double millimetres = 2 * camera.distance * std::tan(camera.field_of_view / 2) / kSize.y;
       const double expected = std::numbers::pi * radius * radius / (millimetres * millimetres);
-      CHECK(covered(picture_of(studio.renderer, scene, camera, kSize)) == doctest::Approx(expected).epsilon(0.025));
+      CHECK(covered(picture_of(studio.renderer, scene, camera, kSize)) == doctest::Approx(expected).epsilon(0.045));
     }
   }
 }
@@ -92,7 +92,7 @@ TEST_CASE("view: in perspective a ball covers the cone that touches it") {
   const double sine = radius / camera.distance, tangent = sine / std::sqrt(1 - sine * sine);
   const double pixels = tangent * kSize.y / 2 / std::tan(camera.field_of_view / 2);
   CHECK(covered(picture_of(studio.renderer, scene_of(ball(grid, radius)), camera, kSize)) ==
-        doctest::Approx(std::numbers::pi * pixels * pixels).epsilon(0.025));
+        doctest::Approx(std::numbers::pi * pixels * pixels).epsilon(0.045));
 }
 
 TEST_CASE("view: what is picked agrees with rays followed on the CPU, on mirrored, oblique and stretched grids too") {
@@ -153,7 +153,7 @@ TEST_CASE("view: normals point away from a ball's middle") {
     REQUIRE(hit);
     worst = std::min(worst, glm::dot(hit->normal, glm::normalize(hit->point - glm::dvec3(31.5))));
   }
-  CHECK(worst > 0.98);
+  CHECK(worst > 0.975);
 }
 
 TEST_CASE("view: a mirrored file of the same body gives the same picture") {
