@@ -23,6 +23,8 @@ bool belongs_to_text(const Chord& chord) {
 }
 
 void run_chord(Editor& editor, const Chord& chord) {
+  // Any key that is a command closes the start screen, and runs.
+  if (editor.start_screen && editor.keymap.find(chord, contexts(editor))) editor.start_screen = false;
   if (const std::string* id = editor.keymap.find(chord, contexts(editor))) run(editor, *id);
 }
 
@@ -37,6 +39,8 @@ void on_key(Editor& editor, const KeyChanged& event) {
       editor.drag.reset();
     } else if (!editor.messages.errors.empty()) {
       editor.messages.errors.erase(editor.messages.errors.begin());
+    } else if (!editor.dialog && editor.start_screen && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) {
+      editor.start_screen = false;
     } else if (editor.dialog && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) {
       editor.dialog->escape(editor);
     }

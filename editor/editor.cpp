@@ -10,6 +10,7 @@
 #include "editor/dispatch.h"
 #include "editor/panels/panels.h"
 #include "editor/project.h"
+#include "editor/sitting.h"
 #include "editor/tooltip.h"
 
 namespace limber::editor {
@@ -93,6 +94,7 @@ Editor::Editor(Host& host, const Preferences& preferences)
 Editor::~Editor() {
   write_preferences(*this);
   ImGui::SetCurrentContext(imgui);
+  pictures.clear();
   views.reset();
   ImGui_ImplOpenGL3_Shutdown();
   ImGui::DestroyContext(imgui);
@@ -142,6 +144,8 @@ void Editor::draw() {
   draw_status_bar(*this);
   draw_sidebar(*this);
   draw_splitters(*this);
+  draw_start_screen(*this);
+  draw_tour(*this);
   draw_toasts(*this);
   if (dialog && messages.errors.empty()) dialog->draw(*this);
   draw_error_message(*this);
@@ -169,9 +173,13 @@ void Editor::frame(double time) {
   take_input();
   open_waiting_files(*this);
   if (poll_jobs(*this)) touch();
+  std::erase_if(each_frame, [this](const auto& act) { return !act(*this); });
   layout = arrange(size, look.scale, arrangement());
   draw_views();
   draw();
+  follow_tour(*this);
+  keep_edits(*this);
+  keep_remembered(*this);
   if (next_dialog_) {
     dialog = std::move(*next_dialog_);
     next_dialog_.reset();

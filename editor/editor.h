@@ -13,6 +13,7 @@
 
 #include "core/project/history.h"
 #include "core/project/job.h"
+#include "editor/folders.h"
 #include "editor/host.h"
 #include "editor/keymap.h"
 #include "editor/layout.h"
@@ -20,6 +21,11 @@
 #include "editor/messages.h"
 #include "editor/operators/operator.h"
 #include "editor/preferences.h"
+#include "editor/pictures.h"
+#include "editor/project_life.h"
+#include "editor/remembered.h"
+#include "editor/task.h"
+#include "editor/tour.h"
 #include "editor/views.h"
 #include "editor/widget_registry.h"
 
@@ -49,6 +55,12 @@ class Dialog {
   virtual void escape(Editor& editor);    // closes it
   // A key that was pressed, before a text field sees it; true when the dialog took it.
   virtual bool key(Editor&, const Chord&) { return false; }
+};
+
+// What is known of a recent file.
+struct RecentFacts {
+  bool missing = false;
+  std::shared_ptr<const render::Image> picture;
 };
 
 // What a click can do to the left button in a view.
@@ -90,11 +102,24 @@ struct Editor {
   Jobs jobs;
   std::map<int, std::function<void(Editor&, const JobStatus&)>> after_job;  // what follows the end of a job, by id
   Path worker_program = "/proc/self/exe";                                  // what runs `limber job`
+  std::map<int, Task> tasks;  // jobs whose end the editor meets, by id
+  ProjectLife life;
+  std::vector<std::function<bool(Editor&)>> each_frame;  // called once a frame until they return false
   Path project_path;  // empty: never saved
   std::string name;   // of the project or of the volume opened last
   std::vector<Path> to_open;  // dropped on the window, or given on the command line
 
+  // Between sittings
+  Folders folders;  // empty ones: nothing is kept
+  Remembered remembered;
+  RememberedOnDisk remembered_on_disk;
+  std::map<Path, RecentFacts> recent_facts;
+  Pictures pictures;
+
   // The window
+  bool start_screen = false;
+  int start_row = 0;  // of its recent files
+  Tour tour;
   Workspace workspace = Workspace::Rig;
   std::array<Arrangement, 4> arrangements;
   Layout layout;

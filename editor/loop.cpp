@@ -5,6 +5,7 @@
 
 #include "editor/offscreen.h"
 #include "editor/recording.h"
+#include "editor/sitting.h"
 #include "editor/window.h"
 
 namespace limber::editor {
@@ -25,10 +26,18 @@ void play(const StartOptions& options) {
   const auto script = parse_script(read_file(options.script));
   const auto host = open_offscreen(options.size);
   Editor editor(*host, with_options({}, options));
-  editor.to_open = options.files;
+  begin_sitting(editor, user_folders(), options.files);
   Player player(editor, *host);
   player.step();
   player.play({{0, {"wait-job"}}});
+  // A script's edits are its own: only a script that is killed leaves them behind.
+  struct Ending {
+    Editor& editor;
+    ~Ending() {
+      if (editor.life.session) editor.life.session->discard();
+      end_sitting(editor);
+    }
+  } ending{editor};
   player.play(script, options.script.parent_path());
 }
 
@@ -38,7 +47,7 @@ void run_in_window(const StartOptions& options) {
   Editor editor(*host, with_options(read_preferences(preferences_path(), problem), options));
   editor.preferences_path = preferences_path();
   if (!problem.empty()) editor.messages.warn("Preferences could not be read", problem);
-  editor.to_open = options.files;
+  begin_sitting(editor, user_folders(), options.files);
   while (!editor.quit) {
     const bool minimized = host->size().x == 0 || host->size().y == 0;
     host->wait(minimized ? kMinimizedRest : editor.rest());
@@ -48,6 +57,7 @@ void run_in_window(const StartOptions& options) {
     }
     editor.frame(steady_seconds());
   }
+  end_sitting(editor);
 }
 
 }  // namespace

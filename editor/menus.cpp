@@ -59,9 +59,12 @@ void draw_entries(Editor& editor, Entry begin, Entry end) {
 std::vector<Menu> menus() {
   return {
       {"File",
-       {"file.new", "file.open", "> Open recent", "file.open_recent", "<", "> Samples", "file.sample_arm", "file.sample_body", "<", "-", "file.save", "file.save_as",
-        "file.save_copy", "file.recover", "-", "> Import", "file.import", "file.import_volume", "file.import_dicom", "file.import_rig", "file.import_tissues", "<",
-        "> Export", "file.export", "file.export_volume", "file.export_rig", "file.export_tissues", "view.screenshot", "view.turntable", "<", "-", "file.quit"}},
+       {"file.new", "file.open", "> Open recent", "file.recent_1", "file.recent_2", "file.recent_3", "file.recent_4", "file.recent_5", "file.recent_6", "file.recent_7",
+        "file.recent_8", "file.recent_9", "file.recent_10", "<", "> Samples", "file.sample_arm", "file.sample_arm_xray", "file.sample_body", "file.sample_body_open", "<", "file.open_recent", "-", "file.save", "file.save_as",
+        "file.save_copy", "file.recover", "-", "> Import", "file.import", "file.import_volume", "file.import_dicom", "file.import_rig", "file.import_motion", "file.import_weights", "file.import_tissues",
+        "file.import_pose", "<",
+        "> Export", "file.export_volume", "file.export_rig", "file.export_pose", "file.export_motion", "file.export_weights", "file.export_tissues",
+        "view.screenshot", "view.turntable", "<", "-", "file.quit"}},
       {"Edit",
        {"edit.undo", "edit.redo", "edit.history", "-", "edit.repeat_last", "-", "select.all", "select.none", "-", "edit.rename", "-", "> Prepare volume", "prepare.regrid",
         "prepare.flip_x", "prepare.flip_y", "prepare.flip_z", "prepare.orient", "prepare.crop", "prepare.pad", "prepare.merge", "prepare.specks", "prepare.statistics", "<", "-",

@@ -1,32 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/project.h"
 
+#include <utility>
+
 #include <backends/imgui_impl_opengl3.h>
 
-#include "core/volume/volume_io.h"
+#include "editor/opening.h"
 
 namespace limber::editor {
 
 namespace {
-
-// The volume replaces the one that is open, and with it all that belongs to it.
-Work opening_volume(Editor& editor, const Path& path) {
-  return [path, &editor](Progress& progress) -> Edit {
-    VolumeFile file = read_volume(path, progress);
-    auto volume = std::make_shared<const LabelVolume>(std::move(file.volume));
-    auto tissues = std::make_shared<const TissueTable>(merge_tissue_tables(file.tissues, nullptr));
-    auto type = std::make_shared<const FileType>(file.type);
-    auto extents = std::make_shared<const Extents>(extents_of(volume));
-    return [&editor, volume, tissues, type, extents](const Document&) {  // called in the editor's own thread
-      editor.views->extents = extents;
-      Document opened;
-      opened.volume = volume;
-      opened.tissues = tissues;
-      opened.volume_type = type;
-      return opened;
-    };
-  };
-}
 
 void tell_of_ended(Editor& editor, const JobStatus& job) {
   if (job.state == JobState::Failed) {
@@ -45,31 +28,23 @@ float scale_for(const Preferences& preferences, const Host& host) {
   return static_cast<float>(glm::clamp(std::min(preferences.scale * host.monitor_scale(), fitting), 0.75, 6.0));
 }
 
-void open_file(Editor& editor, const Path& path) {
-  editor.jobs.start("Open " + path.filename().string(), opening_volume(editor, path));
-  editor.touch();
-}
-
 void open_waiting_files(Editor& editor) {
-  std::vector<Path> files;
-  files.swap(editor.to_open);
-  for (const Path& path : files) open_file(editor, path);
+  if (!editor.to_open.empty()) open_files(editor, std::exchange(editor.to_open, {}));
 }
 
 bool poll_jobs(Editor& editor) {
   const auto volume_before = editor.document().volume;
   const bool changed = editor.jobs.poll(editor.history);
   if (!changed) return false;
-  for (const JobStatus& job : editor.jobs.statuses()) {
-    if (job.active()) continue;
-    tell_of_ended(editor, job);
-    if (const auto follow = editor.after_job.extract(job.id)) follow.mapped()(editor, job);
-    if (job.state == JobState::Done && job.label.starts_with("Open ")) editor.name = Path(job.label.substr(5)).stem().string();
-    editor.jobs.dismiss(job.id);
-  }
   if (editor.document().volume != volume_before) {
     editor.selection = {};
     frame_all(editor, false);
+  }
+  for (const JobStatus& job : editor.jobs.statuses()) {
+    if (job.active()) continue;
+    if (const auto follow = editor.after_job.extract(job.id)) follow.mapped()(editor, job);
+    editor.jobs.dismiss(job.id);
+    if (!end_task(editor, job)) tell_of_ended(editor, job);
   }
   return true;
 }

@@ -7,8 +7,6 @@
 
 namespace limber::editor {
 
-// Starts to open a file of any kind the editor reads; more than one file: the volume and what belongs to it.
-void open_file(Editor& editor, const Path& path);
 // The files that were dropped or given on the command line.
 void open_waiting_files(Editor& editor);
 // Commits what jobs have done and tells of those that failed. True when anything changed.

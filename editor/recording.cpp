@@ -135,12 +135,14 @@ void Player::click(const std::string& name, MouseButton button, int times) {
 
 void Player::wait_for_jobs() {
   const auto start = std::chrono::steady_clock::now();
-  while (editor_.jobs.busy()) {
-    editor_.frame(now_);  // time stands still, so that what follows does not depend on how long the job took
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kLongestJob)) throw Error("the job does not end", "wait-job", "look at what it does");
-  }
-  settle();
+  do {
+    while (editor_.jobs.busy()) {
+      editor_.frame(now_);  // time stands still, so that what follows does not depend on how long the job took
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kLongestJob)) throw Error("the job does not end", "wait-job", "look at what it does");
+    }
+    settle();  // what has ended may start another
+  } while (editor_.jobs.busy());
 }
 
 void Player::wait_until_idle() {

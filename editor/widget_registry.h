@@ -11,7 +11,7 @@
 
 namespace limber::editor {
 
-enum class Region { TopBar, ToolHeader, ToolStrip, Views, Sidebar, Bottom, Status, Popup, Dialog, Toast };
+enum class Region { TopBar, ToolHeader, ToolStrip, Views, Sidebar, Bottom, Status, Popup, Dialog, Toast, Start };
 
 struct Widget {
   std::string name;

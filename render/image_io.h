@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -18,5 +19,7 @@ struct Image {
 
 void write_png(const Image& image, const Path& path);  // whole or not at all
 Image read_png(const Path& path);                      // throws Error for what is no PNG, or over 16384 pixels a side
+std::string png_of(const Image& image);                // the bytes of the file
+Image parse_png(const std::string& bytes, const std::string& where);  // as read_png
 
 }  // namespace limber::render

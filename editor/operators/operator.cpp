@@ -26,8 +26,8 @@ void note_use(Editor& editor, const Operator& op) {
 
 std::vector<Operator> gather_operators() {
   std::vector<Operator> all;
-  for (auto list : {file_operators, edit_operators, workspace_operators, view_operators, navigation_operators, clip_operators, slice_operators,
-                    tissue_operators, select_operators, search_operators, preferences_operators})
+  for (auto list : {file_operators, import_operators, export_operators, edit_operators, workspace_operators, view_operators, navigation_operators, clip_operators,
+                    slice_operators, tissue_operators, select_operators, search_operators, preferences_operators})
     for (Operator& op : list()) all.push_back(std::move(op));
   return all;
 }
@@ -39,20 +39,25 @@ const Operator* find_operator(const Editor& editor, std::string_view id) {
 
 std::string why_not(const Editor& editor, const Operator& op) { return op.why_not ? op.why_not(editor) : ""; }
 
-void run(Editor& editor, const Operator& op) {
-  editor.touch();
-  if (const std::string reason = why_not(editor, op); !reason.empty()) return editor.messages.info(op.label, reason);
+bool attempt(Editor& editor, const std::string& label, const std::function<void(Editor&)>& act) {
   try {
-    op.run(editor);
-    note_use(editor, op);
+    act(editor);
+    return true;
   } catch (const Cancelled&) {
   } catch (const Error& error) {
     editor.messages.show_error(error.what());
   } catch (const std::bad_alloc&) {
-    editor.messages.show_error("There is not enough memory: " + op.label + ": close something, or use a coarser volume");
+    editor.messages.show_error("There is not enough memory: " + label + ": close something, or use a coarser volume");
   } catch (const std::exception& error) {
-    editor.messages.show_error(std::string("A mistake of the program itself: ") + op.label + ": " + error.what());
+    editor.messages.show_error(std::string("A mistake of the program itself: ") + label + ": " + error.what());
   }
+  return false;
+}
+
+void run(Editor& editor, const Operator& op) {
+  editor.touch();
+  if (const std::string reason = why_not(editor, op); !reason.empty()) return editor.messages.info(op.label, reason);
+  if (attempt(editor, op.label, op.run)) note_use(editor, op);
 }
 
 bool needs_pointer(const Editor& editor, const Operator& op) {

@@ -25,6 +25,8 @@ struct Operator {
 
 // One list for each file of operators, in the order of the menus.
 std::vector<Operator> file_operators();
+std::vector<Operator> import_operators();
+std::vector<Operator> export_operators();
 std::vector<Operator> edit_operators();
 std::vector<Operator> workspace_operators();
 std::vector<Operator> view_operators();
@@ -40,10 +42,13 @@ std::vector<Operator> gather_operators();
 
 const Operator* find_operator(const Editor& editor, std::string_view id);  // nullptr for none
 std::string why_not(const Editor& editor, const Operator& op);             // "" when it can run
-// Runs it, or says why not. What it throws becomes a message: the only place of the editor that catches.
+// Runs it, or says why not.
 void run(Editor& editor, const Operator& op);
 void run(Editor& editor, std::string_view id);
 // Whether it is for the pointer alone: its keys are buttons and wheels, and it means nothing away from them.
 bool needs_pointer(const Editor& editor, const Operator& op);
+// What follows an operator: an answer given, a file chosen, a task's end. What is thrown becomes a message: the only place
+// of the editor that catches.
+bool attempt(Editor& editor, const std::string& label, const std::function<void(Editor&)>& act);  // true when nothing was thrown
 
 }  // namespace limber::editor

@@ -17,6 +17,8 @@ void draw_sidebar(Editor& editor);
 void draw_bottom(Editor& editor);
 void draw_status_bar(Editor& editor);
 void draw_splitters(Editor& editor);
+void draw_start_screen(Editor& editor);
+void draw_tour(Editor& editor);
 
 // In the views
 void draw_body_overlay(Editor& editor, const Rect& rect);

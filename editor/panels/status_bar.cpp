@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Key hints that fit what the pointer is over, what is under it, the job at work, whether all is saved.
 #include <cstdio>
+#include <ctime>
 
 #include "editor/dispatch.h"
 #include "editor/icons.h"
@@ -21,7 +22,7 @@ std::vector<Hint> hints(const Editor& editor) {
   if (view && view->id != ViewId::Body)
     return {{"select.pick", editor.tool == Tool::CrossHair ? "Move cross-hair" : "Select"}, {"slice.step", "Slice"}, {"slice.zoom", "Zoom"}, {"slice.pan", "Shift"},
             {"view.place_cross_hair", "Cross-hair"}, {"slice.outline", "Outline"}, {"view.maximize", "Maximize"}};
-  if (!editor.document().volume) return {{"file.open", "Open"}, {"file.new", "New"}, {"search.commands", "Search"}, {"help.guide", "Help"}, {"file.quit", "Quit"}};
+  if (!editor.document().volume || editor.start_screen) return {{"file.open", "Open"}, {"file.new", "New"}, {"search.commands", "Search"}, {"help.guide", "Help"}, {"file.quit", "Quit"}};
   return {{"view.orbit", "Turn"}, {"view.pan", "Shift"}, {"view.zoom_step", "Zoom"}, {"view.xray", "X-ray"}, {"view.clip_box", "Clip box"}, {"view.hide", "Hide tissue"},
           {"view.frame_all", "Frame all"}};
 }
@@ -47,21 +48,45 @@ float draw_hints(Editor& editor, const Rect& bar, float right) {
 }
 
 // Each of these takes its place at the right and returns what is left.
+struct SavedState {
+  const char* icon;
+  Colour colour;
+  std::string words, sentence;
+};
+
+SavedState saved_state(const Editor& editor) {
+  const Theme& theme = editor.look.theme;
+  const ProjectLife& life = editor.life;
+  if (!life.trouble.empty()) return {icon::kWarning, theme.warn, "Not kept", life.trouble};
+  if (editor.history.unsaved()) return {icon::kDot, theme.select, "Not saved", life.session ? "Every edit is kept on disk meanwhile, and offered again after a crash." : ""};
+  if (editor.project_path.empty()) return {"", theme.text2, "No project", "What is open has no project file yet."};
+  std::string words = "Saved";
+  if (life.saved_at > 0) {
+    const std::time_t at = life.saved_at;
+    std::tm local{};
+    localtime_r(&at, &local);
+    char time[16];
+    std::strftime(time, sizeof time, " %H:%M", &local);
+    words += time;
+  }
+  return {icon::kTick, theme.ok, words, editor.project_path.string()};
+}
+
 float draw_saved(Editor& editor, const Rect& bar, float right) {
   if (!editor.document().volume) return right;
   const Look& look = editor.look;
-  const bool unsaved = editor.history.unsaved();
-  const std::string words = unsaved ? "Not saved" : "Saved";
-  const Rect slot{{right - text_size(look.fonts.small, "Not saved").x - look.px(22), bar.low.y}, {right, bar.high.y}};  // as wide for either
-  put_icon(look.fonts.small, unsaved ? look.theme.warn : look.theme.ok, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, unsaved ? icon::kDot : icon::kTick);
-  put_text(editor, look.fonts.small, look.theme.text2, Rect{{slot.low.x + look.px(20), slot.low.y}, {slot.high.x + 1, slot.high.y}}, words);
+  const SavedState state = saved_state(editor);
+  const Rect slot{{right - text_size(look.fonts.small, "Saved 00:00").x - look.px(22), bar.low.y}, {right, bar.high.y}};  // as wide for all
+  if (*state.icon) put_icon(look.fonts.small, state.colour, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, state.icon);
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{slot.low.x + look.px(20), slot.low.y}, {slot.high.x + 1, slot.high.y}}, state.words);
+  if (press_area(editor, "Saved", slot).hovered && !state.sentence.empty()) tooltip(editor, slot, state.words, state.sentence);
   return slot.low.x - look.px(12);
 }
 
 float draw_job(Editor& editor, const Rect& bar, float right) {
   const Look& look = editor.look;
   for (const JobStatus& job : editor.jobs.statuses()) {
-    if (!job.active()) continue;
+    if (!job.active() || job.label.empty()) continue;
     const Rect slot{{right - look.px(190), bar.low.y}, {right, bar.high.y}};
     const Rect cancel{{slot.high.x - look.px(22), slot.low.y + look.px(3)}, {slot.high.x, slot.high.y - look.px(3)}};
     if (button(editor, "Cancel job", cancel, {icon::kClose, "", ButtonStyle::Flat})) editor.jobs.cancel(job.id);
@@ -102,6 +127,10 @@ void draw_status_bar(Editor& editor) {
   begin_region(editor, Region::Status, "status", bar, look.theme.head);
   fill({bar.low, {bar.high.x, bar.low.y + look.line()}}, look.theme.void_);
   float right = draw_saved(editor, bar, bar.high.x - look.px(10));
+  if (editor.start_screen) {
+    const std::string words = "or drop a file on the window";
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{right - text_size(look.fonts.small, words).x - 1, bar.low.y}, {right, bar.high.y}}, words);
+  }
   right = draw_job(editor, bar, right);
   right = draw_hover(editor, bar, right);
   draw_hints(editor, bar, right);

@@ -55,7 +55,7 @@ float draw_workspaces(Editor& editor, float x, const Rect& bar) {
   constexpr const char* kIds[] = {"workspace.rig", "workspace.skin", "workspace.pose", "workspace.resample"};
   for (const char* id : kIds) {
     const Operator* op = find_operator(editor, id);
-    const bool chosen = op->checked(editor);
+    const bool chosen = op->checked(editor) && !editor.start_screen;
     ImFont* font = chosen ? look.fonts.semibold : look.fonts.regular;
     const float words = text_size(font, op->label).x, width = std::round(words + look.px(16 + 9 + 2 * 16));
     const Rect rect{{x, bar.low.y + look.px(4)}, {x + width, bar.high.y - look.px(4)}};

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/editor_state.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace limber::editor {
+
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr const char* kSchema = "limber-editor/1";
+
+template <class Vector>
+Json json_of(const Vector& v) {
+  Json json = Json::array();
+  for (int i = 0; i < v.length(); ++i) json.push_back(v[i]);
+  return json;
+}
+
+void take(const Json& json, const char* key, bool& value) {
+  if (const auto found = json.find(key); found != json.end() && found->is_boolean()) value = *found;
+}
+
+template <class Number>
+void take(const Json& json, const char* key, double low, double high, Number& value) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_number()) return;
+  const double number = *found;
+  if (number >= low && number <= high) value = static_cast<Number>(number);
+}
+
+// One of `count` choices, kept as its number.
+template <class Choice>
+void take_choice(const Json& json, const char* key, int count, Choice& value) {
+  int number = -1;
+  take(json, key, 0, count - 1, number);
+  if (number >= 0) value = static_cast<Choice>(number);
+}
+
+template <class Vector>
+bool take_vector(const Json& json, const char* key, Vector& value) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_array() || std::ssize(*found) != Vector::length()) return false;
+  Vector read = value;
+  for (int i = 0; i < Vector::length(); ++i) {
+    if (!(*found)[i].is_number() || !std::isfinite((*found)[i].template get<double>())) return false;
+    read[i] = (*found)[i].template get<typename Vector::value_type>();
+  }
+  value = read;
+  return true;
+}
+
+Json json_of(const Arrangement& arrangement) {
+  Json json{{"views", static_cast<int>(arrangement.views)}, {"tool_strip", arrangement.tool_strip}, {"console", arrangement.console},
+            {"sidebar_width", arrangement.sidebar_width}, {"bottom_height", arrangement.bottom_height}, {"split_x", arrangement.split_x},
+            {"split_y", arrangement.split_y}, {"four_x", arrangement.four_x}, {"four_y", arrangement.four_y}};
+  if (arrangement.sidebar) json["sidebar"] = *arrangement.sidebar;
+  return json;
+}
+
+void restore(const Json& json, Arrangement& arrangement) {
+  take_choice(json, "views", 3, arrangement.views);
+  take(json, "tool_strip", arrangement.tool_strip);
+  take(json, "console", arrangement.console);
+  take(json, "sidebar_width", 260, 520, arrangement.sidebar_width);
+  take(json, "bottom_height", 60, 4000, arrangement.bottom_height);
+  take(json, "split_x", 0.2, 0.8, arrangement.split_x);
+  take(json, "split_y", 0.2, 0.8, arrangement.split_y);
+  take(json, "four_x", 0.2, 0.8, arrangement.four_x);
+  take(json, "four_y", 0.2, 0.8, arrangement.four_y);
+  if (json.contains("sidebar")) {
+    bool open = true;
+    take(json, "sidebar", open);
+    arrangement.sidebar = open;
+  }
+}
+
+Json json_of(const render::Camera& camera) {
+  const glm::dquat& q = camera.world_from_view;
+  return {{"centre", json_of(camera.centre)}, {"distance", camera.distance}, {"world_from_view", {q.w, q.x, q.y, q.z}},
+          {"projection", static_cast<int>(camera.projection)}};
+}
+
+void restore(const Json& json, render::Camera& camera) {
+  glm::dvec4 turn(0);
+  glm::dvec3 centre = camera.centre;
+  if (!take_vector(json, "world_from_view", turn) || !take_vector(json, "centre", centre) || std::abs(glm::length(turn) - 1) > 1e-3) return;
+  camera.centre = centre;
+  camera.world_from_view = glm::normalize(glm::dquat(turn[0], turn[1], turn[2], turn[3]));
+  take(json, "distance", 1e-2, 1e6, camera.distance);
+  take_choice(json, "projection", 2, camera.projection);
+}
+
+}  // namespace
+
+std::string editor_state(const Editor& editor) {
+  const Views& views = *editor.views;
+  Json json{{"schema", kSchema}, {"workspace", static_cast<int>(editor.workspace)}, {"display", static_cast<int>(views.display)},
+            {"slices", static_cast<int>(views.slice_display)}, {"cross_hair", json_of(views.cross_hair)}, {"camera", json_of(views.body.camera)},
+            {"grid", views.grid}, {"axes", views.axes}, {"scale_bar", views.scale_bar}, {"letters", views.letters}, {"show_cross_hair", views.show_cross_hair}};
+  for (const Arrangement& arrangement : editor.arrangements) json["arrangements"].push_back(json_of(arrangement));
+  for (const SliceState& slice : views.slices)
+    json["slice_cameras"].push_back({{"centre", json_of(slice.camera.centre)}, {"millimetres_per_pixel", slice.camera.millimetres_per_pixel}});
+  if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
+  return json.dump();
+}
+
+void restore_editor_state(Editor& editor, const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || json.value("schema", Json()) != kSchema) return;
+  Views& views = *editor.views;
+  take_choice(json, "workspace", 4, editor.workspace);
+  take_choice(json, "display", 3, views.display);
+  take_choice(json, "slices", 2, views.slice_display);
+  take_vector(json, "cross_hair", views.cross_hair);
+  take(json, "grid", views.grid);
+  take(json, "axes", views.axes);
+  take(json, "scale_bar", views.scale_bar);
+  take(json, "letters", views.letters);
+  take(json, "show_cross_hair", views.show_cross_hair);
+  if (const auto camera = json.find("camera"); camera != json.end() && camera->is_object()) restore(*camera, views.body.camera);
+  views.body.name.clear();
+  if (const auto all = json.find("arrangements"); all != json.end() && all->is_array())
+    for (std::size_t i = 0; i < std::min(all->size(), editor.arrangements.size()); ++i)
+      if ((*all)[i].is_object()) restore((*all)[i], editor.arrangements[i]);
+  if (const auto all = json.find("slice_cameras"); all != json.end() && all->is_array())
+    for (std::size_t i = 0; i < std::min(all->size(), views.slices.size()); ++i) {
+      if (!(*all)[i].is_object()) continue;
+      take_vector((*all)[i], "centre", views.slices[i].camera.centre);
+      take((*all)[i], "millimetres_per_pixel", 1e-6, 1e4, views.slices[i].camera.millimetres_per_pixel);
+    }
+  int tissue = -1;
+  take(json, "tissue", 0, 65535, tissue);
+  if (tissue >= 0 && editor.document().tissues && editor.document().tissues->find(static_cast<Label>(tissue))) {
+    editor.selection.tissue = static_cast<Label>(tissue);
+    editor.selection.tissues = {static_cast<Label>(tissue)};
+  }
+  editor.touch();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/exporting.h"
+
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/pose/pose_io.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/bvh.h"
+#include "core/skin/weights_io.h"
+#include "core/volume/volume_io.h"
+#include "render/image_io.h"
+
+namespace limber::editor {
+
+namespace {
+
+void write_export(ExportKind kind, const Document& document, const Path& path) {
+  switch (kind) {
+    case ExportKind::Volume: return write_volume(*document.volume, path, *document.tissues, document.volume_type ? *document.volume_type : FileType{});
+    case ExportKind::Tissues: return write_tissue_table(*document.tissues, path);
+    case ExportKind::Rig: return write_armature(*document.armature, path);
+    case ExportKind::Weights: return write_weights(*document.weights, *document.volume, TissueVoxels(*document.volume), path);
+    case ExportKind::Pose: return write_pose(*document.pose, *document.armature, path);
+    case ExportKind::Motion: return write_bvh(*document.motion, path);
+  }
+}
+
+void check_export(ExportKind kind, const Path& path) {
+  if (kind == ExportKind::Volume) check_writable(path);
+  else if (kind == ExportKind::Rig) check_armature_writable(path);
+  else if (kind == ExportKind::Weights) check_weights_writable(path);
+  else check_place(path);
+}
+
+// A picture of the body, drawn to its end.
+render::Image picture_of_body(Views& views, const render::Camera& camera, const glm::ivec2& size) {
+  render::View3D picture(views.renderer);
+  for (double now = 0; now == 0 || !picture.complete(); now += 1) picture.draw(views.scene, camera, size, now, 1);
+  return picture.read();
+}
+
+glm::ivec2 size_of_view(const Editor& editor, ViewId id) {
+  const Rect* place = editor.layout.place_of(id);
+  return place ? glm::max(glm::ivec2(place->size()), 16) : glm::ivec2(1280, 720);
+}
+
+// Pictures that the editor's thread has drawn (the context is its own), for the task that writes them.
+struct TurntableBoard {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::optional<render::Image> picture;
+  int wanted = 0;  // of the next picture
+  bool over = false;
+};
+
+Path numbered(const Path& path, int number) {
+  char suffix[16];
+  std::snprintf(suffix, sizeof suffix, "-%04d", number);
+  return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
+}
+
+}  // namespace
+
+std::string why_not_export(const Editor& editor, ExportKind kind) {
+  const Document& document = editor.document();
+  switch (kind) {
+    case ExportKind::Volume:
+    case ExportKind::Tissues: return document.volume ? "" : "Open a volume first";
+    case ExportKind::Rig: return document.armature ? "" : "There is no rig yet";
+    case ExportKind::Weights: return document.weights ? "" : "There are no weights yet";
+    case ExportKind::Pose: return document.pose ? "" : "There is no pose yet";
+    case ExportKind::Motion: return document.motion ? "" : "There is no motion yet";
+  }
+  return "";
+}
+
+void export_file(Editor& editor, ExportKind kind, const Path& path) {
+  check_export(kind, path);
+  start_task(editor, "Export " + path.filename().string(), [kind, path, document = editor.document()](Progress& progress) -> Finish {
+    progress.update("write", 0);
+    write_export(kind, document, path);
+    return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+  });
+}
+
+void export_picture(Editor& editor, const Path& path) {
+  check_place(path);
+  Views& views = *editor.views;
+  const glm::ivec2 size = size_of_view(editor, views.active);
+  const bool body = views.active == ViewId::Body || !editor.layout.place_of(views.active);
+  auto image = std::make_shared<render::Image>(body ? picture_of_body(views, views.body.camera, size) : slice_of(views, views.active).picture->read());
+  start_task(editor, "Export " + path.filename().string(), [path, image](Progress&) -> Finish {
+    render::write_png(*image, path);
+    return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+  });
+}
+
+void export_turntable(Editor& editor, const Path& path, int pictures) {
+  check_place(path);
+  auto board = std::make_shared<TurntableBoard>();
+  start_task(
+      editor, "Export turntable",
+      [path, board, pictures](Progress& progress) -> Finish {
+        struct Over {
+          TurntableBoard& board;
+          ~Over() {
+            const std::lock_guard lock(board.mutex);
+            board.over = true;
+          }
+        } over{*board};
+        for (int i = 0; i < pictures; ++i) {
+          render::Image image;
+          for (bool here = false; !here;) {
+            progress.update("pictures", static_cast<double>(i) / pictures);
+            std::unique_lock lock(board->mutex);
+            here = board->changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return board->picture.has_value(); });
+            if (!here) continue;
+            image = std::move(*board->picture);
+            board->picture.reset();
+            board->wanted = i + 1;
+          }
+          render::write_png(image, numbered(path, i));
+        }
+        return [path, pictures](Editor& e) { e.messages.ok("Exported " + std::to_string(pictures) + " pictures", path.parent_path().string()); };
+      });
+
+  const render::Camera camera = editor.views->body.camera;
+  const glm::ivec2 size = size_of_view(editor, ViewId::Body);
+  editor.each_frame.push_back([board, camera, size, pictures](Editor& e) {
+    const std::lock_guard lock(board->mutex);
+    if (board->over || board->wanted >= pictures) return false;
+    e.touch();
+    if (board->picture) return true;
+    render::Camera turned = camera;
+    turned.world_from_view = glm::normalize(glm::angleAxis(2 * std::numbers::pi * board->wanted / pictures, glm::dvec3(0, 0, 1)) * camera.world_from_view);
+    board->picture = picture_of_body(*e.views, turned, size);
+    board->changed.notify_all();
+    return true;
+  });
+}
+
+}  // namespace limber::editor

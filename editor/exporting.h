@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Files go out, beside the live editor; each whole or not at all.
+#pragma once
+
+#include "editor/editor.h"
+
+namespace limber::editor {
+
+enum class ExportKind { Volume, Tissues, Rig, Weights, Pose, Motion };
+std::string why_not_export(const Editor& editor, ExportKind kind);  // "" when there is something to write
+void export_file(Editor& editor, ExportKind kind, const Path& path);
+
+// The active view as it is shown now, without the window around it.
+void export_picture(Editor& editor, const Path& path);
+// NAME-0000.png and on: the 3D view turned all around, one picture a frame so that the editor stays live.
+void export_turntable(Editor& editor, const Path& path, int pictures = 36);
+
+}  // namespace limber::editor

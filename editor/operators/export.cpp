@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Parts of the project, and pictures of it, into files.
+#include "editor/exporting.h"
+#include "editor/icons.h"
+#include "editor/operators/polls.h"
+#include "editor/panels/file_browser.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string stem_of(const Editor& editor) { return editor.name.empty() ? "Untitled" : Path(editor.name).stem().string(); }
+
+struct ExportFacts {
+  const char *id, *label, *sentence;
+  ExportKind kind;
+  std::vector<FileFilter> filters;  // the first one's first end is proposed
+  const char* suffix;               // of the proposed name
+};
+
+Operator export_operator(const ExportFacts& facts) {
+  return {facts.id, facts.label, icon::kExport, "File", facts.sentence,
+          [facts](Editor& e) {
+            browse(e, {.purpose = "export",
+                       .title = std::string("Export: ") + facts.label,
+                       .action = "Export",
+                       .kind = FileRequest::Kind::Save,
+                       .filters = facts.filters,
+                       .name = stem_of(e) + facts.suffix + facts.filters[0].ends[0],
+                       .folder = e.project_path.parent_path(),
+                       .chosen = [kind = facts.kind](Editor& ed, const Path& path) { export_file(ed, kind, path); }});
+          },
+          [kind = facts.kind](const Editor& e) { return why_not_export(e, kind); }};
+}
+
+Operator picture_operator(const char* id, const char* label, const char* sentence, const char* suffix, void (*act)(Editor&, const Path&)) {
+  return {id, label, icon::kCamera, "File", sentence,
+          [label, suffix, act](Editor& e) {
+            browse(e, {.purpose = "picture",
+                       .title = std::string("Export: ") + label,
+                       .action = "Export",
+                       .kind = FileRequest::Kind::Save,
+                       .filters = {{"PNG pictures", {".png"}}},
+                       .name = stem_of(e) + suffix + ".png",
+                       .folder = e.project_path.parent_path(),
+                       .chosen = act});
+          },
+          needs_volume};
+}
+
+}  // namespace
+
+std::vector<Operator> export_operators() {
+  return {
+      export_operator({"file.export_volume", "Volume...", "Writes the labelled voxels.", ExportKind::Volume,
+                       {{"NRRD", {".nrrd", ".nhdr"}}, {"MetaImage", {".mha", ".mhd"}}, {"NIfTI", {".nii.gz", ".nii"}}}, ""}),
+      export_operator({"file.export_tissues", "Tissues...", "Writes names, colours and kinds of the tissues.", ExportKind::Tissues,
+                       {{"Limber tissues", {".json"}}, {"Slicer colour table", {".ctbl"}}, {"ITK-SNAP labels", {".txt"}}}, "-tissues"}),
+      export_operator({"file.export_rig", "Rig...", "Writes the skeleton at rest.", ExportKind::Rig,
+                       {{"Limber rig", {".json"}}, {"Bender armature", {".vtk"}}, {"BVH", {".bvh"}}}, "-rig"}),
+      export_operator({"file.export_weights", "Weights...", "Writes how tissue follows the bones.", ExportKind::Weights, {{"Weights", {".nrrd"}}}, "-weights"}),
+      export_operator({"file.export_pose", "Pose...", "Writes the pose of the rig.", ExportKind::Pose, {{"Limber pose", {".json"}}}, "-pose"}),
+      export_operator({"file.export_motion", "Motion...", "Writes the motion as BVH.", ExportKind::Motion, {{"BVH", {".bvh"}}}, "-motion"}),
+      picture_operator("view.screenshot", "Picture...", "Writes the active view as a PNG.", "", export_picture),
+      picture_operator("view.turntable", "Turntable...", "Writes 36 pictures all around the body.", "-turn", [](Editor& e, const Path& path) { export_turntable(e, path); }),
+  };
+}
+
+}  // namespace limber::editor

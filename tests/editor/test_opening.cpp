@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/opening.h"
+
+#include <fstream>
+
+#include "core/base/error.h"
+#include "core/pose/pose_io.h"
+#include "core/rig/armature_io.h"
+#include "core/skin/weights_io.h"
+#include "tests/editor/sitting.h"
+#include "tests/support/bent_tube.h"
+
+using namespace limber;
+using namespace limber::test;
+using editor::FileKind;
+
+namespace {
+
+// A tube with all that belongs to it, in files.
+struct TubeFiles : Home {
+  TubeFiles() : tube(bent_tube()) {
+    for (Tissue& tissue : tube.tissues.tissues) tissue.file_value = tissue.label;
+    write_volume(tube.volume, *this / "tube.nrrd", tube.tissues);
+    write_armature(tube.rig, *this / "rig.json");
+    write_weights(tube.weights, tube.volume, TissueVoxels(tube.volume), *this / "weights.nrrd");
+    write_pose(tube.pose(60), tube.rig, *this / "pose.json");
+    write_tissue_table(tube.tissues, *this / "tissues.json");
+    write_bvh(motion_of(tube.rig), *this / "motion.bvh");
+  }
+  BentTube tube;
+};
+
+}  // namespace
+
+TEST_CASE("opening: files are told apart by what they hold") {
+  const TubeFiles files;
+  CHECK(editor::kind_of(files / "tube.nrrd") == FileKind::Volume);
+  CHECK(editor::kind_of(files / "weights.nrrd") == FileKind::Weights);
+  CHECK(editor::kind_of(files / "rig.json") == FileKind::Rig);
+  CHECK(editor::kind_of(files / "pose.json") == FileKind::Pose);
+  CHECK(editor::kind_of(files / "tissues.json") == FileKind::Tissues);
+  CHECK(editor::kind_of(files / "motion.bvh") == FileKind::Motion);
+  std::ofstream(files / "odd.json") << "[1, 2]";
+  std::ofstream(files / "odd.limber") << "no database";
+  for (const char* name : {"odd.json", "odd.limber", "missing", "scans"}) CHECK_THROWS_AS(editor::kind_of(files / name), Error);
+}
+
+TEST_CASE("opening: a volume and what belongs to it come in together, dropped in any order") {
+  const TubeFiles files;
+  Sitting sitting(files.folder.path());
+  sitting.test.host->events.push(editor::FilesDropped{{files / "weights.nrrd", files / "pose.json", files / "motion.bvh", files / "rig.json", files / "tube.nrrd"}});
+  sitting.play("wait-job\n wait-job\n expect volume yes\n expect error none");
+  const Document& document = sitting.editor().document();
+  REQUIRE(document.weights);
+  CHECK(document.weights->size() == files.tube.weights.size());
+  CHECK(document.armature->bones.size() == 2);
+  CHECK(document.pose->rotation.size() == 2);
+  CHECK(document.motion->joints.size() == 2);
+  sitting.play("key Ctrl+Z\n key Ctrl+Z\n key Ctrl+Z\n key Ctrl+Z\n expect volume yes");
+  CHECK_FALSE(sitting.editor().document().armature);
+}
+
+TEST_CASE("opening: what does not fit the open volume is refused in one message and changes nothing") {
+  const TubeFiles files;
+  Sitting sitting(files.folder.path(), {files / "scans/ball.nrrd"});
+  Armature far = files.tube.rig;
+  for (Bone& bone : far.bones) bone.head += glm::dvec3(5000), bone.tail += glm::dvec3(5000);
+  write_armature(far, files / "far.json");
+  for (const auto& [file, kind] : {std::pair{"far.json", FileKind::Rig}, {"weights.nrrd", FileKind::Weights}, {"pose.json", FileKind::Pose}, {"tissues.json", FileKind::Tissues}}) {
+    INFO(std::string(file));
+    const Document before = sitting.editor().document();
+    import_file(sitting.editor(), kind, files / file);
+    sitting.play("wait-job");
+    CHECK(sitting.editor().messages.errors.size() == 1);
+    CHECK(sitting.editor().document() == before);
+    sitting.play("key Escape");
+  }
+}
+
+TEST_CASE("opening: a damaged file is one error message, and the open project stays as it is") {
+  const TubeFiles files;
+  std::ofstream(files / "short.nrrd") << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 90 90 90\nencoding: raw\n\nabc";
+  Sitting sitting(files.folder.path(), {files / "scans/ball.nrrd"});
+  const std::string hash = sitting.test.fact("document");
+  editor::open_files(sitting.editor(), {files / "short.nrrd"});
+  sitting.play("wait-job\n expect name ball\n expect position 0\n expect unsaved no");
+  CHECK(sitting.editor().messages.errors.size() == 1);
+  CHECK(sitting.test.fact("document") == hash);
+}
+
+TEST_CASE("import and export: each kind of file goes out through its menu and comes back the same") {
+  const TubeFiles files;
+  Document before;
+  {
+    Sitting sitting(files.folder.path(), {files / "tube.nrrd", files / "rig.json", files / "weights.nrrd", files / "pose.json", files / "motion.bvh"});
+    sitting.play("wait-job");
+    before = sitting.editor().document();
+    REQUIRE(before.weights);
+    for (const char* kind : {"volume", "rig", "weights", "pose", "motion", "tissues"}) {
+      const std::string name = std::string("out-") + kind;
+      editor::run(sitting.editor(), std::string("file.export_") + kind);
+      sitting.play("expect dialog yes\n type " + name + "\n key Return\n wait-job\n expect dialog no\n expect error none");
+    }
+  }
+  Sitting again(files.folder.path(), {files / "out-volume.nrrd"});
+  for (const char* name : {"out-rig.json", "out-weights.nrrd", "out-pose.json", "out-motion.bvh", "out-tissues.json"}) {
+    INFO(name);
+    editor::open_files(again.editor(), {files / name});
+    again.play("wait-job\n expect error none");
+  }
+  const Document& after = again.editor().document();
+  CHECK(after.volume->voxels == before.volume->voxels);
+  CHECK(*after.weights == *before.weights);
+  CHECK(*after.pose == *before.pose);
+  CHECK(after.armature->bones.size() == before.armature->bones.size());
+  CHECK(after.motion->joints == before.motion->joints);
+}
+
+TEST_CASE("export: the view is written as a picture, and turned all around without holding up the editor") {
+  const Home home;
+  Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"});
+  sitting.play("key F12\n type view\n key Return\n wait-job\n expect error none");
+  const render::Image picture = render::read_png(home / "view.png");
+  CHECK(picture.size == glm::ivec2(sitting.editor().layout.place_of(editor::ViewId::Body)->size()));
+  sitting.play("key Ctrl+F12\n type turn\n key Return\n wait-job\n expect error none");
+  for (const char* name : {"turn-0000.png", "turn-0035.png"}) CHECK(std::filesystem::exists(home / name));
+  CHECK(render::read_png(home / "turn-0000.png").rgba == picture.rgba);
+  CHECK(render::read_png(home / "turn-0009.png").rgba != picture.rgba);
+}
