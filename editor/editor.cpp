@@ -186,6 +186,8 @@ void Editor::frame(double time) {
     touch();
   }
 
+  if (const std::string title = name.empty() ? "Limber" : name + " - Limber"; title != shown_title) host.set_title(shown_title = title);
+
   ImGui::Render();
   glBindFramebuffer(GL_FRAMEBUFFER, host.framebuffer());
   glViewport(0, 0, size.x, size.y);

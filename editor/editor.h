@@ -106,6 +106,7 @@ struct Editor {
   ProjectLife life;
   std::vector<std::function<bool(Editor&)>> each_frame;  // called once a frame until they return false
   Path project_path;  // empty: never saved
+  std::string shown_title;  // of the window
   std::string name;   // of the project or of the volume opened last
   std::vector<Path> to_open;  // dropped on the window, or given on the command line
 
@@ -138,7 +139,9 @@ struct Editor {
   std::optional<glm::vec3> edited_colour;
   Tool tool = Tool::Select;
   std::string open_menu;  // of the top bar
-  bool open_context_menu = false, open_pick_list = false;  // wanted, in the next frame
+  std::string open_popup;  // a menu of menus.h wanted at the pointer in the next frame; "" for none
+  std::string shown_popup;  // the one that is open
+  bool open_pick_list = false;  // likewise
   std::vector<Label> pick_list;  // tissues under the pointer, nearest first
   std::map<std::string, bool> open_sections;  // of the sidebar, by title
   InputState input;

@@ -87,6 +87,7 @@ void tell_imgui(const std::vector<Event>& events, const InputState& state) {
   io.MouseWheel = state.wheel;
   for (std::size_t key = 0; key < static_cast<std::size_t>(Key::Count); ++key) io.KeysDown[key] = state.keys[key];
   io.KeyCtrl = state.down(Key::Ctrl);
+  if (io.KeyCtrl) io.KeysDown[static_cast<std::size_t>(Key::Tab)] = false;  // else ImGui lists its own windows
   io.KeyShift = state.down(Key::Shift);
   io.KeyAlt = state.down(Key::Alt);
   io.KeySuper = state.down(Key::Super);

@@ -78,7 +78,10 @@ std::vector<Menu> menus() {
   };
 }
 
-Menu context_menu(ViewId view) {
+Menu pointer_menu(const std::string& name, ViewId view) {
+  if (name == "Views") return {name, {"view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom", "view.opposite", "-", "view.ortho", "view.frame_selected", "view.frame_all"}};
+  if (name == "Display") return {name, {"view.solid", "view.xray_display", "view.tissue", "-", "view.clip_box", "view.clip_plane"}};
+  if (name == "Workspaces") return {name, {"workspace.rig", "workspace.skin", "workspace.pose", "workspace.resample"}};
   if (view == ViewId::Body)
     return {"3D view", {"view.hide", "view.isolate_selected", "view.reveal", "-", "view.frame_selected", "view.frame_all", "view.centre_on_pick", "-", "view.clip_box", "view.clip_plane", "view.xray"}};
   return {name_of(view), {"view.hide", "view.isolate_selected", "view.reveal", "-", "slice.outline", "view.cross_hair", "view.frame_all", "-", "view.maximize"}};

@@ -14,8 +14,8 @@ struct Menu {
   std::vector<std::string> entries;
 };
 std::vector<Menu> menus();
-// What is fitting under the pointer, for the right button.
-Menu context_menu(ViewId view);
+// A menu that opens at the pointer: "context" (what fits that view), "Views", "Display", "Workspaces".
+Menu pointer_menu(const std::string& name, ViewId view);
 
 // The rows of a menu into an open popup; ids without an operator are left out, and so is what would then be empty.
 void draw_menu(Editor& editor, const Menu& menu);

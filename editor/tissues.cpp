@@ -10,7 +10,7 @@ namespace {
 std::string name_of(const Editor& editor, const std::set<Label>& tissues) {
   if (tissues.size() != 1) return std::to_string(tissues.size()) + " tissues";
   const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(*tissues.begin()) : nullptr;
-  return tissue ? tissue->name : "label " + std::to_string(*tissues.begin());
+  return tissue ? shown_name(*tissue) : "label " + std::to_string(*tissues.begin());
 }
 
 void commit_looks(Editor& editor, const std::string& label, const std::function<void(std::map<Label, TissueLook>&)>& change) {
@@ -24,6 +24,12 @@ void commit_looks(Editor& editor, const std::string& label, const std::function<
 }
 
 }  // namespace
+
+std::string shown_name(const Tissue& tissue) {
+  std::string name = tissue.name;
+  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+  return name;
+}
 
 TissueLook look_of(const Document& document, Label label) {
   if (!document.visibility) return {};

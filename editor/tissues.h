@@ -8,6 +8,9 @@
 
 namespace limber::editor {
 
+// As lists show it: "muscle" begins with a capital.
+std::string shown_name(const Tissue& tissue);
+
 TissueLook look_of(const Document& document, Label label);
 void set_look(Editor& editor, const std::string& label, Label tissue, const TissueLook& look);
 // The same, shown but not yet an edit; set_look() or Escape ends it.

@@ -9,8 +9,20 @@ namespace limber::editor {
 
 namespace {
 
+std::optional<int> bone_here(const Editor& editor) {
+  const Rect* place = editor.layout.place_of(ViewId::Body);
+  if (!editor.document().armature || editor.views->hover.view != ViewId::Body || !place) return std::nullopt;
+  return editor.views->body.picture->pick_bone(glm::ivec2(editor.input.pointer - place->low));
+}
+
 void pick(Editor& editor) {
   if (editor.tool == Tool::CrossHair) return run(editor, "view.place_cross_hair");
+  if (const auto bone = bone_here(editor)) {
+    editor.selection = {};
+    editor.selection.bone = bone;
+    editor.selection.bones = {*bone};
+    return;
+  }
   const Hover& hover = editor.views->hover;
   if (hover.inside) select_tissue(editor, hover.label, false);
   else editor.selection = {};

@@ -39,7 +39,7 @@ void maximize(Editor& editor) {
 void open_context_menu(Editor& editor) {
   const Hover& hover = editor.views->hover;
   if (hover.inside && !editor.selection.tissues.contains(hover.label)) select_tissue(editor, hover.label, false);
-  editor.open_context_menu = true;
+  editor.open_popup = "context";
 }
 
 void toggle_xray(Editor& editor) {
@@ -72,6 +72,8 @@ std::vector<Operator> view_operators() {
       {"view.console", "Console", icon::kConsole, "Help", "Opens or closes the list of messages below the views.",
        [](Editor& e) { e.arrangement().console = !e.arrangement().console; }, nullptr, [](const Editor& e) { return e.arrangement().console; }},
       {"view.context_menu", "Menu", "", "View", "Lists what can be done with what is under the pointer.", open_context_menu},
+      {"view.pie", "View menu", icon::kCamera, "View", "Lists the standard views at the pointer.", [](Editor& e) { e.open_popup = "Views"; }},
+      {"view.shading_pie", "Display menu", "", "View", "Lists the displays at the pointer.", [](Editor& e) { e.open_popup = "Display"; }},
       {"view.full_screen", "Full screen", icon::kExpand, "View", "The window fills the screen, or shrinks back.", [](Editor& e) { e.host.toggle_full_screen(); }},
   };
 }

@@ -24,6 +24,7 @@ std::vector<Operator> workspace_operators() {
       to_workspace("workspace.skin", "Skin", icon::kSkin, "Paints how tissue follows the bones.", Workspace::Skin),
       to_workspace("workspace.pose", "Pose", icon::kPose, "Turns joints, or scrubs a motion.", Workspace::Pose),
       to_workspace("workspace.resample", "Resample", icon::kResample, "Writes the posed body as a new label volume.", Workspace::Resample),
+      {"workspace.pie", "Workspace menu", "", "Workspace", "Lists the workspaces at the pointer.", [](Editor& e) { e.open_popup = "Workspaces"; }},
       by_step("workspace.previous", "Previous workspace", -1),
       by_step("workspace.next", "Next workspace", 1),
   };

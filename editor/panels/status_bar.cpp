@@ -6,6 +6,7 @@
 #include "editor/dispatch.h"
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
+#include "editor/tissues.h"
 
 namespace limber::editor {
 
@@ -109,7 +110,7 @@ float draw_hover(Editor& editor, const Rect& bar, float right) {
   char place[64] = "";
   if (hover.inside) {
     const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(hover.label) : nullptr;
-    words = (tissue ? tissue->name : std::string("Unknown")) + " \u00b7 label " + std::to_string(hover.label);
+    words = (tissue ? shown_name(*tissue) : std::string("Unknown")) + " \u00b7 label " + std::to_string(hover.label);
     std::snprintf(place, sizeof place, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
   }
   const float mono = *place ? look.px(170) : 0, width = std::min(text_size(look.fonts.small, words).x + 1, look.px(220));

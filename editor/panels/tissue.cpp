@@ -22,7 +22,7 @@ void draw_number(Editor& editor, Column& column, const Tissue& tissue, const cha
   Tissue next = tissue;
   next.*member = edited.value;
   edited = {};
-  set_tissue(editor, std::string(label) + " of " + tissue.name, next);
+  set_tissue(editor, std::string(label) + " of " + shown_name(tissue), next);
 }
 
 void draw_opacity(Editor& editor, Column& column, const Tissue& tissue) {
@@ -38,7 +38,7 @@ void draw_opacity(Editor& editor, Column& column, const Tissue& tissue) {
   if (!committed || edited.name != "Opacity") return;
   const auto opacity = static_cast<float>(edited.value / 100);
   edited = {};
-  set_look(editor, "Opacity of " + tissue.name, tissue.label, {shown.visible, opacity});
+  set_look(editor, "Opacity of " + shown_name(tissue), tissue.label, {shown.visible, opacity});
 }
 
 void draw_colour(Editor& editor, Column& column, const Tissue& tissue) {
@@ -64,7 +64,7 @@ void draw_colour(Editor& editor, Column& column, const Tissue& tissue) {
     Tissue next = tissue;
     next.colour = *editor.edited_colour;
     editor.edited_colour.reset();
-    set_tissue(editor, "Colour of " + tissue.name, next);
+    set_tissue(editor, "Colour of " + shown_name(tissue), next);
   }
 }
 
@@ -75,13 +75,13 @@ void draw_tissue(Editor& editor, Column& column) {
   const Tissue* found = document.tissues && editor.selection.tissue ? document.tissues->find(*editor.selection.tissue) : nullptr;
   if (!found) return;
   const Tissue tissue = *found;
-  if (column.begin_section("Tissue", tissue.name)) {
+  if (column.begin_section("Tissue", shown_name(tissue))) {
     column.space(6);
     std::string name = tissue.name;
     if (text_field(editor, "Name", column.property("Name"), name) && !name.empty() && name != tissue.name) {
       Tissue next = tissue;
       next.name = name;
-      set_tissue(editor, "Rename " + tissue.name, next);
+      set_tissue(editor, "Rename " + shown_name(tissue), next);
     }
     const Rect kind = column.property("Kind");
     put_text(editor, editor.look.fonts.regular, editor.look.theme.text, kind, to_string(tissue.kind));
@@ -106,7 +106,7 @@ void draw_under_cursor(Editor& editor, Column& column) {
     if (tissue) {
       const float side = look.px(14), y = std::round(rect.centre().y - side / 2);
       fill({{rect.low.x + look.px(10), y}, {rect.low.x + look.px(10) + side, y + side}}, rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
-      put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(32), rect.low.y}, {rect.high.x - look.px(60), rect.high.y}}, tissue->name);
+      put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(32), rect.low.y}, {rect.high.x - look.px(60), rect.high.y}}, shown_name(*tissue));
       put_text(editor, look.fonts.mono, look.theme.text2, Rect{rect.low, {rect.high.x - look.px(10), rect.high.y}}, std::to_string(tissue->label), Align::Right);
     } else {
       put_text(editor, look.fonts.regular, look.theme.text3, Rect{{rect.low.x + look.px(10), rect.low.y}, rect.high}, "Outside");

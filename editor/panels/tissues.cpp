@@ -38,7 +38,7 @@ void draw_opacity(Editor& editor, const Rect& rect, const Tissue& tissue, const 
   fill({bar.low, {bar.low.x + bar.width() * value, bar.high.y}}, look.theme.text3, look.px(3));
   if (pressed.hovered) tooltip(editor, rect, "Opacity", std::to_string(static_cast<int>(value * 100 + 0.5f)) + " %, in the X-ray and tissue displays.");
   if (pressed.held) preview_look(editor, tissue.label, {shown.visible, share});
-  if (released && editor.views->preview_visibility) set_look(editor, "Opacity of " + tissue.name, tissue.label, {shown.visible, share});
+  if (released && editor.views->preview_visibility) set_look(editor, "Opacity of " + shown_name(tissue), tissue.label, {shown.visible, share});
 }
 
 void draw_row(Editor& editor, Column& column, int index, const Tissue& tissue) {
@@ -57,7 +57,7 @@ void draw_row(Editor& editor, Column& column, int index, const Tissue& tissue) {
   const Rect name{{x + side, rect.low.y}, {rect.high.x - look.px(70), rect.high.y}};
   const Pressed pressed = press_area(editor, "name", name);
   const Colour colour = shown.visible ? look.theme.text : chosen ? look.theme.text2 : look.theme.text3;
-  put_text(editor, look.fonts.regular, colour, Rect{{name.low.x + look.px(6), name.low.y}, {name.high.x - look.px(34), name.high.y}}, tissue.name);
+  put_text(editor, look.fonts.regular, colour, Rect{{name.low.x + look.px(6), name.low.y}, {name.high.x - look.px(34), name.high.y}}, shown_name(tissue));
   put_text(editor, look.fonts.mono, chosen ? look.theme.text2 : look.theme.text3, Rect{{name.high.x - look.px(44), name.low.y}, name.high}, std::to_string(tissue.label),
            Align::Right);
   if (pressed.clicked) select_tissue(editor, tissue.label, editor.input.down(Key::Ctrl) || editor.input.down(Key::Shift));

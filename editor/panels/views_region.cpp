@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The pictures of the body, what is drawn over them, and what the pointer is over.
 #include <cmath>
+#include <utility>
 
 #include "editor/dispatch.h"
 #include "editor/icons.h"
@@ -37,21 +38,21 @@ void hover_slice(Editor& editor, const ViewPlace& place) {
   hover.inside = hover.label != 0;
 }
 
-void draw_context_menu(Editor& editor) {
-  if (editor.open_context_menu) {
-    ImGui::OpenPopup("context");
-    editor.open_context_menu = false;
+void draw_pointer_menu(Editor& editor) {
+  if (!editor.open_popup.empty()) {
+    ImGui::OpenPopup("pointer menu");
+    editor.shown_popup = std::exchange(editor.open_popup, "");
   }
-  if (!ImGui::BeginPopup("context", ImGuiWindowFlags_NoMove)) return;
+  if (!ImGui::BeginPopup("pointer menu", ImGuiWindowFlags_NoMove)) return;
   editor.place.region = Region::Popup;
-  const Menu menu = context_menu(editor.views->active);
+  const Menu menu = pointer_menu(editor.shown_popup, editor.views->active);
   const Tissue* tissue = editor.selection.tissue && editor.document().tissues ? editor.document().tissues->find(*editor.selection.tissue) : nullptr;
-  const std::string title = tissue ? tissue->name : menu.title;
+  const std::string title = tissue && editor.shown_popup == "context" ? shown_name(*tissue) : menu.title;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   put_text(editor, editor.look.fonts.semibold, editor.look.theme.text2, from_im(corner) + glm::vec2(editor.look.px(8), editor.look.px(2)), title);
   ImGui::Dummy({text_size(editor.look.fonts.semibold, title).x + editor.look.px(16), editor.look.px(22)});
   ImGui::Separator();
-  push_path(editor, "context");
+  push_path(editor, editor.shown_popup);
   draw_menu(editor, menu);
   pop_path(editor);
   editor.place.region = Region::Views;
@@ -78,7 +79,7 @@ void draw_pick_list(Editor& editor) {
     if (pressed.hovered || editor.selection.tissue == label) fill(rect, pressed.hovered ? look.theme.hover : look.theme.accent_soft, look.px(4));
     const float side = look.px(14), y = std::round(rect.centre().y - side / 2);
     fill({{rect.low.x + look.px(8), y}, {rect.low.x + look.px(8) + side, y + side}}, rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
-    put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(30), rect.low.y}, {rect.high.x - look.px(40), rect.high.y}}, tissue->name);
+    put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(30), rect.low.y}, {rect.high.x - look.px(40), rect.high.y}}, shown_name(*tissue));
     put_text(editor, look.fonts.mono, look.theme.text2, Rect{rect.low, {rect.high.x - look.px(8), rect.high.y}}, std::to_string(label), Align::Right);
     if (pressed.clicked) {
       select_tissue(editor, label, false);
@@ -158,7 +159,7 @@ void draw_views_region(Editor& editor) {
     if (editor.layout.view_places.size() > 1 && place.id == editor.views->active) outline(place.rect, look.theme.accent, 0, 2 * look.line());
     ImGui::PopClipRect();
   }
-  draw_context_menu(editor);
+  draw_pointer_menu(editor);
   draw_pick_list(editor);
   end_region(editor);
 }

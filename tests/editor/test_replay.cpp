@@ -228,7 +228,11 @@ TEST_CASE("replay: a volume opens in the background while the editor goes on, an
   const Document body = small_body();
   write_volume(*body.volume, folder / "ball.nrrd", *body.tissues);
   SmallEditor test({1024, 640}, {}, false);
+  const std::vector<editor::ViewPlace> before = test.editor->layout.view_places;
   test.editor->to_open = {folder / "ball.nrrd"};
+  test.player.step();
+  CHECK(test.fact("jobs") == "yes");
+  CHECK(test.editor->layout.view_places[0].rect == before[0].rect);  // nothing jumps for a job
   test.play("wait-job\n expect volume yes\n expect name ball");
   CHECK(*test.editor->document().volume->voxels.data() == 0);
   CHECK(test.editor->document().volume->voxels == body.volume->voxels);
@@ -375,4 +379,21 @@ TEST_CASE("replay: the cross-hair starts inside the body, and slices show all of
       CHECK(editor::Rect{{0, 0}, size}.contains(pixel));
     }
   }
+}
+
+TEST_CASE("replay: menus at the pointer list views, displays and workspaces") {
+  SmallEditor test({1024, 640});
+  test.play(R"(
+    move "3D view/view"
+    key Z
+    click Display/X-ray
+    expect display xray
+    key `
+    click Views/Top
+    wait 0.3
+    expect view Top
+    key Ctrl+Tab
+    click Workspaces/Pose
+    expect workspace pose
+  )");
 }
