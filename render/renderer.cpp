@@ -63,6 +63,7 @@ VolumePass& Renderer::Parts::volume_pass(const VolumeTexture& volume) {
 
 Renderer::Renderer(int largest_texture) : parts_(std::make_unique<Parts>(largest_texture)) {}
 Renderer::~Renderer() = default;
+void Renderer::finish() { glFinish(); }
 const std::string& Renderer::note() const { return parts_->note; }
 
 }  // namespace limber::render

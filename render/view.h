@@ -29,6 +29,9 @@ class Renderer {
   // What the user should know of the last upload ("shown at half resolution: ..."), or empty.
   const std::string& note() const;
 
+  // Waits until everything drawn so far is done, for whoever measures.
+  void finish();
+
   struct Parts;
   Parts& parts() { return *parts_; }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber render VOLUME -o PNG [--size WxH] [--view front|back|left|right|top|bottom] [--turn DEG] [--tilt DEG] [--orthographic]
+// limber render VOLUME|PROJECT -o PNG [--size WxH] [--view front|back|left|right|top|bottom] [--turn DEG] [--tilt DEG] [--orthographic]
 //        [--display solid|xray|tissue] [--hide L,L] [--opacity L=A] [--clip-box X,Y,Z,X,Y,Z] [--clip-plane X,Y,Z,NX,NY,NZ]
 //        [--rig RIG] [--armature octahedron|stick|none] [--weights W] [POSE-OPTIONS]
 //        [--slice axial|coronal|sagittal [--at MM] [--outline]] [--turntable N] [--transparent] [--light]
-// A picture without a window or a display.
+// A picture without a window or a display. A project brings its own skeleton, pose and visibility.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -18,6 +18,7 @@
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/pose_options.h"
+#include "core/project/project_io.h"
 #include "core/resample/resample.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bone_parts.h"
@@ -64,8 +65,8 @@ TissueLook& look_at(Visibility& visibility, const TissueTable& tissues, double f
   return visibility.looks[tissue->label];
 }
 
-Visibility visibility_of(const Options& options, const TissueTable& tissues) {
-  Visibility visibility;
+// `visibility` with what the command changes of it.
+Visibility visibility_of(const Options& options, const TissueTable& tissues, Visibility visibility) {
   for (const double label : options.hide) {
     char text[32];
     std::snprintf(text, sizeof text, "--hide %.15g", label);
@@ -81,9 +82,11 @@ Visibility visibility_of(const Options& options, const TissueTable& tissues) {
   return visibility;
 }
 
-Clip clip_of(const Options& options) {
+Clip clip_of(const Options& options, const Visibility& visibility) {
   const auto point = [](const std::vector<double>& v, size_t first) { return glm::dvec3(v[first], v[first + 1], v[first + 2]); };
   Clip clip;
+  if (visibility.clip_box.enabled) clip.box = {visibility.clip_box.low, visibility.clip_box.high};
+  if (visibility.clip_plane.enabled) clip.plane = {visibility.clip_plane.point, visibility.clip_plane.normal};
   if (!options.clip_box.empty()) {
     const glm::dvec3 a = point(options.clip_box, 0), b = point(options.clip_box, 3);
     clip.box = {glm::min(a, b), glm::max(a, b)};
@@ -96,14 +99,8 @@ Clip clip_of(const Options& options) {
   return clip;
 }
 
-// What is drawn, read and posed.
-struct Subject {
-  Scene scene;
-  TissueTable tissues;
-};
-
-Subject read_subject(const Options& options, Progress& progress) {
-  Subject subject;
+Document read_files(const Options& options, Progress& progress) {
+  Document document;
   cmd::Body body;
   if (options.body.rig.empty()) {
     if (cmd::wants_pose(options.pose) || !options.weights.empty()) throw Error("a pose needs a skeleton", "--rig", "name the rig");
@@ -115,26 +112,48 @@ Subject read_subject(const Options& options, Progress& progress) {
     if (!options.body.bones.empty()) body.tissues = with_bones(std::move(body.tissues), options.body.bones);
   } else {
     body = cmd::read_body(options.body, progress);
+    document.armature = std::make_shared<const Armature>(std::move(body.rig));
   }
+  document.volume = std::make_shared<const LabelVolume>(std::move(body.file.volume));
+  document.tissues = std::make_shared<const TissueTable>(std::move(body.tissues));
+  return document;
+}
 
-  if (cmd::wants_pose(options.pose)) {
-    const Pose pose = cmd::read_pose_options(options.pose, body.rig);
-    const TissueVoxels tissue(body.file.volume);
-    SkinWeights weights = [&] {
-      if (options.weights.empty())
-        return diffuse_heat(body.file.volume, tissue, body.tissues, body.rig,
-                            split_bones(body.file.volume, tissue, body.tissues, body.rig, progress), {}, progress);
-      WeightsFile file = read_weights(options.weights, body.file.volume, tissue, body.rig);
-      cmd::warn(file.warnings);
-      return std::move(file.weights);
-    }();
-    body.file.volume = resample(body.file.volume, body.tissues, body.rig, weights, pose, DualQuaternion{}, {}, progress).volume;
-    subject.scene.posed_from_rest = posed_from_rest(body.rig, pose);
-  }
-  subject.scene.volume = std::make_shared<const LabelVolume>(std::move(body.file.volume));
-  if (!options.body.rig.empty()) subject.scene.armature = std::make_shared<const Armature>(std::move(body.rig));
-  subject.tissues = std::move(body.tissues);
-  return subject;
+Document read_document(const Options& options, Progress& progress) {
+  if (!is_project(options.body.volume)) return read_files(options, progress);
+  if (!options.body.rig.empty() || !options.body.tissues.empty() || !options.body.bones.empty() || !options.weights.empty())
+    throw Error("a project has its own rig, tissues and weights", options.body.volume, "leave out --rig, --tissues, --bones and --weights");
+  Project project = read_project(options.body.volume, progress);
+  cmd::warn(project.warnings);
+  Document& document = project.document;
+  if (!document.volume || !document.tissues) throw Error("there is nothing to draw: the project has no volume", options.body.volume, "import one in the editor");
+  if (!document.armature && cmd::wants_pose(options.pose)) throw Error("a pose needs a skeleton", options.body.volume, "add one to the project");
+  return std::move(document);
+}
+
+SkinWeights weights_of(const Options& options, const Document& document, Progress& progress) {
+  if (document.weights) return *document.weights;
+  const TissueVoxels tissue(*document.volume);
+  if (options.weights.empty())
+    return diffuse_heat(*document.volume, tissue, *document.tissues, *document.armature,
+                        split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress), {}, progress);
+  WeightsFile file = read_weights(options.weights, *document.volume, tissue, *document.armature);
+  cmd::warn(file.warnings);
+  return std::move(file.weights);
+}
+
+// The body and its skeleton, posed.
+Scene posed_scene(const Options& options, const Document& document, Progress& progress) {
+  Scene scene{.volume = document.volume, .armature = document.armature};
+  if (!document.armature) return scene;
+  Pose pose = document.pose ? *document.pose : rest_pose(*document.armature);
+  if (cmd::wants_pose(options.pose)) pose = cmd::read_pose_options(options.pose, *document.armature);
+  if (pose == rest_pose(*document.armature)) return scene;
+  const SkinWeights weights = weights_of(options, document, progress);
+  Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose, DualQuaternion{}, {}, progress);
+  scene.volume = std::make_shared<const LabelVolume>(std::move(posed.volume));
+  scene.posed_from_rest = posed_from_rest(*document.armature, pose);
+  return scene;
 }
 
 // The world box of the tissue (and the clip box), which the picture is to show.
@@ -204,11 +223,12 @@ void run(const Options& options) {
   cmd::CommandProgress progress(options.run.progress);
   check_place(options.turntable ? numbered(options.output, 0) : options.output);
 
-  Subject subject = read_subject(options, progress);
-  Scene& scene = subject.scene;
-  scene.looks = std::make_shared<const LabelLooks>(looks_of(subject.tissues, visibility_of(options, subject.tissues)));
+  const Document document = read_document(options, progress);
+  const Visibility visibility = visibility_of(options, *document.tissues, document.visibility ? *document.visibility : Visibility{});
+  Scene scene = posed_scene(options, document, progress);
+  scene.looks = std::make_shared<const LabelLooks>(looks_of(*document.tissues, visibility));
   scene.display = options.display;
-  scene.clip = clip_of(options);
+  scene.clip = clip_of(options, visibility);
   scene.bone_shape = options.armature == "none" ? BoneShape::None : options.armature == "stick" ? BoneShape::Stick : BoneShape::Octahedron;
   scene.bones_in_front = options.display == Display::XRay;
   scene.grid = options.grid;
@@ -238,9 +258,9 @@ void run(const Options& options) {
 }  // namespace
 
 void add_render(CLI::App& app) {
-  auto* command = app.add_subcommand("render", "a picture of a volume, no display needed");
+  auto* command = app.add_subcommand("render", "a picture of a volume or a project, no display needed");
   auto options = std::make_shared<Options>();
-  command->add_option("VOLUME", options->body.volume, "label volume")->required();
+  command->add_option("VOLUME", options->body.volume, "label volume or project")->required();
   command->add_option("-o,--output", options->output, "PNG")->required();
   command->add_option("--tissues", options->body.tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
   command->add_option("--bones", options->body.bones, "labels that are bone, as in the file")->delimiter(',')->type_name("L,L");

@@ -14,8 +14,6 @@
 #include <string>
 #include <vector>
 
-#include <epoxy/gl.h>
-
 #include "core/volume/volume_io.h"
 #include "render/headless.h"
 #include "render/looks.h"
@@ -66,7 +64,7 @@ void measure_view(Renderer& renderer, Scene scene, const char* distance, const C
   scene.transparent_background = true;  // the alpha is the silhouette
   Camera camera = first;
   view.draw(scene, camera, size, 0, 1);
-  glFinish();
+  renderer.finish();
   std::vector<double> seconds;
   std::vector<int> pixels;
   std::printf("{\"view\": \"%s %dx%d %s\", \"display\": \"%s\", \"size\": [%d, %d], \"cameras\": [", distance, size.x, size.y, xray ? "xray" : "solid",
@@ -75,7 +73,7 @@ void measure_view(Renderer& renderer, Scene scene, const char* distance, const C
     camera = turned(camera, kTurn);
     const double begin = cpu_seconds();
     view.draw(scene, camera, size, 0, 1);
-    glFinish();
+    renderer.finish();
     seconds.push_back(cpu_seconds() - begin);
     pixels.push_back(covered_pixels(view.read()));
     if (i > 0) std::printf(", ");
@@ -96,7 +94,7 @@ void measure_turning(Renderer& renderer, const Scene& scene, const Camera& first
     camera = turned(camera, 3);
     const double begin = wall_seconds(), cpu_begin = cpu_seconds();
     view.draw(scene, camera, size, begin);
-    glFinish();
+    renderer.finish();
     if (i < 20) continue;  // the resolution has settled by then
     wall.push_back(wall_seconds() - begin);
     cpu.push_back(cpu_seconds() - cpu_begin);
@@ -125,7 +123,7 @@ int main(int argc, char** argv) {
     const double begin = cpu_seconds();
     View3D first(renderer);
     first.draw(scene, far, {64, 64}, 0, 1);
-    glFinish();
+    renderer.finish();
     std::printf("{\"upload_cpu_seconds\": %.6f,\n \"views\": [\n", cpu_seconds() - begin);
     bool is_first = true;
     for (const Display display : {Display::Solid, Display::XRay})

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/project/project_io.h"
 #include "core/volume/volume_io.h"
 #include "render/image_io.h"
 #include "tests/render/studio.h"
@@ -45,6 +46,28 @@ TEST_CASE("render command: a turntable writes numbered pictures, a slice one") {
   CHECK_FALSE(fs::exists(folder / "turn-0003.png"));
   CHECK(run_limber({"render", folder / "ball.nrrd", "-o", folder / "slice.png", "--size", "64x64", "--slice", "axial", "--at", "12"}).exit_code == 0);
   CHECK(fs::exists(folder / "slice.png"));
+}
+
+TEST_CASE("render command: a project is drawn with what it hides") {
+  const Folder folder;
+  const auto body = painted(grid_of({24, 24, 24}), [](const glm::dvec3& p) -> Label { return glm::length(p - glm::dvec3(12)) < 9 ? (p.x < 12 ? 1 : 2) : 0; });
+  auto tissues = std::make_shared<TissueTable>();
+  tissues->tissues = {{.label = 1, .file_value = 1, .name = "one"}, {.label = 2, .file_value = 2, .name = "two"}};
+  Project project;
+  project.document.volume = body;
+  project.document.tissues = tissues;
+  Visibility visibility;
+  visibility.looks[2].visible = false;
+  project.document.visibility = std::make_shared<const Visibility>(visibility);
+  DocumentWriter writer;
+  create_project(project, folder / "body.limber", writer);
+  const auto run = run_limber({"render", folder / "body.limber", "-o", folder / "body.png", "--size", "80x80", "--transparent"});
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const render::Image image = render::read_png(folder / "body.png");
+  CHECK(pixel_of(image, {30, 40}).a == 255);
+  CHECK(pixel_of(image, {52, 40}).a == 0);
+  CHECK(run_limber({"render", folder / "body.limber", "-o", folder / "none.png", "--rig", "x.json"}).exit_code == 1);
 }
 
 TEST_CASE("render command: what cannot be drawn is refused in one line, and leaves no picture") {
