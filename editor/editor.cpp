@@ -126,6 +126,7 @@ void Editor::take_input() {
 
 void Editor::draw_views() {
   update_scene(*views, document(), selection, preferences.theme == "dark");
+  show_posed(*this);
   move_camera(views->body, now, preferences.reduce_motion);
   for (const ViewPlace& place : layout.view_places) draw_view_picture(*views, document(), place, now);
   hover_views(*this);

@@ -26,6 +26,7 @@
 #include "editor/remembered.h"
 #include "editor/task.h"
 #include "editor/tour.h"
+#include "editor/results.h"
 #include "editor/views.h"
 #include "editor/widget_registry.h"
 
@@ -143,6 +144,19 @@ struct Editor {
   std::string shown_popup;  // the one that is open
   bool open_pick_list = false;  // likewise
   std::vector<Label> pick_list;  // tissues under the pointer, nearest first
+  std::string shown_result;  // in place of the volume; empty or unknown: the volume
+  std::vector<KnownResult> known_results;
+  struct {
+    std::string method = "dqs";
+    double spacing = 0;  // mm; 0: as the volume
+    bool fit_joints = false;
+  } resampling;
+  struct {
+    std::string search;
+    std::array<bool, 4> hidden{};  // by severity
+    std::size_t lines_seen = 0;
+  } console;
+  std::map<int, double> stopping_since;  // jobs that were cancelled, by id
   std::map<std::string, bool> open_sections;  // of the sidebar, by title
   InputState input;
   std::optional<Drag> drag;

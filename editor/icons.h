@@ -28,7 +28,7 @@ inline constexpr char kSelect[] = "\uf245", kMove[] = "\uf047", kRotate[] = "\uf
 // States
 inline constexpr char kOk[] = "\uf058", kFail[] = "\uf057", kWarning[] = "\uf071", kError[] = "\uf06a", kInfo[] = "\uf05a",
                       kRunning[] = "\uf110", kWaiting[] = "\uf017", kTick[] = "\uf00c", kClose[] = "\uf00d", kOpened[] = "\uf0d7",
-                      kClosed[] = "\uf0da", kLeft[] = "\uf0d9", kMore[] = "\uf141", kDot[] = "\uf111";
+                      kClosed[] = "\uf0da", kLeft[] = "\uf0d9", kMore[] = "\uf141", kDot[] = "\uf111", kNext[] = "\uf138";
 
 // Others
 inline constexpr char kTable[] = "\uf0ce", kJobs[] = "\uf0ae", kKeyboard[] = "\uf11c", kTheme[] = "\uf042", kConsole[] = "\uf120",

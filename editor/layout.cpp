@@ -56,6 +56,10 @@ void place_views(Layout& layout, const Arrangement& arrangement, float gap) {
 
 Arrangement default_arrangement(Workspace workspace) {
   Arrangement arrangement;
+  if (workspace == Workspace::Resample) {
+    arrangement.results = true;
+    arrangement.bottom_height = 228;
+  }
   if (workspace == Workspace::Skin) arrangement.views = ViewLayout::Split;
   return arrangement;
 }
@@ -98,7 +102,7 @@ Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrange
 
   // Bottom area
   float views_bottom = bottom;
-  if (arrangement.console && !alone) {
+  if ((arrangement.console || arrangement.results) && !alone) {
     const float most = std::max(kBottomLow, unscaled.y / 2);
     const float height = unscaled.y < 720 ? kBottomInSmall : std::clamp(arrangement.bottom_height, kBottomLow, most);
     views_bottom = std::max(bottom - px(height), std::round((header_bottom + bottom) / 2));  // the views keep half of what there is

@@ -29,6 +29,7 @@ struct Arrangement {
   std::optional<bool> sidebar;  // open; nothing: as the window's width suggests
   bool tool_strip = true;
   bool console = false;
+  bool results = false;
   float sidebar_width = 320, bottom_height = 192;
   float split_x = 0.66f, split_y = 0.5f, four_x = 0.5f, four_y = 0.5f;  // shares of the first view
   std::optional<ViewId> maximized;

@@ -67,14 +67,15 @@ std::vector<Menu> menus() {
         "view.screenshot", "view.turntable", "<", "-", "file.quit"}},
       {"Edit",
        {"edit.undo", "edit.redo", "edit.history", "-", "edit.repeat_last", "-", "select.all", "select.none", "-", "edit.rename", "-", "> Prepare volume", "prepare.regrid",
-        "prepare.flip_x", "prepare.flip_y", "prepare.flip_z", "prepare.orient", "prepare.crop", "prepare.pad", "prepare.merge", "prepare.specks", "prepare.statistics", "<", "-",
+        "prepare.flip_x", "prepare.flip_y", "prepare.flip_z", "prepare.orient", "prepare.crop", "prepare.crop_to_clip_box", "prepare.pad", "prepare.merge", "prepare.specks", "prepare.statistics", "<", "> Weights", "skin.heat", "skin.geodesic", "skin.rigid", "skin.drop_weights", "<", "> Pose", "pose.flex", "pose.clear", "<",
+        "> Resample", "resample.run", "resample.lbs", "resample.dqs", "result.toggle", "result.copy_report", "result.delete", "result.delete_stale", "<", "-", "edit.keymap",
         "edit.preferences"}},
       {"View",
        {"view.one", "view.split", "view.four", "view.maximize", "-", "> Standard views", "view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom", "view.opposite", "<",
         "view.ortho", "view.frame_selected", "view.frame_all", "-", "view.solid", "view.xray_display", "view.tissue", "-", "> Clipping", "view.clip_box", "view.clip_plane", "view.reset_clipping",
         "<", "> Tissues", "view.hide", "view.isolate_selected", "view.reveal", "<", "> Slices", "slice.show_labels", "slice.show_outlines", "slice.next", "slice.previous", "<", "> Overlays",
-        "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.cross_hair", "<", "-", "view.sidebar", "view.tool_strip", "view.full_screen"}},
-      {"Help", {"help.guide", "help.keys", "help.tour", "-", "search.commands", "view.console", "help.system_facts", "-", "help.about"}},
+        "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.cross_hair", "<", "-", "view.sidebar", "view.tool_strip", "view.results", "view.console", "view.full_screen"}},
+      {"Help", {"help.guide", "help.keys", "help.tour", "-", "search.commands", "view.console", "help.last_error", "help.system_facts", "-", "help.about"}},
   };
 }
 

@@ -34,6 +34,13 @@ void Messages::add(Toast toast) {
   same->since = -1;
 }
 
+void Messages::toast_failure(const std::string& text, const std::string& where) {
+  const ErrorMessage message = parts_of(text);
+  last_failure = text;
+  toast_error(message.what, message.where.empty() ? where : message.where, "help.last_error");
+  log.back().text = text;
+}
+
 void Messages::show_error(const std::string& text) {
   log.push_back({Severity::Error, text});
   const ErrorMessage message = parts_of(text);

@@ -14,6 +14,7 @@ enum class Severity { Info, Ok, Warning, Error };
 struct Toast {
   Severity severity;
   std::string line, detail;
+  std::string action;  // an operator's id: the one thing to do about it
   double since = -1;  // first shown; set when drawn
   int times = 1;
 };
@@ -32,16 +33,19 @@ struct ErrorMessage {
 class Messages {
  public:
   void info(std::string line, std::string detail = "") { add({Severity::Info, std::move(line), std::move(detail)}); }
-  void ok(std::string line, std::string detail = "") { add({Severity::Ok, std::move(line), std::move(detail)}); }
+  void ok(std::string line, std::string detail = "", std::string action = "") { add({Severity::Ok, std::move(line), std::move(detail), std::move(action)}); }
   void warn(std::string line, std::string detail = "") { add({Severity::Warning, std::move(line), std::move(detail)}); }
   // Beside the work: what failed without the user having just asked for it, as in a job.
-  void toast_error(std::string line, std::string detail = "") { add({Severity::Error, std::move(line), std::move(detail)}); }
+  void toast_error(std::string line, std::string detail = "", std::string action = "") { add({Severity::Error, std::move(line), std::move(detail), std::move(action)}); }
+  // The same from an Error's line; the whole of it can be read again.
+  void toast_failure(const std::string& text, const std::string& where);
   // In the middle of the window: the user's own act failed. The same error again counts up. `text` is an Error's line.
   void show_error(const std::string& text);
 
   std::deque<Toast> toasts;
   std::vector<LogLine> log;
   std::vector<ErrorMessage> errors;  // the first is shown
+  std::string last_failure;          // of a job: an Error's line
 
  private:
   void add(Toast toast);

@@ -31,7 +31,7 @@ struct Preferences {
   // Jobs
   int jobs_at_once = 2;       // [1, 8]
   int worker_memory_mb = 0;   // that a resampling may take; 0: no limit
-  int worker_minutes = 0;     // likewise
+  double worker_minutes = 0;  // likewise
 
   // Folders
   std::string scratch_folder;  // for what a resampling reads and writes; "": the system's

@@ -12,10 +12,7 @@ namespace limber::editor {
 namespace {
 
 void tell_of_ended(Editor& editor, const JobStatus& job) {
-  if (job.state == JobState::Failed) {
-    const ErrorMessage message = parts_of(job.message);
-    editor.messages.toast_error(message.what, message.where.empty() ? job.label : message.where);
-  }
+  if (job.state == JobState::Failed) editor.messages.toast_failure(job.message, job.label);
   if (job.state == JobState::Cancelled) editor.messages.info(job.label, "cancelled");
 }
 

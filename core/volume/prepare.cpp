@@ -119,6 +119,12 @@ LabelVolume reorient(const LabelVolume& volume, const std::string& code) {
   return permuted(volume, turned, map);
 }
 
+LabelVolume crop(const LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high) {
+  const glm::ivec3 first = glm::max(low, glm::ivec3(0)), last = glm::min(high, volume.grid.size - 1);
+  if (glm::any(glm::lessThan(last, first))) throw Error("there is nothing to crop to", "the box", "move it over the volume");
+  return boxed(volume, first, last - first + 1);
+}
+
 LabelVolume crop_to_tissue(const LabelVolume& volume) {
   const glm::ivec3 size = volume.grid.size;
   std::vector<glm::ivec3> lows(size.z, glm::ivec3(INT32_MAX)), highs(size.z, glm::ivec3(-1));

@@ -35,6 +35,8 @@ LabelVolume reorient(const LabelVolume& volume, const std::string& code);
 
 // Throws Error when there is no tissue.
 LabelVolume crop_to_tissue(const LabelVolume& volume);
+// The voxels from `low` to `high`, both included. Throws Error when there are none of the volume's among them.
+LabelVolume crop(const LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high);
 // Air on every side. Throws Error when more voxels result than fit.
 LabelVolume pad(const LabelVolume& volume, int voxels);
 LabelVolume merge_labels(const LabelVolume& volume, Label from, Label into);

@@ -27,7 +27,8 @@ void note_use(Editor& editor, const Operator& op) {
 std::vector<Operator> gather_operators() {
   std::vector<Operator> all;
   for (auto list : {file_operators, import_operators, export_operators, edit_operators, workspace_operators, view_operators, navigation_operators, clip_operators,
-                    slice_operators, tissue_operators, select_operators, search_operators, preferences_operators})
+                    slice_operators, tissue_operators, select_operators, search_operators, preferences_operators, prepare_operators, skin_operators, pose_operators,
+                    resample_operators, help_operators})
     for (Operator& op : list()) all.push_back(std::move(op));
   return all;
 }

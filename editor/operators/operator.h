@@ -37,6 +37,11 @@ std::vector<Operator> tissue_operators();
 std::vector<Operator> select_operators();
 std::vector<Operator> search_operators();
 std::vector<Operator> preferences_operators();
+std::vector<Operator> prepare_operators();
+std::vector<Operator> skin_operators();
+std::vector<Operator> pose_operators();
+std::vector<Operator> resample_operators();
+std::vector<Operator> help_operators();
 // All of the above.
 std::vector<Operator> gather_operators();
 

@@ -156,7 +156,7 @@ void PreferencesDialog::draw_undo(Editor& editor, Column& column) {
 void PreferencesDialog::draw_jobs(Editor& editor, Column& column) {
   whole_number(editor, column, "Jobs at once", "As many run together, the others wait.", &Preferences::jobs_at_once, 1, 8, "");
   whole_number(editor, column, "Memory of a resampling", "More ends it with a message. 0: no limit.", &Preferences::worker_memory_mb, 0, 1 << 18, "MB");
-  whole_number(editor, column, "Time of a resampling", "Longer ends it with a message. 0: no limit.", &Preferences::worker_minutes, 0, 1440, "min");
+  number(editor, column, "Time of a resampling", "Longer ends it with a message. 0: no limit.", 0, 1440, "%.1f", "min", [](Preferences& p) -> double& { return p.worker_minutes; });
   note(editor, column, "A resampling runs in a process of its own: whatever happens to it, the project stays.");
 }
 

@@ -31,6 +31,11 @@ void draw_sidebar(Editor& editor) {
   begin_region(editor, Region::Sidebar, "sidebar", rect, editor.look.theme.panel);
   {
     Column column(editor, "sections", rect);
+    draw_steps(editor, column);
+    if (editor.workspace == Workspace::Resample) {
+      draw_running(editor, column);
+      draw_resample(editor, column);
+    }
     draw_outliner(editor, column);
     draw_tissues(editor, column);
     draw_tissue(editor, column);

@@ -84,24 +84,6 @@ float draw_saved(Editor& editor, const Rect& bar, float right) {
   return slot.low.x - look.px(12);
 }
 
-float draw_job(Editor& editor, const Rect& bar, float right) {
-  const Look& look = editor.look;
-  for (const JobStatus& job : editor.jobs.statuses()) {
-    if (!job.active() || job.label.empty()) continue;
-    const Rect slot{{right - look.px(190), bar.low.y}, {right, bar.high.y}};
-    const Rect cancel{{slot.high.x - look.px(22), slot.low.y + look.px(3)}, {slot.high.x, slot.high.y - look.px(3)}};
-    if (button(editor, "Cancel job", cancel, {icon::kClose, "", ButtonStyle::Flat})) editor.jobs.cancel(job.id);
-    if (ImGui::IsItemHovered()) tooltip(editor, cancel, "Cancel", job.label);
-    const std::string words = job.state == JobState::Stopping ? "Stopping" : job.label;
-    put_text(editor, look.fonts.small, look.theme.text2, Rect{slot.low, {slot.high.x - look.px(76), slot.high.y}}, words);
-    const Rect track{{slot.high.x - look.px(70), slot.centre().y - look.px(3)}, {slot.high.x - look.px(26), slot.centre().y + look.px(3)}};
-    fill(track, look.theme.field, look.px(3));
-    fill({track.low, {track.low.x + track.width() * static_cast<float>(std::clamp(job.fraction, 0.0, 1.0)), track.high.y}}, look.theme.accent, look.px(3));
-    return slot.low.x - look.px(12);
-  }
-  return right;
-}
-
 float draw_hover(Editor& editor, const Rect& bar, float right) {
   const Hover& hover = editor.views->hover;
   if (!hover.view || !editor.document().volume) return right;
@@ -132,7 +114,7 @@ void draw_status_bar(Editor& editor) {
     const std::string words = "or drop a file on the window";
     put_text(editor, look.fonts.small, look.theme.text2, Rect{{right - text_size(look.fonts.small, words).x - 1, bar.low.y}, {right, bar.high.y}}, words);
   }
-  right = draw_job(editor, bar, right);
+  right = draw_job_slot(editor, bar, right);
   right = draw_hover(editor, bar, right);
   draw_hints(editor, bar, right);
   end_region(editor);

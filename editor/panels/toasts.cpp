@@ -35,11 +35,20 @@ bool draw_toast(Editor& editor, const Toast& toast, const Rect& rect, int index,
   ImGui::GetWindowDrawList()->AddRectFilled(im(rect.low), {rect.low.x + look.px(3), rect.high.y}, face.colour, look.px(6), ImDrawFlags_RoundCornersLeft);
   put_icon(look.fonts.regular, face.colour, Rect{{rect.low.x + look.px(14), rect.low.y}, {rect.low.x + look.px(34), rect.high.y}}, face.icon);
   const float left = rect.low.x + look.px(42), right = rect.high.x - look.px(34), middle = rect.centre().y;
+  const Operator* action = toast.action.empty() ? nullptr : find_operator(editor, toast.action);
+  const float action_width = action ? text_size(look.fonts.regular, action->label).x + look.px(24) : 0, words_right = right - action_width;
   const std::string line = toast.times > 1 ? toast.line + " (" + std::to_string(toast.times) + " times)" : toast.line;
-  if (toast.detail.empty()) put_text(editor, look.fonts.regular, look.theme.text, Rect{{left, rect.low.y}, {right, rect.high.y}}, line);
+  if (toast.detail.empty()) put_text(editor, look.fonts.regular, look.theme.text, Rect{{left, rect.low.y}, {words_right, rect.high.y}}, line);
   else {
-    put_text(editor, look.fonts.regular, look.theme.text, Rect{{left, middle - look.px(18)}, {right, middle}}, line);
-    put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, middle}, {right, middle + look.px(16)}}, toast.detail);
+    put_text(editor, look.fonts.regular, look.theme.text, Rect{{left, middle - look.px(18)}, {words_right, middle}}, line);
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, middle}, {words_right, middle + look.px(16)}}, toast.detail);
+  }
+  if (action) {
+    const Rect link{{right - action_width + look.px(8), middle - look.px(12)}, {right, middle + look.px(12)}};
+    const Pressed pressed = press_area(editor, action->label, link);
+    put_text(editor, look.fonts.regular, look.theme.accent_text, link, action->label, Align::Centre);
+    if (pressed.hovered) operator_tooltip(editor, *action, link);
+    if (pressed.clicked) run(editor, *action);
   }
   held = rect.contains(editor.input.pointer);
   const Rect close{{rect.high.x - look.px(30), middle - look.px(12)}, {rect.high.x - look.px(6), middle + look.px(12)}};

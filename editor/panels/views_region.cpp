@@ -32,7 +32,7 @@ void hover_body(Editor& editor, const ViewPlace& place) {
 void hover_slice(Editor& editor, const ViewPlace& place) {
   Hover& hover = editor.views->hover;
   hover.point = world_of(slice_of(*editor.views, place.id).camera, editor.input.pointer - place.rect.low, place.rect.size());
-  const LabelVolume& volume = *editor.document().volume;
+  const LabelVolume& volume = *editor.views->scene.volume;  // at rest or posed, as it is seen
   hover.voxel = glm::ivec3(glm::round(voxel_from_world(volume.grid) * hover.point));
   hover.label = volume.at_or_air(hover.voxel);
   hover.inside = hover.label != 0;

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/form.h"
+
+#include "core/base/error.h"
+#include "editor/dialog.h"
+#include "editor/fields.h"
+#include "editor/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kRow = 34, kLabel = 130;
+constexpr std::size_t kMostBeside = 4;
+
+class Form final : public Dialog {
+ public:
+  explicit Form(FormRequest request) : request_(std::move(request)) {}
+
+  void draw(Editor& editor) override;
+  bool key(Editor&, const Chord& chord) override {
+    if (chord.key != Key::Return && chord.key != Key::NumEnter) return false;
+    return accept_ = true;
+  }
+
+ private:
+  void draw_field(Editor& editor, FormField& field, const Rect& row);
+  void draw_choice(Editor& editor, FormField& field, const Rect& rect);
+
+  FormRequest request_;
+  bool accept_ = false;
+};
+
+void Form::draw_choice(Editor& editor, FormField& field, const Rect& rect) {
+  const Look& look = editor.look;
+  if (field.choices.size() <= kMostBeside) {
+    const float width = std::round(rect.width() / static_cast<float>(field.choices.size()));
+    for (int i = 0; i < std::ssize(field.choices); ++i) {
+      const Rect place{{rect.low.x + width * static_cast<float>(i), rect.low.y}, {rect.low.x + width * static_cast<float>(i + 1) - look.px(1), rect.high.y}};
+      if (button(editor, field.choices[i], place, {"", field.choices[i], i == field.chosen ? ButtonStyle::Chosen : ButtonStyle::Plain})) field.chosen = i;
+      if (ImGui::IsItemHovered()) tooltip(editor, place, field.label, field.sentence);
+    }
+    return;
+  }
+  const Pressed pressed = press_area(editor, "list", rect);
+  fill(rect, pressed.hovered ? look.theme.hover : look.theme.raised, look.px(4));
+  put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(10), rect.low.y}, {rect.high.x - look.px(24), rect.high.y}}, field.choices[field.chosen]);
+  put_icon(look.fonts.regular, look.theme.text2, Rect{{rect.high.x - look.px(24), rect.low.y}, rect.high}, icon::kOpened);
+  if (pressed.hovered) tooltip(editor, rect, field.label, field.sentence);
+  if (pressed.clicked) ImGui::OpenPopup("choices");
+  ImGui::SetNextWindowPos({rect.low.x, rect.high.y + look.px(2)});
+  ImGui::SetNextWindowSizeConstraints({rect.width(), 0}, {rect.width(), look.px(240)});
+  if (!ImGui::BeginPopup("choices", ImGuiWindowFlags_NoMove)) return;
+  for (int i = 0; i < std::ssize(field.choices); ++i) {
+    ImGui::PushID(i);
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    if (ImGui::Selectable("##choice", i == field.chosen, 0, ImVec2(width, look.px(22)))) field.chosen = i;
+    const Rect row{from_im(corner), {corner.x + width, corner.y + look.px(22)}};
+    register_widget(editor, field.choices[i], row);
+    put_text(editor, look.fonts.regular, look.theme.text, Rect{{row.low.x + look.px(8), row.low.y}, row.high}, field.choices[i]);
+    ImGui::PopID();
+  }
+  ImGui::EndPopup();
+}
+
+void Form::draw_field(Editor& editor, FormField& field, const Rect& row) {
+  const Look& look = editor.look;
+  const PathScope path(editor, field.label);
+  put_text(editor, look.fonts.regular, look.theme.text2, Rect{row.low, {row.low.x + look.px(kLabel), row.high.y}}, field.label);
+  const Rect rect{{row.low.x + look.px(kLabel + 8), row.low.y + look.px(4)}, {row.high.x, row.high.y - look.px(4)}};
+  if (field.kind == FormField::Kind::Choice) return draw_choice(editor, field, rect);
+  bool committed = false;
+  number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, false, committed);
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, field.label, field.sentence + "\nDrag it, or type after a double click.");
+}
+
+void Form::draw(Editor& editor) {
+  const Look& look = editor.look;
+  const float height = 36 + 18 + 44 + kRow * static_cast<float>(request_.fields.size()) + 52 + 28 + 18;
+  const Rect rect = begin_dialog(editor, request_.title, 480, height);
+  ImGui::GetWindowDrawList()->AddText(look.fonts.regular, look.fonts.regular->FontSize, im(rect.low), look.theme.text2, request_.sentence.c_str(), nullptr, rect.width());
+  editor.widgets.add_text(request_.sentence);
+  float y = rect.low.y + look.px(44);
+  for (FormField& field : request_.fields) {
+    draw_field(editor, field, {{rect.low.x, y}, {rect.high.x, y + look.px(kRow)}});
+    y += look.px(kRow);
+  }
+
+  std::string outcome, problem;
+  try {
+    if (request_.outcome) outcome = request_.outcome(editor, request_.fields);
+  } catch (const Error& error) {
+    problem = error.what();
+  }
+  const std::string& words = problem.empty() ? outcome : problem;
+  float x = rect.low.x;
+  if (!problem.empty()) {
+    put_icon(look.fonts.regular, look.theme.warn, Rect{{x, y + look.px(8)}, {x + look.px(18), y + look.px(26)}}, icon::kWarning);
+    x += look.px(24);
+  }
+  ImGui::GetWindowDrawList()->AddText(look.fonts.small, look.fonts.small->FontSize, im({x, y + look.px(10)}), problem.empty() ? look.theme.text2 : look.theme.warn, words.c_str(),
+                                      nullptr, rect.high.x - x);
+  editor.widgets.add_text(words);
+
+  const ButtonLook action{"", request_.action, ButtonStyle::Primary, problem.empty()};
+  const float width = std::max(look.px(96), width_of_button(editor, action)), low = rect.high.y - look.px(28), cancel = look.px(80);
+  const Rect primary{{rect.high.x - width, low}, rect.high};
+  const bool pressed = button(editor, request_.action, primary, action);
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) tooltip(editor, primary, request_.action, problem.empty() ? request_.sentence : problem, Chord{Chord::Kind::Key, {}, Key::Return});
+  if (button(editor, "Cancel", {{primary.low.x - look.px(8) - cancel, low}, {primary.low.x - look.px(8), rect.high.y}}, {"", "Cancel"})) editor.close_dialog();
+  end_dialog(editor);
+
+  if (!(pressed || std::exchange(accept_, false)) || !problem.empty()) return;
+  editor.close_dialog();
+  try {
+    request_.act(editor, request_.fields);
+  } catch (const Error& error) {
+    editor.messages.show_error(error.what());
+  }
+}
+
+}  // namespace
+
+FormField number_of(std::string label, std::string sentence, double value, double low, double high, const char* format, const char* unit) {
+  FormField field{std::move(label), std::move(sentence)};
+  field.value = value;
+  field.low = low;
+  field.high = high;
+  field.format = format;
+  field.unit = unit;
+  return field;
+}
+
+FormField choice_of(std::string label, std::string sentence, std::vector<std::string> choices, int chosen) {
+  FormField field{std::move(label), std::move(sentence), FormField::Kind::Choice};
+  field.choices = std::move(choices);
+  field.chosen = chosen;
+  return field;
+}
+
+std::unique_ptr<Dialog> make_form(FormRequest request) { return std::make_unique<Form>(std::move(request)); }
+
+}  // namespace limber::editor

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A dialog of a few fields and one thing to do with them. Enter does it, Escape leaves.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "editor/editor.h"
+
+namespace limber::editor {
+
+struct FormField {
+  std::string label;
+  std::string sentence;  // its tool tip
+
+  enum class Kind { Number, Choice } kind = Kind::Number;
+  double value = 0, low = 0, high = 1;  // of a number
+  const char* format = "%.0f";
+  const char* unit = "";
+  std::vector<std::string> choices;  // of a choice; up to four stand beside one another, more in a list
+  int chosen = 0;
+};
+FormField number_of(std::string label, std::string sentence, double value, double low, double high, const char* format, const char* unit = "");
+FormField choice_of(std::string label, std::string sentence, std::vector<std::string> choices, int chosen = 0);
+
+struct FormRequest {
+  std::string title;
+  std::string sentence;  // what it does, above the fields
+  std::string action;    // the primary button's word
+  std::vector<FormField> fields;
+  // Below the fields, anew whenever they change: what will come out of it. Throws Error for what cannot be done: shown
+  // in place of it, and the button waits.
+  std::function<std::string(const Editor&, const std::vector<FormField>&)> outcome;
+  std::function<void(Editor&, const std::vector<FormField>&)> act;
+};
+std::unique_ptr<Dialog> make_form(FormRequest request);
+
+}  // namespace limber::editor

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/icons.h"
+#include "editor/operators/polls.h"
+#include "editor/panels/help.h"
+
+namespace limber::editor {
+
+std::vector<Operator> help_operators() {
+  return {
+      {"help.keys", "Keys", icon::kKeyboard, "Help", "Every key and what it does.", [](Editor& e) { e.open_dialog(open_keys_page()); }},
+      {"help.last_error", "Details", icon::kError, "Help", "Shows the last failure of a job again, with what to do.",
+       [](Editor& e) { e.messages.show_error(std::string(e.messages.last_failure)); },
+       [](const Editor& e) { return e.messages.last_failure.empty() ? std::string("No job has failed") : std::string(); }},
+      {"help.system_facts", "Copy system facts", icon::kCopy, "Help", "Puts version, driver and window on the clipboard, for a report of a mistake.",
+       [](Editor& e) {
+         e.host.set_clipboard(system_facts(e));
+         e.messages.ok("System facts copied");
+       }},
+      {"help.about", "About and licences", icon::kInfo, "Help", "Version, licence, and what Limber is made with.", [](Editor& e) { e.open_dialog(open_about_page()); }},
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How this pose is resampled: method, spacing, and the button.
+#include "editor/fields.h"
+#include "editor/icons.h"
+#include "editor/panels/panels.h"
+#include "editor/results.h"
+
+namespace limber::editor {
+
+void draw_resample(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  if (column.begin_section("Resample")) {
+    auto& settings = editor.resampling;
+    const Rect method = column.property("Method");
+    const float half = std::round(method.width() / 2);
+    float x = method.low.x;
+    for (const char* id : {"resample.lbs", "resample.dqs"}) {
+      const Operator* op = find_operator(editor, id);
+      operator_button(editor, id, {{x, method.low.y}, {x + half - look.px(1), method.high.y}}, op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
+      x += half;
+    }
+    const Rect spacing = column.property("Output");
+    bool committed = false;
+    const char* format = settings.spacing > 0 ? "%.2f" : "as the volume";
+    number_field(editor, "Output", spacing, settings.spacing, 0, 20, format, settings.spacing > 0 ? "mm" : "", false, committed);
+    if (ImGui::IsItemHovered()) tooltip(editor, spacing, "Output", "Edge of the posed volume's voxels. 0: as the volume at rest.");
+    const Rect fit = column.property("Joints");
+    checkbox(editor, "Fit joints", fit, "Keep bones apart", settings.fit_joints);
+    if (ImGui::IsItemHovered()) tooltip(editor, fit, "Keep bones apart", "First moves each bent joint so that its bones do not collide.");
+    column.space(6);
+    const Rect row = column.row(30);
+    const Rect place{{row.low.x + look.px(10), row.low.y}, {row.high.x - look.px(10), row.low.y + look.px(28)}};
+    operator_button(editor, "resample.run", place, "Resample this pose", ButtonStyle::Primary);
+    const Operator* op = find_operator(editor, "resample.run");
+    const std::string reason = why_not(editor, *op);
+    const Rect note = column.row(24);
+    const Document& document = editor.document();
+    const std::string words = !reason.empty() ? reason : name_of_pose(*document.armature, document.pose ? *document.pose : rest_pose(*document.armature));
+    put_text(editor, look.fonts.small, reason.empty() ? look.theme.text2 : look.theme.warn, Rect{{note.low.x + look.px(10), note.low.y}, {note.high.x - look.px(10), note.high.y}}, words);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

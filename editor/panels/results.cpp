@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Below the views: every result in a row, and beside them what the chosen one did to each tissue.
+#include <cmath>
+#include <cstdio>
+
+#include "editor/icons.h"
+#include "editor/panels/panels.h"
+#include "editor/prepare.h"
+#include "editor/results.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kHead = 30, kTableHead = 26;
+constexpr float kColumns[] = {60, 84, 70};  // of time, volume and overlap
+constexpr float kState = 190, kNarrowState = 116, kNarrow = 640;
+
+std::string percent(const std::optional<double>& value) {
+  if (!value) return "-";
+  char text[24];
+  std::snprintf(text, sizeof text, "%+.2f %%", *value);
+  return text;
+}
+
+Colour colour_of_change(const Theme& theme, const std::optional<double>& value) {
+  if (!value) return theme.text2;
+  return std::abs(*value) <= 1 ? theme.ok : std::abs(*value) <= 5 ? theme.warn : theme.error;
+}
+
+void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 6>& words, const std::array<Colour, 6>& colours, ImFont* first, ImFont* digits) {
+  const Look& look = editor.look;
+  float right = row.high.x - look.px(10);
+  const float state = look.px(row.width() > look.px(kNarrow) ? kState : kNarrowState);
+  put_text(editor, look.fonts.regular, colours[5], Rect{{right - state + look.px(14), row.low.y}, {right, row.high.y}}, words[5]);
+  right -= state;
+  for (int i = 4; i >= 2; --i) {
+    const float width = look.px(kColumns[i - 2]);
+    put_text(editor, digits, colours[i], Rect{{right - width, row.low.y}, {right, row.high.y}}, words[i], Align::Right);
+    right -= width;
+  }
+  const float method = look.px(56);
+  put_text(editor, look.fonts.regular, colours[1], Rect{{right - method, row.low.y}, {right, row.high.y}}, words[1]);
+  put_text(editor, first, colours[0], Rect{{row.low.x + look.px(34), row.low.y}, {right - method - look.px(8), row.high.y}}, words[0]);
+}
+
+void draw_result_row(Editor& editor, Column& column, int index, const std::shared_ptr<const Result>& result, bool& open_menu) {
+  const Look& look = editor.look;
+  const Theme& theme = look.theme;
+  const bool shown = shown_result(editor) == result;
+  Rect row;
+  if (!column.list_row(row, index, shown)) return;
+  const PathScope path(editor, result->name);
+  const Pressed pressed = press_area(editor, "row", row);
+  const std::string reason = stale_reason(editor.document(), *result);
+  const auto facts = facts_of(editor, result);
+  put_icon(look.fonts.regular, !reason.empty() ? theme.warn : shown ? theme.accent_text : theme.text2, Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}},
+           reason.empty() ? icon::kResample : icon::kWaiting);
+  char seconds[24];
+  std::snprintf(seconds, sizeof seconds, "%.1f s", facts->seconds);
+  const Colour plain = theme.text, second = theme.text2;
+  put_cells(editor, row,
+            {result->name, method_name(result->method), seconds, percent(facts->change_percent), grouped(facts->overlap_voxels), reason.empty() ? (shown ? "shown" : "") : "stale: " + reason},
+            {plain, second, plain, colour_of_change(theme, facts->change_percent), facts->overlap_voxels ? theme.warn : theme.ok, reason.empty() ? second : theme.warn},
+            shown ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
+  if (pressed.hovered) tooltip(editor, row, result->name, (shown ? "Shown. A click shows the volume at rest." : "A click shows it in the views.") + (reason.empty() ? "" : "\nStale: " + reason));
+  if (pressed.clicked) editor.shown_result = shown ? "" : result->name;
+  if (pressed.right_clicked) {
+    editor.shown_result = result->name;
+    open_menu = true;
+  }
+}
+
+void draw_tissue_changes(Editor& editor, const Rect& rect) {
+  const auto result = chosen_result(editor);
+  if (!result) return;
+  const Look& look = editor.look;
+  const auto facts = facts_of(editor, result);
+  const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kTableHead)}};
+  const float bar_width = look.px(90), percent_width = look.px(76), volume_width = look.px(84), right = rect.high.x - look.px(12);
+  const float bar_left = right - percent_width - bar_width - look.px(8);
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{head.low.x + look.px(12), head.low.y}, {bar_left - volume_width, head.high.y}}, "Volume change of " + result->name);
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{bar_left - volume_width - look.px(8), head.low.y}, {bar_left - look.px(8), head.high.y}}, "cm\u00b3 after", Align::Right);
+  double largest = 1;
+  for (const ResultTissue& tissue : facts->tissues) largest = std::max(largest, std::abs(tissue.change_percent.value_or(0)));
+  Column column(editor, "changes", {{rect.low.x, head.high.y}, rect.high});
+  int index = 0;
+  for (const ResultTissue& tissue : facts->tissues) {
+    Rect row;
+    if (!column.list_row(row, index++, false)) continue;
+    char volume[24];
+    std::snprintf(volume, sizeof volume, "%.1f", tissue.mm3_after / 1000);
+    put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(12), row.low.y}, {bar_left - volume_width - look.px(8), row.high.y}}, tissue.name);
+    put_text(editor, look.fonts.mono, look.theme.text, Rect{{bar_left - volume_width, row.low.y}, {bar_left - look.px(8), row.high.y}}, volume, Align::Right);
+    const float zero = bar_left + bar_width / 2, y = row.centre().y, change = static_cast<float>(tissue.change_percent.value_or(0) / largest) * bar_width / 2;
+    fill({{zero, row.low.y}, {zero + look.line(), row.high.y}}, look.theme.line2);
+    if (std::abs(change) >= 0.5f) fill({{std::min(zero, zero + change), y - look.px(4)}, {std::max(zero, zero + change) + look.line(), y + look.px(4)}}, colour_of_change(look.theme, tissue.change_percent));
+    put_text(editor, look.fonts.mono, colour_of_change(look.theme, tissue.change_percent), Rect{{right - percent_width, row.low.y}, {right, row.high.y}}, percent(tissue.change_percent), Align::Right);
+  }
+}
+
+}  // namespace
+
+void draw_results(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  const auto& results = editor.document().results;
+  const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kHead)}};
+  fill(head, look.theme.head);
+  fill({head.low, {head.high.x, head.low.y + look.line()}}, look.theme.void_);
+  const float x = put_text(editor, look.fonts.semibold, look.theme.text, glm::vec2(head.low.x + look.px(12), head.centre().y - look.fonts.semibold->FontSize / 2), "Results");
+  put_text(editor, look.fonts.regular, look.theme.text2, Rect{{x + look.px(8), head.low.y}, {x + look.px(60), head.high.y}}, std::to_string(results.size()));
+  const float top = head.low.y + look.px(4), bottom = head.high.y - look.px(3);
+  float right = head.high.x - look.px(8);
+  for (const char* id : {"view.results", "result.delete", "result.copy_report"}) {
+    const bool closes = std::string_view(id) == "view.results";
+    const Rect place{{right - look.px(26), top}, {right, bottom}};
+    if (closes) {
+      if (button(editor, "Close results", place, {icon::kClose, "", ButtonStyle::Flat})) run(editor, id);
+      if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, id), place);
+    } else {
+      operator_button(editor, id, place, "", ButtonStyle::Flat);
+    }
+    right = place.low.x - look.px(4);
+  }
+  const Rect toggle{{right - look.px(130), top}, {right, bottom}};
+  operator_button(editor, "result.toggle", toggle, "Posed volume", shown_result(editor) ? ButtonStyle::Soft : ButtonStyle::Plain);
+
+  const Rect body{{rect.low.x, head.high.y}, rect.high};
+  if (results.empty()) {
+    const Operator* op = find_operator(editor, "resample.run");
+    if (why_not(editor, *op).empty()) {
+      if (empty_state(editor, body, "No results", "Resample this pose")) run(editor, *op);
+    } else {
+      put_text(editor, look.fonts.regular, look.theme.text2, body, "No results. " + why_not(editor, *op), Align::Centre);
+    }
+    return;
+  }
+  const bool wide = body.width() > look.px(900);
+  const float middle = wide ? body.high.x - look.px(430) : body.high.x;
+  const Rect table_head{body.low, {middle, body.low.y + look.px(kTableHead)}};
+  const Colour grey = look.theme.text2;
+  put_cells(editor, table_head, {"Result", "Method", "Time", "Volume", "Overlap", "State"}, {grey, grey, grey, grey, grey, grey}, look.fonts.small, look.fonts.small);
+  bool open_menu = false;
+  {
+    Column column(editor, "results", {{body.low.x, table_head.high.y}, {middle, body.high.y}});
+    int index = 0;
+    for (auto result = results.rbegin(); result != results.rend(); ++result) draw_result_row(editor, column, index++, *result, open_menu);
+  }
+  if (open_menu) ImGui::OpenPopup("result menu");
+  if (ImGui::BeginPopup("result menu", ImGuiWindowFlags_NoMove)) {
+    editor.place.region = Region::Popup;
+    push_path(editor, "result menu");
+    put_text(editor, look.fonts.semibold, look.theme.text2, from_im(ImGui::GetCursorScreenPos()) + glm::vec2(look.px(8), look.px(2)), chosen_result(editor) ? chosen_result(editor)->name : "Result");
+    ImGui::Dummy({look.px(190), look.px(22)});
+    ImGui::Separator();
+    for (const char* id : {"result.toggle", "result.copy_report", "result.delete", "result.delete_stale"}) operator_menu_item(editor, id);
+    pop_path(editor);
+    editor.place.region = Region::Bottom;
+    ImGui::EndPopup();
+  }
+  if (!wide) return;
+  fill({{middle, body.low.y}, {middle + look.line(), body.high.y}}, look.theme.void_);
+  draw_tissue_changes(editor, {{middle + look.line(), body.low.y}, body.high});
+}
+
+}  // namespace limber::editor

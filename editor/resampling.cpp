@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/resampling.h"
+
+#include <cstdlib>
+#include <cstring>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/pose/pose_io.h"
+#include "core/project/worker.h"
+#include "core/rig/armature_io.h"
+#include "core/skin/weights_io.h"
+#include "core/volume/volume_io.h"
+#include "editor/results.h"
+
+namespace limber::editor {
+
+namespace {
+
+// Empty at first, gone with all that is in it at the end.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(const std::string& inside) {
+    std::error_code failure;
+    const Path base = inside.empty() ? std::filesystem::temp_directory_path(failure) : Path(inside);
+    std::string name = (base / "limber-XXXXXX").string();
+    if (!::mkdtemp(name.data())) throw Error("no scratch folder can be made", base.string(), std::string(std::strerror(errno)) + ": choose another one in the preferences");
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  Path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  Path path_;
+};
+
+struct Request {
+  Document from;  // with a pose
+  std::string method;
+  double spacing = 0;  // mm; 0: as the volume
+  bool fit_joints = false;
+  std::string scratch;
+  WorkerSettings worker;
+};
+
+void write_inputs(const Request& request, const ScratchFolder& folder, Progress& progress) {
+  const Document& from = request.from;
+  progress.update("hand over", 0);
+  FileType type = from.volume_type ? *from.volume_type : FileType{};
+  type.format = "NRRD";
+  type.compressed = false;
+  write_volume(*from.volume, folder / "volume.nrrd", *from.tissues, type);
+  progress.update("hand over", 0.5);
+  write_tissue_table(*from.tissues, folder / "tissues.json");
+  write_armature(*from.armature, folder / "rig.json");
+  write_pose(*from.pose, *from.armature, folder / "pose.json");
+  write_weights(*from.weights, *from.volume, TissueVoxels(*from.volume), folder / "weights.nrrd");
+  nlohmann::ordered_json job{{"command", "resample"}, {"volume", "volume.nrrd"}, {"rig", "rig.json"},     {"tissues", "tissues.json"},  {"weights", "weights.nrrd"},
+                             {"pose", "pose.json"},   {"method", request.method}, {"output", "posed.nrrd"}, {"report", "report.json"}};
+  if (request.spacing > 0) job["spacing"] = request.spacing;
+  if (request.fit_joints) job["fit-joints"] = true;
+  write_file_atomically(folder / "job.json", job.dump(1) + "\n");
+}
+
+// With the document's labels: files tell tissues apart by their own values.
+std::shared_ptr<const LabelVolume> read_posed(const Path& path, const TissueTable& tissues, Progress& progress) {
+  VolumeFile file = read_volume(path, progress);
+  const FileValueIndex ours(tissues);
+  std::vector<Label> label_of(65536, 0);
+  for (const Tissue& tissue : file.tissues.tissues) {
+    const Tissue* known = ours.find(tissue.file_value);
+    if (!known) throw Error("the posed volume has a label that the volume lacks", std::to_string(tissue.file_value), "please report it");
+    label_of[tissue.label] = known->label;
+  }
+  for (Label& label : file.volume.voxels) label = label_of[label];
+  return std::make_shared<const LabelVolume>(std::move(file.volume));
+}
+
+Edit resample_in_worker(const Request& request, std::shared_ptr<std::string>& name, Progress& progress) {
+  const ScratchFolder folder(request.scratch);
+  write_inputs(request, folder, progress);
+  run_worker(folder / "job.json", progress, request.worker);
+  auto result = std::make_shared<Result>();
+  result->method = request.method;
+  result->volume = read_posed(folder / "posed.nrrd", *request.from.tissues, progress);
+  result->report = read_file(folder / "report.json");
+  result->from_volume = request.from.volume;
+  result->from_tissues = request.from.tissues;
+  result->from_armature = request.from.armature;
+  result->from_weights = request.from.weights;
+  result->from_pose = request.from.pose;
+  const std::string wanted = name_of_pose(*request.from.armature, *request.from.pose) + ", " + method_name(request.method);
+  return [result, wanted, name](const Document& now) {
+    Document next = now;
+    result->name = *name = unique_name(now.results, wanted);
+    next.results.push_back(result);
+    return next;
+  };
+}
+
+void tell(Editor& editor, const std::string& name) {
+  for (const auto& result : editor.document().results) {
+    if (result->name != name) continue;
+    const auto facts = facts_of(editor, result);
+    char line[64], detail[96];
+    std::snprintf(line, sizeof line, "resampled in %.1f s", facts->seconds);
+    if (facts->change_percent) std::snprintf(detail, sizeof detail, "volume %+.2f %%, %lld overlap voxels", *facts->change_percent, static_cast<long long>(facts->overlap_voxels));
+    else std::snprintf(detail, sizeof detail, "%lld overlap voxels", static_cast<long long>(facts->overlap_voxels));
+    editor.messages.ok(name + " " + line, detail, "result.show_last");
+    for (const std::string& warning : facts->warnings) editor.messages.warn(name, warning);
+  }
+}
+
+}  // namespace
+
+std::string why_no_resampling(const Editor& editor) {
+  const Document& document = editor.document();
+  if (!document.volume || !document.tissues) return "Open a volume first";
+  if (!document.armature) return "Import a rig first";
+  if (!document.weights) return "Compute the weights first";
+  if (document.weights->bones().size() != document.armature->bones.size()) return "The weights belong to another rig: compute them again";
+  return "";
+}
+
+void start_resampling(Editor& editor) {
+  Request request{editor.document(), editor.resampling.method, editor.resampling.spacing, editor.resampling.fit_joints, editor.preferences.scratch_folder, {}};
+  if (!request.from.pose) request.from.pose = std::make_shared<const Pose>(rest_pose(*request.from.armature));
+  request.worker.program = editor.worker_program;
+  request.worker.memory_limit_mb = editor.preferences.worker_memory_mb;
+  request.worker.time_limit = editor.preferences.worker_minutes * 60.0;
+  auto name = std::make_shared<std::string>();
+  const std::string label = "Resample " + name_of_pose(*request.from.armature, *request.from.pose);
+  const int id = editor.jobs.start(label, [request, name](Progress& progress) mutable { return resample_in_worker(request, name, progress); });
+  editor.after_job[id] = [name](Editor& e, const JobStatus& job) {
+    if (job.state == JobState::Done) tell(e, *name);
+  };
+  editor.touch();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/results.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "editor/editor.h"
+
+namespace limber::editor {
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::optional<double> number(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return std::nullopt;
+  return json[key].get<double>();
+}
+
+std::int64_t count(const Json& json, const char* key) { return static_cast<std::int64_t>(number(json, key).value_or(0)); }
+
+bool same_kinds(const std::shared_ptr<const TissueTable>& a, const std::shared_ptr<const TissueTable>& b) {
+  if (a == b || !a || !b) return true;
+  return std::equal(a->tissues.begin(), a->tissues.end(), b->tissues.begin(), b->tissues.end(),
+                    [](const Tissue& x, const Tissue& y) { return x.label == y.label && x.kind == y.kind && x.priority == y.priority; });
+}
+
+template <class T>
+bool same(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>& b) {
+  return a == b || (a && b && *a == *b);
+}
+
+// A box in voxels of one grid, in those of another with the same axes.
+std::array<glm::dvec3, 2> in_grid(const std::array<glm::dvec3, 2>& box, const Grid& from, const Grid& to) {
+  const AffineTransform world = world_from_voxel(from), voxel = voxel_from_world(to);
+  return {voxel * (world * box[0]), voxel * (world * box[1])};
+}
+
+}  // namespace
+
+ResultFacts facts_of_report(const std::string& text) {
+  ResultFacts facts;
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) return facts;
+  if (json.contains("seconds")) facts.seconds = number(json["seconds"], "total").value_or(0);
+  if (json.contains("total")) {
+    const Json& total = json["total"];
+    facts.change_percent = number(total, "volume_change_percent");
+    facts.overlap_voxels = count(total, "overlap_voxels");
+    facts.hole_voxels = count(total, "new_hole_voxels");
+    facts.dropped_voxels = count(total, "dropped_voxels");
+    facts.trapped_air_voxels = count(total, "trapped_air_voxels");
+  }
+  if (json.contains("tissues") && json["tissues"].is_array())
+    for (const Json& row : json["tissues"]) {
+      if (!row.is_object()) continue;
+      const std::string name = row.contains("name") && row["name"].is_string() ? row["name"].get<std::string>() : "Unknown";
+      facts.tissues.push_back({name, number(row, "mm3_before").value_or(0), number(row, "mm3_after").value_or(0), number(row, "volume_change_percent"), count(row, "overlap_voxels")});
+    }
+  if (json.contains("warnings") && json["warnings"].is_array())
+    for (const Json& warning : json["warnings"])
+      if (warning.is_string()) facts.warnings.push_back(warning);
+  return facts;
+}
+
+std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_ptr<const Result>& result) {
+  auto& known = editor.known_results;
+  std::erase_if(known, [](const KnownResult& one) { return one.result.expired(); });
+  const auto found = std::find_if(known.begin(), known.end(), [&](const KnownResult& one) { return one.result.lock() == result; });
+  if (found != known.end()) return found->facts;
+  known.push_back({result, std::make_shared<const ResultFacts>(facts_of_report(result->report))});
+  return known.back().facts;
+}
+
+std::string method_name(const std::string& method) { return method == "lbs" ? "LBS" : method == "dqs" ? "DQ" : method; }
+
+std::string stale_reason(const Document& document, const Result& result) {
+  if (result.from_volume != document.volume) return "volume changed";
+  if (!same_kinds(result.from_tissues, document.tissues)) return "tissues changed";
+  if (!same(result.from_armature, document.armature)) return "rig changed";
+  if (!same(result.from_weights, document.weights)) return "weights changed";
+  return "";
+}
+
+bool is_of_this_pose(const Document& document, const Result& result) {
+  if (!document.armature || !result.from_pose) return false;
+  return *result.from_pose == (document.pose ? *document.pose : rest_pose(*document.armature));
+}
+
+std::string name_of_pose(const Armature& armature, const Pose& pose) {
+  int turned = 0;
+  std::string first;
+  for (std::size_t b = 0; b < armature.bones.size() && b < pose.rotation.size(); ++b) {
+    const double angle = 2 * std::acos(std::min(1.0, std::abs(pose.rotation[b].w)));
+    if (angle < 1e-4) continue;
+    if (++turned == 1) first = armature.bones[b].name + " " + std::to_string(static_cast<int>(std::lround(glm::degrees(angle)))) + "\u00b0";
+  }
+  return turned == 0 ? "Rest" : turned == 1 ? first : first + " and " + std::to_string(turned - 1) + " more";
+}
+
+std::string unique_name(const std::vector<std::shared_ptr<const Result>>& results, const std::string& name) {
+  const auto taken = [&](const std::string& candidate) {
+    return std::any_of(results.begin(), results.end(), [&](const auto& result) { return result->name == candidate; });
+  };
+  if (!taken(name)) return name;
+  for (int i = 2;; ++i)
+    if (const std::string candidate = name + " (" + std::to_string(i) + ")"; !taken(candidate)) return candidate;
+}
+
+std::shared_ptr<const Result> shown_result(const Editor& editor) {
+  for (const auto& result : editor.document().results)
+    if (result->name == editor.shown_result) return result;
+  return nullptr;
+}
+
+std::shared_ptr<const Result> chosen_result(const Editor& editor) {
+  if (auto shown = shown_result(editor)) return shown;
+  return editor.document().results.empty() ? nullptr : editor.document().results.back();
+}
+
+void show_posed(Editor& editor) {
+  render::Scene& scene = editor.views->scene;
+  const Document& document = editor.document();
+  scene.posed_from_rest.clear();
+  if (const auto shown = shown_result(editor); shown && document.volume) {
+    scene.volume = shown->volume;
+    if (scene.clip.box) {
+      if (shown->volume->grid.direction == document.volume->grid.direction) scene.clip.box = in_grid(*scene.clip.box, document.volume->grid, shown->volume->grid);
+      else scene.clip.box.reset();
+    }
+    if (document.armature && shown->from_pose && shown->from_pose->rotation.size() == document.armature->bones.size())
+      scene.posed_from_rest = posed_from_rest(*document.armature, *shown->from_pose);
+  } else if (editor.workspace == Workspace::Pose && document.armature && document.pose) {
+    scene.posed_from_rest = posed_from_rest(*document.armature, *document.pose);
+  }
+}
+
+}  // namespace limber::editor

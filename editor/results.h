@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What is known about the results of a document: their figures, read from their reports, and whether they are stale.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/project/document.h"
+
+namespace limber::editor {
+
+struct Editor;
+
+struct ResultTissue {
+  std::string name;
+  double mm3_before = 0, mm3_after = 0;
+  std::optional<double> change_percent;
+  std::int64_t overlap_voxels = 0;
+};
+struct ResultFacts {
+  double seconds = 0;
+  std::optional<double> change_percent;  // of all tissue
+  std::int64_t overlap_voxels = 0, hole_voxels = 0, dropped_voxels = 0, trapped_air_voxels = 0;
+  std::vector<ResultTissue> tissues;
+  std::vector<std::string> warnings;
+};
+ResultFacts facts_of_report(const std::string& json);  // what is missing there stays empty
+
+// The same, read once for each result.
+struct KnownResult {
+  std::weak_ptr<const Result> result;
+  std::shared_ptr<const ResultFacts> facts;
+};
+std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_ptr<const Result>& result);
+
+// "linear" -> "LBS"
+std::string method_name(const std::string& method);
+// What the result was made from is no longer what the document holds: "weights changed"; "" while it is. Its pose may be
+// another one: a result stands for the pose it was made of.
+std::string stale_reason(const Document& document, const Result& result);
+bool is_of_this_pose(const Document& document, const Result& result);
+// "Forearm 90°", "Forearm and 2 more", "Rest"
+std::string name_of_pose(const Armature& armature, const Pose& pose);
+// `name`, or with a number behind it when a result has that already.
+std::string unique_name(const std::vector<std::shared_ptr<const Result>>& results, const std::string& name);
+
+// The result that is seen in the views in place of the volume; null: the volume at rest.
+std::shared_ptr<const Result> shown_result(const Editor& editor);
+// The one the tables are about: the shown one, else the last.
+std::shared_ptr<const Result> chosen_result(const Editor& editor);
+// Puts the shown result, or the pose of the moment, into the scene of this frame.
+void show_posed(Editor& editor);
+
+}  // namespace limber::editor

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// From a volume to a posed one in the real editor, and what happens when the worker fails.
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include <unistd.h>
+
+#include "core/resample/resample.h"
+#include "editor/panels/running.h"
+#include "editor/panels/steps.h"
+#include "editor/results.h"
+#include "tests/editor/small_limb.h"
+
+using namespace limber;
+using namespace limber::editor;
+using namespace limber::test;
+
+namespace {
+
+// A program that stands in for the worker.
+Path script(const TemporaryFolder& folder, const std::string& text) {
+  const Path path = folder / "worker";
+  std::ofstream(path) << "#!/bin/sh\n" << text;
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  return path;
+}
+
+void bend(LimbEditor& test) {
+  test.play(R"(
+    click Steps/Skin/Compute
+    wait-job
+    click Steps/Pose/Flex...
+    double-click "Angle/value"
+    type "30"
+    key Return
+    key Return
+    expect edit "Flex Fore"
+  )");
+}
+
+std::string next_step(const Editor& editor) {
+  for (const Step& step : steps(editor))
+    if (step.state == StepState::Next) return step.title;
+  return "none";
+}
+
+// The failure's toast; the document must be as it was.
+std::string failure(LimbEditor& test) {
+  const Document before = test.editor->document();
+  run(*test.editor, "resample.run");
+  test.play("wait-job");
+  CHECK(test.editor->document() == before);
+  REQUIRE_FALSE(test.editor->messages.toasts.empty());
+  CHECK(test.editor->messages.toasts.back().severity == Severity::Error);
+  return test.editor->messages.last_failure;
+}
+
+}  // namespace
+
+TEST_CASE("steps: the list names what is missing next, from nothing to a posed volume") {
+  {
+    SmallEditor empty({1280, 720}, {}, false);
+    CHECK(next_step(*empty.editor) == "Prepare");
+  }
+  {
+    SmallEditor body({1280, 720});
+    CHECK(next_step(*body.editor) == "Rig");
+  }
+
+  LimbEditor test;
+  CHECK(next_step(*test.editor) == "Skin");
+  run(*test.editor, "skin.heat");
+  test.play("wait-job");
+  CHECK(next_step(*test.editor) == "Pose");
+  bend(test);
+  CHECK(next_step(*test.editor) == "Resample");
+  test.play(R"(
+    click Steps/Resample/Resample
+    wait-job
+  )");
+  CHECK(next_step(*test.editor) == "none");
+  CHECK(steps(*test.editor)[4].state == StepState::Done);
+}
+
+TEST_CASE("resample: the result is what the core computes, is undone, shown, and has its figures") {
+  LimbEditor test;
+  bend(test);
+  test.play(R"(
+    key Ctrl+4
+    key Ctrl+Return
+    wait-job
+    expect "text:Fore 30" shown
+    expect edit "Resample Fore 30°"
+  )");
+  const Document& document = test.editor->document();
+  REQUIRE(document.results.size() == 1);
+  const Result& result = *document.results[0];
+  CHECK(result.name == "Fore 30\u00b0, DQ");
+  const Posed expected = resample(*document.volume, *document.tissues, *document.armature, *document.weights, *document.pose, DualQuaternion{});
+  CHECK(result.volume->grid == expected.volume.grid);
+  CHECK(result.volume->voxels == expected.volume.voxels);
+  const auto facts = facts_of(*test.editor, document.results[0]);
+  CHECK(facts->tissues.size() == 4);
+  CHECK(facts->change_percent);
+  CHECK(facts->seconds > 0);
+
+  // Shown in place of the volume, and no longer.
+  test.play("click \"Fore 30\u00b0, DQ/row\"");
+  CHECK(test.editor->views->scene.volume == result.volume);
+  test.play("click result.toggle");
+  CHECK(test.editor->views->scene.volume == document.volume);
+
+  run(*test.editor, "resample.lbs");
+  run(*test.editor, "resample.run");
+  test.play("wait-job");
+  CHECK(test.editor->document().results.size() == 2);
+  run(*test.editor, "edit.undo");
+  CHECK(test.editor->document().results.size() == 1);
+}
+
+TEST_CASE("resample: a result becomes stale when what it was made from changes, and says why") {
+  LimbEditor test;
+  bend(test);
+  run(*test.editor, "resample.run");
+  test.play("wait-job");
+  const auto result = test.editor->document().results.at(0);
+  CHECK(stale_reason(test.editor->document(), *result).empty());
+  run(*test.editor, "pose.clear");
+  CHECK(stale_reason(test.editor->document(), *result).empty());  // it stands for its own pose
+  run(*test.editor, "edit.undo");
+  run(*test.editor, "skin.geodesic");
+  test.play("wait-job");
+  CHECK(stale_reason(test.editor->document(), *result) == "weights changed");
+  CHECK(steps(*test.editor)[4].state == StepState::Warning);
+  test.play(R"(
+    key Ctrl+4
+    expect "text:stale: weights changed" shown
+  )");
+  run(*test.editor, "edit.undo");
+  CHECK(stale_reason(test.editor->document(), *result).empty());
+  run(*test.editor, "prepare.crop");
+  test.play("wait-job");
+  CHECK(stale_reason(test.editor->document(), *result) == "volume changed");
+  run(*test.editor, "result.delete_stale");
+  CHECK(test.editor->document().results.empty());
+}
+
+TEST_CASE("resample: a worker that crashes, fails, hangs or eats memory is a message, and the document stays") {
+  const TemporaryFolder folder;
+  Preferences preferences;
+  preferences.worker_minutes = 0.01;
+  LimbEditor test({1280, 720}, preferences);
+  bend(test);
+  test.editor->worker_program = script(folder, "kill -SEGV $$\n");
+  CHECK(failure(test).find("crashed") != std::string::npos);
+  test.editor->worker_program = script(folder, "echo 'limber: no room: rig.json: free some' >&2; exit 1\n");
+  CHECK(failure(test) == "no room: rig.json: free some");
+  test.editor->worker_program = script(folder, "sleep 100\n");
+  CHECK(failure(test).find("took longer") != std::string::npos);
+  test.editor->worker_program = "/no/such/program";
+  CHECK(failure(test).find("cannot be started") != std::string::npos);
+  test.editor->worker_program = script(folder, "exit 0\n");  // and writes nothing
+  CHECK_FALSE(failure(test).empty());
+
+  // With a message that can be read again, and the editor goes on.
+  test.play(R"(
+    click "toast 0/Details"
+    expect error "there is no such file"
+    key Escape
+    expect error none
+    key Alt+Z
+    expect display xray
+  )");
+}
+
+TEST_CASE("resample: a limit of memory ends the real worker, with a message") {
+  Preferences preferences;
+  preferences.worker_memory_mb = 16;
+  LimbEditor test({1280, 720}, preferences);
+  bend(test);
+  CHECK_FALSE(failure(test).empty());
+}
+
+TEST_CASE("resample: a worker killed from outside is a message") {
+  const TemporaryFolder folder;
+  LimbEditor test;
+  bend(test);
+  const Path pid = folder / "pid";
+  test.editor->worker_program = script(folder, "echo $$ > " + pid.string() + "\nsleep 100\n");
+  run(*test.editor, "resample.run");
+  const auto killed = [&] {
+    std::ifstream in(pid);
+    pid_t id = 0;
+    return in >> id && ::kill(id, SIGKILL) == 0;
+  };
+  while (!killed()) {
+    test.player.step();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  test.play("wait-job");
+  CHECK(test.editor->messages.last_failure.find("ended by the system") != std::string::npos);
+  CHECK(test.editor->document().results.empty());
+}
+
+TEST_CASE("jobs: the slot in the status bar opens the list, Cancel stops at once, and nothing moves") {
+  const TemporaryFolder folder;
+  LimbEditor test;
+  bend(test);
+  const Rect views = test.editor->layout.views;
+  test.editor->worker_program = script(folder, "echo '{\"stage\": \"deform\", \"fraction\": 0.5}' >&2\nsleep 100\n");
+  run(*test.editor, "resample.run");
+  for (int i = 0; i < 400 && test.fact("text:deform") == "absent"; ++i) {
+    test.player.step();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  CHECK(test.fact("text:deform") == "shown");
+  CHECK(test.editor->layout.views == views);
+  test.play(R"(
+    click status/Running
+    expect "text:50 %" shown
+    click Cancel
+    wait-job
+    expect jobs no
+    expect widget:status/Running absent
+  )");
+  CHECK(test.editor->layout.views == views);
+  CHECK(test.editor->document().results.empty());
+  CHECK(test.editor->messages.errors.empty());
+}
+
+TEST_CASE("jobs: time left is rounded") {
+  CHECK(time_left_text(3) == "a few seconds");
+  CHECK(time_left_text(31) == "about 35 s");
+  CHECK(time_left_text(70) == "about 1 min");
+  CHECK(time_left_text(170) == "about 3 min");
+  CHECK(time_left_text(7300) == "about 2 h");
+}
+
+TEST_CASE("console: messages are filtered by kind and words, and copied") {
+  SmallEditor test({1280, 720});
+  test.editor->messages.info("First note");
+  test.editor->messages.warn("A warning", "with a detail");
+  test.editor->messages.show_error("it broke: here: mend it");
+  test.play(R"(
+    key Escape
+    click Help/Console
+    expect console yes
+    click bottom/Notes
+    click "Copy console"
+  )");
+  CHECK(test.host->clipboard() == "A warning: with a detail\nit broke: here: mend it\n");
+  test.play(R"(
+    click bottom/search
+    type "DETAIL"
+    click "Copy console"
+  )");
+  CHECK(test.host->clipboard() == "A warning: with a detail\n");
+}
+
+TEST_CASE("help: pages of keys, licences and system facts") {
+  SmallEditor test({1280, 720});
+  test.play(R"(
+    click Help/Keys
+    expect "text:Undo" shown
+    click dialog/search
+    type "console"
+    key Escape
+    click "Help/About and licences"
+    expect "text:GNU Affero" shown
+    click help.system_facts
+    key Escape
+    expect dialog no
+  )");
+  CHECK(test.host->clipboard().find("OpenGL") != std::string::npos);
+}
