@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The program: the editor, or with a subcommand the command line.
+#include <filesystem>
+
 #include "core/cmd/command.h"
 #include "editor/commands/command.h"
 #include "editor/loop.h"
@@ -7,7 +9,11 @@
 int main(int argc, char** argv) {
   CLI::App app("Limber changes the pose of labelled voxel anatomy. Without a command it opens the editor.", "limber");
   std::vector<std::string> files;
-  app.add_option("FILE", files, "volumes or a project to open in the editor");
+  app.add_option("FILE", files, "volumes or a project to open in the editor")->check([](const std::string& name) {
+    // A word that is no file is most likely a command with a slip in it.
+    const bool is_word = name.find_first_of("./") == std::string::npos;
+    return is_word && !std::filesystem::exists(name) ? "there is neither a command nor a file " + name : std::string();
+  });
   app.require_subcommand(0, 1);
   limber::cmd::add_commands(app);
   limber::editor::add_editor(app);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/cmd/body_options.h"
 
+#include <cstdio>
+
 #include "core/cmd/command.h"
 #include "core/rig/armature_io.h"
+#include "core/rig/bone_tissue.h"
 
 namespace limber::cmd {
 
@@ -12,6 +15,21 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
   command.add_option("--tissues", options.tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
   command.add_option("--bones", options.bones, "labels that are bone, as in the file")->delimiter(',')->type_name("L,L");
 }
+
+namespace {
+
+void guess_bones(Body& body, const std::string& volume) {
+  const auto guess = guess_bone_tissue(body.file.volume, body.tissues, body.rig);
+  if (!guess) return;
+  const double value = body.tissues.find(guess->label)->file_value;
+  body.tissues = with_bones(std::move(body.tissues), {value});
+  char text[200];
+  std::snprintf(text, sizeof text, ": label %.0f, through which %.0f %% of the rig runs, is taken for it; say others with --bones or --tissues",
+                value, 100 * guess->share_of_rig);
+  warn("no table says what is bone: " + volume + text);
+}
+
+}  // namespace
 
 Body read_body(const BodyOptions& options, Progress& progress) {
   Body body;
@@ -23,10 +41,13 @@ Body read_body(const BodyOptions& options, Progress& progress) {
     const TissueTable user = read_tissue_table(options.tissues);
     body.tissues = merge_tissue_tables(body.file.tissues, &user);
   }
-  if (!options.bones.empty()) body.tissues = with_bones(std::move(body.tissues), options.bones);
   ArmatureFile rig = read_armature_file(options.rig);
   warn(rig.warnings);
   body.rig = std::move(rig.armature);
+  if (!options.bones.empty())
+    body.tissues = with_bones(std::move(body.tissues), options.bones);
+  else
+    guess_bones(body, options.volume);
   return body;
 }
 

@@ -15,7 +15,7 @@ namespace limber::cmd {
 
 struct BodyOptions {
   std::string volume, rig, tissues;  // files
-  std::vector<double> bones;         // labels that are bone, as in the file; none: what the tissue table says
+  std::vector<double> bones;         // labels that are bone, as in the file; none: what the tissue table says, else a guess by the rig
 };
 
 struct Body {

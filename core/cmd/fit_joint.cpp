@@ -8,16 +8,17 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/rig/armature_io.h"
-#include "core/volume/volume_io.h"
 
 namespace limber::cmd {
 
 namespace {
 struct Options {
-  std::string volume, rig, bone, tissues, output;
-  std::vector<double> bones, range{0, 90};
+  BodyOptions body;
+  std::string bone, output;
+  std::vector<double> range{0, 90};
   RunOptions run;
 };
 
@@ -27,20 +28,14 @@ void run(const Options& options) {
   CommandProgress progress(options.run.progress);
 
   check_armature_writable(options.output);
-  const ArmatureFile rig = read_armature_file(options.rig);
-  warn(rig.warnings);
-  const int bone = require_bone(rig.armature, options.bone);
-  const VolumeFile file = read_volume(options.volume, progress);
-  warn(file.warnings);
-  std::optional<TissueTable> user;
-  if (!options.tissues.empty()) user = read_tissue_table(options.tissues);
-  TissueTable tissues = merge_tissue_tables(file.tissues, user ? &*user : nullptr);
-  if (!options.bones.empty()) tissues = with_bones(std::move(tissues), options.bones);
+  const Body body = read_body(options.body, progress);
+  const LabelVolume& volume = body.file.volume;
+  const int bone = require_bone(body.rig, options.bone);
 
-  const TissueVoxels tissue(file.volume);
-  const BoneParts parts = split_bones(file.volume, tissue, tissues, rig.armature, progress);
+  const TissueVoxels tissue(volume);
+  const BoneParts parts = split_bones(volume, tissue, body.tissues, body.rig, progress);
   const FitJoint settings{.minimum_degrees = options.range[0], .maximum_degrees = options.range[1]};
-  const FittedJoint fitted = fit_joint(file.volume, tissue, parts, rig.armature, bone, settings, progress);
+  const FittedJoint fitted = fit_joint(volume, tissue, parts, body.rig, bone, settings, progress);
   write_armature(fitted.armature, options.output);
 
   std::printf("%s from %g to %g degrees: axis moved by %.1f mm, turned by %.1f degrees\n", options.bone.c_str(),
@@ -55,11 +50,8 @@ void run(const Options& options) {
 void add_fit_joint(CLI::App& app) {
   auto* command = app.add_subcommand("fit-joint", "moves a joint's axis so that bones do not collide, and stores it as a hinge");
   auto options = std::make_shared<Options>();
-  command->add_option("VOLUME", options->volume, "label volume")->required();
-  command->add_option("--rig", options->rig, "rig")->required();
+  add_body_options(*command, options->body);
   command->add_option("--bone", options->bone, "the bone below the joint")->required();
-  command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command->add_option("--bones", options->bones, "labels that are bone, as in the file")->delimiter(',');
   command->add_option("--range", options->range, "angles in degrees that must be free, e.g. 0,90")->delimiter(',')->expected(2);
   command->add_option("-o,--output", options->output, "rig to write (.json keeps the hinge)")->required();
   add_run_options(*command, options->run);

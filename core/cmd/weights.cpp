@@ -5,21 +5,20 @@
 #include <optional>
 
 #include "core/base/parallel.h"
+#include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
-#include "core/rig/armature_io.h"
 #include "core/rig/bone_parts.h"
 #include "core/skin/geodesic.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/rigid.h"
 #include "core/skin/weights_io.h"
-#include "core/volume/volume_io.h"
 
 namespace limber::cmd {
 
 namespace {
 struct Options {
-  std::string volume, rig, tissues, method = "heat", output, bender_folder;
-  std::vector<double> bones;
+  BodyOptions body;
+  std::string method = "heat", output, bender_folder;
   RunOptions run;
 };
 
@@ -40,28 +39,23 @@ void make_weights(const Options& options) {
   CommandProgress progress(options.run.progress);
 
   check_weights_writable(options.output);
-  VolumeFile file = read_volume(options.volume, progress);
-  warn(file.warnings);
-  std::optional<TissueTable> user;
-  if (!options.tissues.empty()) user = read_tissue_table(options.tissues);
-  TissueTable tissues = merge_tissue_tables(file.tissues, user ? &*user : nullptr);
-  if (!options.bones.empty()) tissues = with_bones(std::move(tissues), options.bones);
-  const ArmatureFile rig = read_armature_file(options.rig);
-  warn(rig.warnings);
+  const Body body = read_body(options.body, progress);
+  const LabelVolume& volume = body.file.volume;
+  const Armature& rig = body.rig;
 
-  const TissueVoxels tissue(file.volume);
-  const BoneParts parts = split_bones(file.volume, tissue, tissues, rig.armature, progress);
+  const TissueVoxels tissue(volume);
+  const BoneParts parts = split_bones(volume, tissue, body.tissues, rig, progress);
   WeightsReport report;
   const SkinWeights weights =
-      options.method == "rigid"      ? bind_rigid(file.volume, tissue, rig.armature, parts, progress, &report)
-      : options.method == "geodesic" ? bind_geodesic(file.volume, tissue, rig.armature, parts, {}, progress, &report)
-                                     : diffuse_heat(file.volume, tissue, tissues, rig.armature, parts, {}, progress, &report);
+      options.method == "rigid"      ? bind_rigid(volume, tissue, rig, parts, progress, &report)
+      : options.method == "geodesic" ? bind_geodesic(volume, tissue, rig, parts, {}, progress, &report)
+                                     : diffuse_heat(volume, tissue, body.tissues, rig, parts, {}, progress, &report);
   warn(report.warnings);
-  if (!options.bender_folder.empty()) write_bender_weights(weights, file.volume, tissue, options.bender_folder);
-  write_weights(weights, file.volume, tissue, options.output);
+  if (!options.bender_folder.empty()) write_bender_weights(weights, volume, tissue, options.bender_folder);
+  write_weights(weights, volume, tissue, options.output);
 
-  std::printf("tissue: %lld voxels, table: %s\n", static_cast<long long>(tissue.size()), tissues.source.c_str());
-  print_table(parts, rig.armature);
+  std::printf("tissue: %lld voxels, table: %s\n", static_cast<long long>(tissue.size()), body.tissues.source.c_str());
+  print_table(parts, rig);
   if (options.method == "heat") std::printf("heat: residual %.1e in %d iterations\n", report.residual, report.iterations);
 }
 }  // namespace
@@ -69,10 +63,7 @@ void make_weights(const Options& options) {
 void add_weights(CLI::App& app) {
   auto* command = app.add_subcommand("weights", "how tissue follows the bones: up to four bones and weights a voxel");
   auto options = std::make_shared<Options>();
-  command->add_option("VOLUME", options->volume, "label volume")->required();
-  command->add_option("--rig", options->rig, "rig")->required();
-  command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command->add_option("--bones", options->bones, "labels that are bone, as in the file")->delimiter(',');
+  add_body_options(*command, options->body);
   command->add_option("--method", options->method, "heat, geodesic or rigid")->check(CLI::IsMember({"heat", "geodesic", "rigid"}));
   command->add_option("-o,--output", options->output, "W.nrrd")->required();
   command->add_option("--bender-dir", options->bender_folder, "also write weight_NN.mha, one a bone, into this folder");
