@@ -46,6 +46,10 @@ void on_key(Editor& editor, const KeyChanged& event) {
     }
     return;
   }
+  if (!editor.messages.errors.empty() && (event.key == Key::Return || event.key == Key::NumEnter)) {
+    editor.messages.errors.erase(editor.messages.errors.begin());
+    return;
+  }
   const Chord chord{Chord::Kind::Key, editor.input.modifiers(), event.key};
   if (editor.drag || !editor.messages.errors.empty()) return;
   if (editor.dialog) {

@@ -12,6 +12,7 @@
 #include "editor/folders.h"
 #include "editor/icons.h"
 #include "editor/panels/column.h"
+#include "editor/places.h"
 
 namespace limber::editor {
 
@@ -23,54 +24,8 @@ constexpr float kWidth = 760, kHeight = 520, kPlaces = 160, kRow = 24;
 constexpr double kFirstWait = 0.08;  // s that the editor waits for a folder, so that most appear at once
 constexpr int kPage = 12;            // rows of PageUp and PageDown
 
-struct Place {
-  const char* icon;
-  std::string name;
-  Path path;
-};
-
 bool pressed(Key key, bool repeat = false) { return ImGui::IsKeyPressed(static_cast<int>(key), repeat); }
 bool pressed_return() { return pressed(Key::Return) || pressed(Key::NumEnter); }
-
-bool is_folder(const Path& path) {
-  std::error_code error;
-  return fs::is_directory(path, error);
-}
-
-// Disks and sticks that are mounted where desktops mount them.
-void add_volumes(std::vector<Place>& places) {
-  const char* user = std::getenv("USER");
-  for (const Path& base : {user ? Path("/media") / user : Path("/media"), user ? Path("/run/media") / user : Path("/run/media"), Path("/mnt")}) {
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(base, error)) {
-      if (places.size() > 12) return;
-      if (entry.is_directory(error)) places.push_back({icon::kVolume, entry.path().filename().string(), entry.path()});
-    }
-  }
-}
-
-std::vector<Place> places_of(const Editor& editor) {
-  std::vector<Place> places;
-  const auto add = [&](const char* icon, const std::string& name, const Path& path) {
-    if (!is_folder(path)) return;
-    for (const Place& place : places)
-      if (place.path == path) return;
-    places.push_back({icon, name, path});
-  };
-  const Path home = home_folder();
-  if (!editor.project_path.empty()) add(icon::kFolder, "Project's folder", editor.project_path.parent_path());
-  add(icon::kFolder, "Home", home);
-  for (const char* name : {"Desktop", "Documents", "Downloads"}) add(icon::kFolder, name, home / name);
-  add(icon::kVolume, "Computer", "/");
-  add_volumes(places);
-  int recent = 0;
-  for (const Recent& one : editor.remembered.recents) {
-    const std::size_t before = places.size();
-    if (recent < 5) add(icon::kHistory, one.path.parent_path().filename().string(), one.path.parent_path());
-    recent += places.size() > before;
-  }
-  return places;
-}
 
 class FileBrowser final : public Dialog {
  public:
@@ -109,6 +64,7 @@ class FileBrowser final : public Dialog {
     draw_foot(editor, {{whole.low.x, whole.high.y - foot}, whole.high});
     end_dialog(editor);
     seen_ = true;
+    had_error_ = !editor.messages.errors.empty();
   }
 
  private:
@@ -173,8 +129,7 @@ class FileBrowser final : public Dialog {
   // ---- keys: everything without a mouse
 
   void take_keys(Editor& editor) {
-    if (!seen_ || replace_ || new_folder_) return;
-    if (filter_open_) return;
+    if (!seen_ || had_error_ || replace_ || new_folder_ || filter_open_) return;
     const bool alt = editor.input.down(Key::Alt), ctrl = editor.input.down(Key::Ctrl);
     if (ctrl && pressed(Key::H)) toggle_hidden(editor);
     if (pressed(Key::Tab)) {
@@ -599,7 +554,8 @@ class FileBrowser final : public Dialog {
   int row_ = 0, place_ = 0, filter_ = 0, text_ = 0;
   bool falling_ = false, changed_ = true, reveal_ = false, refocus_ = true, row_moved_ = false, filter_open_ = false, focus_new_folder_ = false;
   bool text_was_empty_ = true;
-  bool seen_ = false;  // the key that opened it does nothing in it
+  bool seen_ = false;       // the key that opened it does nothing in it
+  bool had_error_ = false;  // keys belong to the message above
 };
 
 }  // namespace

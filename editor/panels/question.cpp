@@ -40,11 +40,12 @@ class QuestionDialog final : public Dialog {
       const ButtonLook face{"", answer->label, answer->primary ? ButtonStyle::Primary : ButtonStyle::Plain};
       const float width = std::max(width_of_button(editor, face) + look.px(8), look.px(80));
       if (button(editor, answer->label, {{right - width, rect.high.y - look.px(28)}, {right, rect.high.y}}, face)) chosen = &*answer;
-      if (answer->primary && (ImGui::IsKeyPressed(static_cast<int>(Key::Return), false) || ImGui::IsKeyPressed(static_cast<int>(Key::NumEnter), false)) && shown_)
+      if (answer->primary && (ImGui::IsKeyPressed(static_cast<int>(Key::Return), false) || ImGui::IsKeyPressed(static_cast<int>(Key::NumEnter), false)) && shown_ && !had_error_)
         chosen = &*answer;
       right -= width + look.px(8);
     }
     shown_ = true;
+    had_error_ = !editor.messages.errors.empty();
     if (!chosen) return;
     const auto act = chosen->act;
     editor.close_dialog();
@@ -53,7 +54,8 @@ class QuestionDialog final : public Dialog {
   }
 
   Question question_;
-  bool shown_ = false;  // the key that opened it does not answer it
+  bool shown_ = false;      // the key that opened it does not answer it
+  bool had_error_ = false;  // keys belong to the message above
 };
 
 }  // namespace

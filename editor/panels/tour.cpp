@@ -40,7 +40,7 @@ Place place_of(const Editor& editor, const Rect& target, const glm::vec2& size) 
 }  // namespace
 
 void draw_tour(Editor& editor) {
-  if (!editor.tour.shown || editor.dialog || editor.start_screen || !editor.document().volume) return;
+  if (!editor.tour.shown || editor.dialog || !editor.messages.errors.empty() || editor.start_screen || !editor.document().volume) return;
   const Look& look = editor.look;
   const TourStep& step = tour_steps()[editor.tour.step];
   ImFont* font = look.fonts.regular;

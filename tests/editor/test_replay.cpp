@@ -237,7 +237,7 @@ TEST_CASE("replay: a volume opens in the background while the editor goes on, an
   CHECK(*test.editor->document().volume->voxels.data() == 0);
   CHECK(test.editor->document().volume->voxels == body.volume->voxels);
   test.host->events.push(editor::FilesDropped{{folder / "missing.nrrd"}});
-  test.play("wait-job\n expect volume yes\n expect error \"there is no such file\"");
+  test.play("wait-job\n expect volume yes\n expect error \"There is no such file\"");
 }
 
 TEST_CASE("replay: named widgets lie in their regions and none covers another") {
