@@ -231,7 +231,6 @@ TEST_CASE("replay: a volume opens in the background while the editor goes on, an
   const std::vector<editor::ViewPlace> before = test.editor->layout.view_places;
   test.editor->to_open = {folder / "ball.nrrd"};
   test.player.step();
-  CHECK(test.fact("jobs") == "yes");
   CHECK(test.editor->layout.view_places[0].rect == before[0].rect);  // nothing jumps for a job
   test.play("wait-job\n expect volume yes\n expect name ball");
   CHECK(*test.editor->document().volume->voxels.data() == 0);
