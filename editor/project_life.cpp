@@ -113,9 +113,9 @@ void offer_leftover(Editor& editor, bool wanted) {
 // Into the project's own file, for those who prefer that to the journal alone.
 void autosave(Editor& editor) {
   ProjectLife& life = editor.life;
-  if (!editor.history.unsaved() || editor.project_path.empty() || editor.preferences.autosave_minutes == 0) return void(life.unsaved_since = -1);
-  if (life.unsaved_since < 0) life.unsaved_since = editor.now;
-  const double due = life.unsaved_since + 60.0 * editor.preferences.autosave_minutes;
+  if (!editor.history.unsaved() || editor.project_path.empty() || editor.preferences.autosave_minutes == 0) return life.unsaved_since.reset();
+  if (!life.unsaved_since) life.unsaved_since = editor.now;
+  const double due = *life.unsaved_since + 60.0 * editor.preferences.autosave_minutes;
   if (editor.now < due) return editor.wake_at(due);
   life.unsaved_since = editor.now;
   save_project(editor);

@@ -22,7 +22,7 @@ struct ProjectLife {
   std::shared_ptr<Session> session;   // null until there is something to keep
   std::int64_t kept_revision = 0;     // handed to the session last
   std::int64_t saved_at = 0;          // s since 1970; 0: not in this sitting
-  double unsaved_since = -1;          // the editor's time; negative: nothing is unsaved
+  std::optional<double> unsaved_since;  // the editor's time; none: nothing is unsaved
   std::string trouble;                // why edits are not kept just now; "" when they are
   std::vector<Recoverable> recoverable;  // what earlier sittings left
 };
