@@ -2,6 +2,7 @@
 #include "core/volume/tissue_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <array>
 #include <utility>
 
@@ -15,34 +16,62 @@ namespace {
 struct KindDefaults {
   TissueKind kind;
   std::string_view name;
-  glm::vec3 colour;
+  std::uint32_t colour;  // 0xRRGGBB
   double density;        // g/cm3 [ICRP 110, 2009], rounded
   double young_modulus;  // kPa: the finite elements' shear moduli times 3, bone far stiffer than flesh
   double poisson_ratio;
   int priority;  // bone first, then what is thin and stiff, skin last
 };
+constexpr std::uint32_t kByLabel = 0xffffffff;  // every label its own
 // One row per kind, in the order of the enumeration.
 constexpr int kKinds = 18;
 const std::array<KindDefaults, kKinds> kDefaults = {{
-    {TissueKind::Unknown, "unknown", {0.70f, 0.70f, 0.70f}, 1.05, 12, 0.49, 20},
-    {TissueKind::Skin, "skin", {0.91f, 0.74f, 0.65f}, 1.09, 120, 0.49, 10},
-    {TissueKind::Fat, "fat", {0.96f, 0.87f, 0.55f}, 0.95, 3, 0.49, 15},
-    {TissueKind::Muscle, "muscle", {0.72f, 0.25f, 0.22f}, 1.05, 12, 0.49, 30},
-    {TissueKind::CorticalBone, "cortical bone", {0.93f, 0.90f, 0.80f}, 1.92, 1.7e7, 0.3, 100},
-    {TissueKind::CancellousBone, "cancellous bone", {0.86f, 0.78f, 0.62f}, 1.18, 3e5, 0.3, 95},
-    {TissueKind::Marrow, "marrow", {0.78f, 0.52f, 0.40f}, 1.03, 12, 0.45, 90},
-    {TissueKind::Bone, "bone", {0.93f, 0.90f, 0.80f}, 1.60, 1e7, 0.3, 97},
-    {TissueKind::Cartilage, "cartilage", {0.67f, 0.81f, 0.84f}, 1.10, 1000, 0.45, 60},
-    {TissueKind::Tendon, "tendon", {0.87f, 0.85f, 0.78f}, 1.12, 500, 0.45, 50},
-    {TissueKind::Connective, "connective", {0.83f, 0.73f, 0.66f}, 1.03, 12, 0.49, 25},
-    {TissueKind::Vessel, "vessel", {0.75f, 0.20f, 0.35f}, 1.06, 100, 0.49, 45},
-    {TissueKind::Blood, "blood", {0.60f, 0.06f, 0.10f}, 1.06, 3, 0.49, 40},
-    {TissueKind::Nerve, "nerve", {0.95f, 0.83f, 0.25f}, 1.04, 30, 0.49, 47},
-    {TissueKind::Brain, "brain", {0.84f, 0.66f, 0.67f}, 1.04, 6, 0.49, 35},
-    {TissueKind::Organ, "organ", {0.66f, 0.40f, 0.34f}, 1.05, 12, 0.49, 33},
-    {TissueKind::Cavity, "cavity", {0.45f, 0.55f, 0.62f}, 0.50, 3, 0.45, 12},
-    {TissueKind::Nail, "nail", {0.90f, 0.80f, 0.76f}, 1.30, 1000, 0.40, 55},
+    {TissueKind::Unknown, "unknown", kByLabel, 1.05, 12, 0.49, 20},
+    {TissueKind::Skin, "skin", 0xE3B597, 1.09, 120, 0.49, 10},
+    {TissueKind::Fat, "fat", 0xF0D27A, 0.95, 3, 0.49, 15},
+    {TissueKind::Muscle, "muscle", 0xB8463F, 1.05, 12, 0.49, 30},
+    {TissueKind::CorticalBone, "cortical bone", 0xEDE6D4, 1.92, 1.7e7, 0.3, 100},
+    {TissueKind::CancellousBone, "cancellous bone", 0xE0CCA0, 1.18, 3e5, 0.3, 95},
+    {TissueKind::Marrow, "marrow", 0xD9A06B, 1.03, 12, 0.45, 90},
+    {TissueKind::Bone, "bone", 0xEDE6D4, 1.60, 1e7, 0.3, 97},
+    {TissueKind::Cartilage, "cartilage", 0x8FC9D6, 1.10, 1000, 0.45, 60},
+    {TissueKind::Tendon, "tendon", 0xCFC8DC, 1.12, 500, 0.45, 50},
+    {TissueKind::Connective, "connective", 0xD4BAA8, 1.03, 12, 0.49, 25},
+    {TissueKind::Vessel, "vessel", 0xD9372F, 1.06, 100, 0.49, 45},
+    {TissueKind::Blood, "blood", 0x4A74D8, 1.06, 3, 0.49, 40},
+    {TissueKind::Nerve, "nerve", 0xF2E14C, 1.04, 30, 0.49, 47},
+    {TissueKind::Brain, "brain", 0xD6A8AB, 1.04, 6, 0.49, 35},
+    {TissueKind::Organ, "organ", kByLabel, 1.05, 12, 0.49, 33},
+    {TissueKind::Cavity, "cavity", 0x738C9E, 0.50, 3, 0.45, 12},
+    {TissueKind::Nail, "nail", 0xF0C8B4, 1.30, 1000, 0.40, 55},
 }};
+glm::vec3 srgb_of(std::uint32_t colour) { return glm::vec3(colour >> 16 & 255, colour >> 8 & 255, colour & 255) / 255.0f; }
+
+// OKLCH to sRGB, clipped [Ottosson 2020].
+glm::vec3 srgb_of(double lightness, double chroma, double hue_degrees) {
+  const double hue = glm::radians(hue_degrees), a = chroma * std::cos(hue), b = chroma * std::sin(hue);
+  const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3), m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3),
+               s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
+  const glm::dvec3 linear(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+                          -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s);
+  glm::vec3 srgb;
+  for (int i = 0; i < 3; ++i) {
+    const double c = std::clamp(linear[i], 0.0, 1.0);
+    srgb[i] = static_cast<float>(c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055);
+  }
+  return srgb;
+}
+
+// A colour of its own for every label, always the same.
+glm::vec3 label_colour(double file_value) {
+  const int label = static_cast<int>(std::fmod(std::abs(file_value), 65536.0));
+  // The golden angle sets neighbours far apart; the hues of what is selected, 45 to 75 degrees, are left out.
+  double hue = std::fmod(label * 137.508, 330.0);
+  if (hue >= 45) hue += 30;
+  constexpr double kLightness[] = {0.62, 0.72, 0.82};
+  return srgb_of(kLightness[label % 3], 0.11, hue);
+}
+
 const KindDefaults& defaults_of(TissueKind kind) { return kDefaults[static_cast<std::size_t>(kind)]; }
 }  // namespace
 
@@ -54,7 +83,7 @@ std::string_view to_string(TissueKind kind) { return defaults_of(kind).name; }
 
 void apply_kind_defaults(Tissue& tissue) {
   const KindDefaults& from = defaults_of(tissue.kind);
-  tissue.colour = from.colour;
+  tissue.colour = from.colour == kByLabel ? label_colour(tissue.file_value) : srgb_of(from.colour);
   tissue.density = from.density;
   tissue.young_modulus = from.young_modulus;
   tissue.poisson_ratio = from.poisson_ratio;

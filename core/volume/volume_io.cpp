@@ -73,6 +73,8 @@ TissueTable tissues_of(const std::vector<std::pair<Label, double>>& values, cons
   for (const auto& [label, value] : values) {
     if (label == 0) continue;
     Tissue tissue;
+    tissue.file_value = value;
+    apply_kind_defaults(tissue);
     if (const Tissue* known = by_value.find(value)) tissue = *known;
     tissue.label = label;
     tissue.file_value = value;

@@ -150,3 +150,17 @@ TEST_CASE("tissue table: words find the class of nearly every BodyParts3D struct
   CHECK(table.tissues.size() == 519);
   CHECK(same >= 500);
 }
+
+TEST_CASE("tissue table: labels of unknown kind each get a colour of their own, the same every time") {
+  std::vector<glm::vec3> colours;
+  for (int value = 1; value <= 60; ++value) {
+    Tissue tissue;
+    tissue.file_value = value;
+    apply_kind_defaults(tissue);
+    Tissue again = tissue;
+    apply_kind_defaults(again);
+    CHECK(again.colour == tissue.colour);
+    for (const glm::vec3& other : colours) CHECK(glm::distance(other, tissue.colour) > 0.01f);
+    colours.push_back(tissue.colour);
+  }
+}
