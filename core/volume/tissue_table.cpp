@@ -66,7 +66,7 @@ glm::vec3 srgb_of(double lightness, double chroma, double hue_degrees) {
 glm::vec3 label_colour(double file_value) {
   const int label = static_cast<int>(std::fmod(std::abs(file_value), 65536.0));
   // The golden angle sets neighbours far apart; the hues of what is selected, 45 to 75 degrees, are left out.
-  double hue = std::fmod(label * 137.508, 330.0);
+  double hue = std::fmod(label * 137.508, 360.0) * 330 / 360;
   if (hue >= 45) hue += 30;
   constexpr double kLightness[] = {0.62, 0.72, 0.82};
   return srgb_of(kLightness[label % 3], 0.11, hue);
