@@ -148,5 +148,5 @@ TEST_CASE("prepare: a volume that was changed meanwhile is not overwritten") {
   test.editor->history.commit("Other", other);
   test.play("wait-job");
   CHECK(test.editor->document().volume == other.volume);
-  CHECK(test.fact("toast") == "the volume was changed meanwhile");
+  CHECK(test.fact("toast") == "The volume was changed meanwhile");
 }

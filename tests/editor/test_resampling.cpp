@@ -166,7 +166,7 @@ TEST_CASE("resample: a worker that crashes, fails, hangs or eats memory is a mes
   // With a message that can be read again, and the editor goes on.
   test.play(R"(
     click "toast 0/Details"
-    expect error "there is no such file"
+    expect error "There is no such file"
     key Escape
     expect error none
     key Alt+Z
