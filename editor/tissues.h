@@ -8,7 +8,7 @@
 
 namespace limber::editor {
 
-// As lists show it: "muscle" begins with a capital.
+// As lists show it: "muscle" begins with a capital, one without a name is "Label 17".
 std::string shown_name(const Tissue& tissue);
 
 TissueLook look_of(const Document& document, Label label);

@@ -81,7 +81,7 @@ void draw_tissues(Editor& editor, Column& column) {
       }
       int index = 0;
       for (const Tissue& tissue : tissues->tissues)
-        if (contains_ignoring_case(tissue.name, editor.tissue_search) || std::to_string(tissue.label) == editor.tissue_search) draw_row(editor, column, index++, tissue);
+        if (contains_ignoring_case(shown_name(tissue), editor.tissue_search) || std::to_string(tissue.label) == editor.tissue_search) draw_row(editor, column, index++, tissue);
       if (index == 0 && empty_state(editor, column.row(72), "No tissue named '" + editor.tissue_search + "'", "Clear search")) editor.tissue_search.clear();
     }
   }

@@ -396,3 +396,11 @@ TEST_CASE("replay: menus at the pointer list views, displays and workspaces") {
     expect workspace pose
   )");
 }
+
+TEST_CASE("replay: tissues without a name are listed by their label") {
+  TemporaryFolder folder;
+  write_volume(*small_body().volume, folder / "ball.mha");
+  SmallEditor test({1024, 640}, {}, false);
+  test.editor->to_open = {folder / "ball.mha"};
+  test.play("wait-job\n wait-idle\n expect volume yes\n expect \"text:Label 17\"");
+}
