@@ -97,6 +97,7 @@ struct Editor {
   Keymap keymap;
   std::vector<Operator> operators;
   Messages messages;
+  bool error_details = false;  // unfolded in the error that is shown
 
   // The project
   History history;

@@ -79,8 +79,7 @@ void Form::draw(Editor& editor) {
   const Look& look = editor.look;
   const float height = 36 + 18 + 44 + kRow * static_cast<float>(request_.fields.size()) + 52 + 28 + 18;
   const Rect rect = begin_dialog(editor, request_.title, 480, height);
-  ImGui::GetWindowDrawList()->AddText(look.fonts.regular, look.fonts.regular->FontSize, im(rect.low), look.theme.text2, request_.sentence.c_str(), nullptr, rect.width());
-  editor.widgets.add_text(request_.sentence);
+  put_wrapped(editor, look.fonts.regular, look.theme.text2, rect.low, rect.width(), request_.sentence, 2);
   float y = rect.low.y + look.px(44);
   for (FormField& field : request_.fields) {
     draw_field(editor, field, {{rect.low.x, y}, {rect.high.x, y + look.px(kRow)}});
@@ -99,9 +98,7 @@ void Form::draw(Editor& editor) {
     put_icon(look.fonts.regular, look.theme.warn, Rect{{x, y + look.px(8)}, {x + look.px(18), y + look.px(26)}}, icon::kWarning);
     x += look.px(24);
   }
-  ImGui::GetWindowDrawList()->AddText(look.fonts.small, look.fonts.small->FontSize, im({x, y + look.px(10)}), problem.empty() ? look.theme.text2 : look.theme.warn, words.c_str(),
-                                      nullptr, rect.high.x - x);
-  editor.widgets.add_text(words);
+  put_wrapped(editor, look.fonts.small, problem.empty() ? look.theme.text2 : look.theme.warn, {x, y + look.px(10)}, rect.high.x - x, words, 3);
 
   const ButtonLook action{"", request_.action, ButtonStyle::Primary, problem.empty()};
   const float width = std::max(look.px(96), width_of_button(editor, action)), low = rect.high.y - look.px(28), cancel = look.px(80);
@@ -113,11 +110,7 @@ void Form::draw(Editor& editor) {
 
   if (!(pressed || std::exchange(accept_, false)) || !problem.empty()) return;
   editor.close_dialog();
-  try {
-    request_.act(editor, request_.fields);
-  } catch (const Error& error) {
-    editor.messages.show_error(error.what());
-  }
+  attempt(editor, request_.title, [this](Editor& e) { request_.act(e, request_.fields); });
 }
 
 }  // namespace

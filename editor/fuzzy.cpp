@@ -72,4 +72,9 @@ std::optional<FuzzyMatch> fuzzy_match(std::string_view query, std::string_view t
   return all;
 }
 
+bool contains_ignoring_case(std::string_view text, std::string_view part) {
+  const auto equal = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b)); };
+  return std::search(text.begin(), text.end(), part.begin(), part.end(), equal) != text.end();
+}
+
 }  // namespace limber::editor

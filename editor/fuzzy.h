@@ -20,4 +20,7 @@ struct FuzzyMatch {
 // An empty query matches everything with score 0.
 std::optional<FuzzyMatch> fuzzy_match(std::string_view query, std::string_view text);
 
+// For the search in lists of anything: the part as it stands, ignoring case.
+bool contains_ignoring_case(std::string_view text, std::string_view part);
+
 }  // namespace limber::editor

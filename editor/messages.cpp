@@ -20,6 +20,7 @@ std::string sentence(std::string text) {
 
 ErrorMessage parts_of(const std::string& text) {
   ErrorMessage message;
+  message.line = text;
   const auto first = text.find(": ");
   const auto last = text.rfind(": ");
   message.what = text.substr(0, first);
@@ -46,16 +47,20 @@ void Messages::add(Toast toast) {
 void Messages::toast_failure(const std::string& text, const std::string& where) {
   const ErrorMessage message = parts_of(text);
   last_failure = text;
-  toast_error(message.what, message.where.empty() ? where : message.where, "help.last_error");
+  add({.severity = Severity::Error, .line = message.what, .detail = message.where.empty() ? where : message.where, .failure = text});
   log.back().text = text;
 }
 
-void Messages::show_error(const std::string& text) {
+void Messages::show_error(const std::string& text, const std::string& during) {
   log.push_back({Severity::Error, text});
-  const ErrorMessage message = parts_of(text);
-  const auto same = std::find_if(errors.begin(), errors.end(),
-                                 [&](const ErrorMessage& e) { return e.what == message.what && e.where == message.where; });
-  if (same == errors.end()) errors.push_back(message);
+  show_again(text, during);
+}
+
+void Messages::show_again(const std::string& text, const std::string& during) {
+  ErrorMessage message = parts_of(text);
+  message.during = during;
+  const auto same = std::find(errors.begin(), errors.end(), message);
+  if (same == errors.end()) errors.push_back(std::move(message));
   else same->times += 1;
 }
 

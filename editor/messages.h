@@ -15,6 +15,7 @@ struct Toast {
   Severity severity;
   std::string line, detail;
   std::string action;  // an operator's id: the one thing to do about it
+  std::string failure;  // an Error's line that can be read whole; then its details are the one thing to do
   double since = -1;  // first shown; set when drawn
   int times = 1;
 };
@@ -27,7 +28,11 @@ struct LogLine {
 // An error as the user reads it: title, where, what to do.
 struct ErrorMessage {
   std::string what, where, what_to_do;
+  std::string line;    // as the program puts it: for the details and for the clipboard
+  std::string during;  // what the user had begun; may be empty
   int times = 1;
+
+  bool operator==(const ErrorMessage& other) const { return line == other.line; }
 };
 
 class Messages {
@@ -40,7 +45,9 @@ class Messages {
   // The same from an Error's line; the whole of it can be read again.
   void toast_failure(const std::string& text, const std::string& where);
   // In the middle of the window: the user's own act failed. The same error again counts up. `text` is an Error's line.
-  void show_error(const std::string& text);
+  void show_error(const std::string& text, const std::string& during = "");
+  // The same of one that is in the log already.
+  void show_again(const std::string& text, const std::string& during = "");
 
   std::deque<Toast> toasts;
   std::vector<LogLine> log;
@@ -51,7 +58,8 @@ class Messages {
   void add(Toast toast);
 };
 
-// "what: where: what to do" in its three parts; a text of another shape is all `what`.
+// "what: where: what to do" in its three parts, of which the middle may hold a chain of others; a text of another shape
+// is all `what`.
 ErrorMessage parts_of(const std::string& text);
 
 }  // namespace limber::editor

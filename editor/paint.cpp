@@ -22,6 +22,18 @@ std::string cut_to(ImFont* font, std::string_view text, float width) {
   return "";
 }
 
+// The longest beginning that takes so many lines.
+std::string cut_to_lines(ImFont* font, const std::string& text, float width, int lines) {
+  const char *at = text.c_str(), *end = at + text.size();
+  for (int line = 1; line < lines && at < end; ++line) {
+    at = font->CalcWordWrapPositionA(1, at, end, width);
+    while (at < end && (*at == ' ' || *at == '\n')) ++at;
+  }
+  const std::string_view rest(at, static_cast<std::size_t>(end - at));
+  if (font->CalcWordWrapPositionA(1, at, end, width) == end) return text;
+  return std::string(text.c_str(), at) + cut_to(font, rest, width);
+}
+
 }  // namespace
 
 void fill(const Rect& rect, Colour colour, float rounding) { canvas().AddRectFilled(im(rect.low), im(rect.high), colour, rounding); }
@@ -54,6 +66,23 @@ void put_text(Editor& editor, ImFont* font, Colour colour, const Rect& in, std::
   editor.widgets.add_text(std::string(text));
   if (!whole && ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem) && in.contains(from_im(ImGui::GetIO().MousePos)))
     tooltip(editor, in, std::string(text), "");
+}
+
+float height_of_wrapped(ImFont* font, const std::string& text, float width, int most_lines) {
+  const std::string shown = most_lines > 0 ? cut_to_lines(font, text, width, most_lines) : text;
+  return font->CalcTextSizeA(font->FontSize, FLT_MAX, width, shown.c_str()).y;
+}
+
+float put_wrapped(Editor& editor, ImFont* font, Colour colour, const glm::vec2& where, float width, const std::string& text, int most_lines) {
+  const std::string shown = most_lines > 0 ? cut_to_lines(font, text, width, most_lines) : text;
+  const glm::vec2 corner = glm::round(where);
+  canvas().AddText(font, font->FontSize, im(corner), colour, shown.c_str(), nullptr, width);
+  editor.widgets.add_text(text);
+  const float height = font->CalcTextSizeA(font->FontSize, FLT_MAX, width, shown.c_str()).y;
+  const Rect place{corner, corner + glm::vec2(width, height)};
+  if (shown != text && ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem) && place.contains(from_im(ImGui::GetIO().MousePos)))
+    tooltip(editor, place, "", text);
+  return height;
 }
 
 void put_icon(ImFont* font, Colour colour, const Rect& in, const char* icon) {

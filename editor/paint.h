@@ -23,6 +23,10 @@ float put_text(Editor& editor, ImFont* font, Colour colour, const glm::vec2& whe
 enum class Align { Left, Centre, Right };
 // One line in the vertical middle of the rectangle; too long a text ends in "...", and pointing at it shows it whole.
 void put_text(Editor& editor, ImFont* font, Colour colour, const Rect& in, std::string_view text, Align align = Align::Left);
+// Lines as long as `width`, from the top left corner on; returns their height. With `most_lines` the last one ends in "..."
+// where there would be more, and pointing at them shows the whole.
+float put_wrapped(Editor& editor, ImFont* font, Colour colour, const glm::vec2& where, float width, const std::string& text, int most_lines = 0);
+float height_of_wrapped(ImFont* font, const std::string& text, float width, int most_lines = 0);
 // An icon in the middle of the rectangle.
 void put_icon(ImFont* font, Colour colour, const Rect& in, const char* icon);
 // Caps beside one another; returns the right end. `y` is the middle.

@@ -25,7 +25,7 @@ bool end_task(Editor& editor, const JobStatus& job) {
     if (!job.label.empty()) editor.messages.info(job.label, "Cancelled");
   } else if (job.state == JobState::Failed) {
     if (task.failed) task.failed(editor, job.message);
-    else editor.messages.show_error(job.message);
+    else editor.messages.show_error(job.message, job.label);
   } else if (*task.finish) {
     attempt(editor, job.label, *task.finish);
   }

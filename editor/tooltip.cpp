@@ -41,9 +41,9 @@ void draw_tooltip(Editor& editor) {
   const ImFont* font = look.fonts.regular;
   const glm::vec2 body = tip.sentence.empty() ? glm::vec2(0)
                                               : from_im(look.fonts.small->CalcTextSizeA(look.fonts.small->FontSize, FLT_MAX, widest, tip.sentence.c_str()));
-  const glm::vec2 title = text_size(look.fonts.regular, tip.title);
-  const glm::vec2 size{std::max(title.x + caps_width, body.x) + 2 * padding,
-                       font->FontSize + (tip.sentence.empty() ? 0 : look.px(4) + body.y) + 2 * look.px(7)};
+  const glm::vec2 title = tip.title.empty() ? glm::vec2(0) : from_im(font->CalcTextSizeA(font->FontSize, FLT_MAX, widest, tip.title.c_str()));
+  const float gap = tip.title.empty() || tip.sentence.empty() ? 0 : look.px(4);
+  const glm::vec2 size{std::max(title.x + caps_width, body.x) + 2 * padding, title.y + gap + body.y + 2 * look.px(7)};
   glm::vec2 corner{tip.rect.low.x, tip.rect.high.y + look.px(6)};
   if (corner.y + size.y > editor.layout.window.high.y) corner.y = tip.rect.low.y - look.px(6) - size.y;
   corner.x = std::clamp(corner.x, look.px(4), std::max(look.px(4), editor.layout.window.high.x - size.x - look.px(4)));
@@ -56,11 +56,10 @@ void draw_tooltip(Editor& editor) {
   fill(rect, look.theme.panel, look.px(5));
   outline(rect, look.theme.line2, look.px(5), look.line());
   const glm::vec2 text = corner + glm::vec2(padding, look.px(7));
-  put_text(editor, look.fonts.regular, look.theme.text, text, tip.title);
+  if (!tip.title.empty()) put_wrapped(editor, look.fonts.regular, look.theme.text, text, widest, tip.title);
   put_key_caps(editor, rect.high.x - padding - caps_width + (caps.empty() ? 0 : look.px(12)), text.y + font->FontSize / 2, caps);
   if (!tip.sentence.empty())
-    ImGui::GetWindowDrawList()->AddText(look.fonts.small, look.fonts.small->FontSize, im(text + glm::vec2(0, font->FontSize + look.px(4))),
-                                        look.theme.text2, tip.sentence.c_str(), nullptr, widest);
+    ImGui::GetWindowDrawList()->AddText(look.fonts.small, look.fonts.small->FontSize, im(text + glm::vec2(0, title.y + gap)), look.theme.text2, tip.sentence.c_str(), nullptr, widest);
   ImGui::End();
   ImGui::PopStyleColor();
 }

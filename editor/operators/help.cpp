@@ -9,7 +9,7 @@ std::vector<Operator> help_operators() {
   return {
       {"help.keys", "Keys", icon::kKeyboard, "Help", "Every key and what it does.", [](Editor& e) { e.open_dialog(open_keys_page()); }},
       {"help.last_error", "Details", icon::kError, "Help", "Shows the last failure of a job again, with what to do.",
-       [](Editor& e) { e.messages.show_error(std::string(e.messages.last_failure)); },
+       [](Editor& e) { e.messages.show_again(e.messages.last_failure); },
        [](const Editor& e) { return e.messages.last_failure.empty() ? std::string("No job has failed") : std::string(); }},
       {"help.system_facts", "Copy system facts", icon::kCopy, "Help", "Puts version, driver and window on the clipboard, for a report of a mistake.",
        [](Editor& e) {

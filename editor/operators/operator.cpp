@@ -46,7 +46,7 @@ bool attempt(Editor& editor, const std::string& label, const std::function<void(
     return true;
   } catch (const Cancelled&) {
   } catch (const Error& error) {
-    editor.messages.show_error(error.what());
+    editor.messages.show_error(error.what(), label);
   } catch (const std::bad_alloc&) {
     editor.messages.show_error("There is not enough memory: " + label + ": close something, or use a coarser volume");
   } catch (const std::exception& error) {

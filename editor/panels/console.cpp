@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Every message of this session, the last one last: filtered by kind and by words, and copied.
-#include <algorithm>
-
 #include "editor/fields.h"
+#include "editor/fuzzy.h"
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
+#include "editor/severity.h"
 
 namespace limber::editor {
 
@@ -12,21 +12,6 @@ namespace {
 
 constexpr Severity kSeverities[] = {Severity::Info, Severity::Ok, Severity::Warning, Severity::Error};
 constexpr const char* kNames[] = {"Notes", "Done", "Warnings", "Errors"};
-
-std::pair<const char*, Colour> sign_of(const Theme& theme, Severity severity) {
-  switch (severity) {
-    case Severity::Info: return {icon::kInfo, theme.accent_text};
-    case Severity::Ok: return {icon::kOk, theme.ok};
-    case Severity::Warning: return {icon::kWarning, theme.warn};
-    case Severity::Error: break;
-  }
-  return {icon::kError, theme.error};
-}
-
-bool contains_ignoring_case(const std::string& text, const std::string& part) {
-  const auto equal = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b)); };
-  return std::search(text.begin(), text.end(), part.begin(), part.end(), equal) != text.end();
-}
 
 std::vector<const LogLine*> filtered(const Editor& editor) {
   std::vector<const LogLine*> lines;
@@ -83,6 +68,7 @@ void draw_console(Editor& editor, const Rect& rect) {
     put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(12), row.low.y}, row.high}, editor.messages.log.empty() ? "No messages yet" : "No message matches");
   }
   int index = 0;
+  std::string shown_again;
   for (const LogLine* line : lines) {
     Rect row;
     if (!column.list_row(row, index++, false)) continue;
@@ -91,7 +77,9 @@ void draw_console(Editor& editor, const Rect& rect) {
     put_icon(look.fonts.regular, colour, Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}}, sign);
     put_text(editor, look.fonts.regular, look.theme.text, Rect{{row.low.x + look.px(36), row.low.y}, {row.high.x - look.px(10), row.high.y}}, line->text);
     if (pressed.right_clicked) editor.host.set_clipboard(line->text);
+    if (pressed.double_clicked && line->severity == Severity::Error) shown_again = line->text;
   }
+  if (!shown_again.empty()) editor.messages.show_again(shown_again);
   if (editor.console.lines_seen != editor.messages.log.size()) ImGui::SetScrollHereY(1);  // follows the last line
   editor.console.lines_seen = editor.messages.log.size();
 }

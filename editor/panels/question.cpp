@@ -18,14 +18,12 @@ class QuestionDialog final : public Dialog {
     ImFont* font = look.fonts.regular;
     const float text_width = look.px(kWidth - 36 - 32);
     float height = 0;
-    for (const std::string& line : question_.lines) height += font->CalcTextSizeA(font->FontSize, FLT_MAX, text_width, line.c_str()).y / look.scale + 8;
+    for (const std::string& line : question_.lines) height += height_of_wrapped(font, line, text_width) / look.scale + 8;
     const Rect rect = begin_dialog(editor, question_.title, kWidth, 36 + 18 + height + 12 + 28 + 18);
     put_icon(look.fonts.icons, look.theme.accent_text, Rect{rect.low, rect.low + look.px(20)}, question_.icon);
     float y = rect.low.y;
     for (const std::string& line : question_.lines) {
-      ImGui::GetWindowDrawList()->AddText(font, font->FontSize, {rect.low.x + look.px(32), y}, look.theme.text, line.c_str(), nullptr, text_width);
-      editor.widgets.add_text(line);
-      y += font->CalcTextSizeA(font->FontSize, FLT_MAX, text_width, line.c_str()).y + look.px(8);
+      y += put_wrapped(editor, font, look.theme.text, {rect.low.x + look.px(32), y}, text_width, line) + look.px(8);
     }
     draw_answers(editor, rect);
     end_dialog(editor);

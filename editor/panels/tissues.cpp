@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "editor/fields.h"
+#include "editor/fuzzy.h"
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
 #include "editor/tissues.h"
@@ -10,11 +11,6 @@
 namespace limber::editor {
 
 namespace {
-
-bool contains_ignoring_case(const std::string& text, const std::string& part) {
-  const auto equal = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b)); };
-  return std::search(text.begin(), text.end(), part.begin(), part.end(), equal) != text.end();
-}
 
 void draw_eye(Editor& editor, const Rect& rect, const Tissue& tissue, const TissueLook& shown) {
   const Look& look = editor.look;

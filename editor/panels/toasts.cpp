@@ -1,60 +1,106 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Short messages at the bottom right of the views: info 4 s, warnings 8 s, errors stay; pointing at one holds it.
+// Short messages at the bottom right of the views: info 4 s, warnings 8 s, errors stay; pointing at one holds it. At most
+// three are seen, the older ones are counted above them.
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
+#include "editor/severity.h"
 
 namespace limber::editor {
 
 namespace {
 
 constexpr std::size_t kMost = 3;
+constexpr float kWidth = 332, kLeast = 52, kGap = 8;
+constexpr int kLines = 2, kDetailLines = 3;
+constexpr double kFadeIn = 0.12, kFadeOut = 0.2;  // s
 
 double life_of(Severity severity) { return severity == Severity::Error ? 1e300 : severity == Severity::Warning ? 8 : 4; }
 
-struct Face {
-  const char* icon;
-  Colour colour;
+// What is shown of a toast, and how large that is.
+struct Shape {
+  std::string line, action;
+  float words = 0, action_width = 0;  // widths
+  float line_height = 0, height = 0;
 };
-Face face_of(const Theme& theme, Severity severity) {
-  switch (severity) {
-    case Severity::Info: return {icon::kInfo, theme.accent_text};
-    case Severity::Ok: return {icon::kOk, theme.ok};
-    case Severity::Warning: return {icon::kWarning, theme.warn};
-    case Severity::Error: break;
+
+Shape shape_of(const Editor& editor, const Toast& toast, float width) {
+  const Look& look = editor.look;
+  Shape shape;
+  shape.line = toast.times > 1 ? toast.line + " (" + std::to_string(toast.times) + " times)" : toast.line;
+  const Operator* op = toast.action.empty() ? nullptr : find_operator(editor, toast.action);
+  shape.action = !toast.failure.empty() ? "Details" : op ? op->label : "";
+  shape.action_width = shape.action.empty() ? 0 : text_size(look.fonts.regular, shape.action).x + look.px(24);
+  shape.words = width - look.px(42 + 34) - shape.action_width;
+  shape.line_height = height_of_wrapped(look.fonts.regular, shape.line, shape.words, kLines);
+  const float detail = toast.detail.empty() ? 0 : height_of_wrapped(look.fonts.small, toast.detail, shape.words, kDetailLines);
+  shape.height = std::max(look.px(kLeast), std::round(shape.line_height + detail + look.px(18)));
+  return shape;
+}
+
+// How much of it is seen as it comes and goes.
+float presence(Editor& editor, const Toast& toast) {
+  if (editor.preferences.reduce_motion) return 1;
+  const double age = editor.now - toast.since, left = life_of(toast.severity) - age;
+  if (age < kFadeIn || left < kFadeOut) editor.wake_at(editor.now);
+  return static_cast<float>(std::clamp(std::min((age + 0.02) / kFadeIn, left / kFadeOut), 0.0, 1.0));
+}
+
+void fade(ImDrawList& canvas, int first, float presence) {
+  for (int i = first; i < canvas.VtxBuffer.Size; ++i) {
+    ImU32& colour = canvas.VtxBuffer[i].col;
+    colour = with_alpha(colour, static_cast<float>(colour >> 24) / 255 * presence);
   }
-  return {icon::kError, theme.error};
 }
 
 // True when it was closed.
-bool draw_toast(Editor& editor, const Toast& toast, const Rect& rect, int index, bool& held) {
+bool draw_toast(Editor& editor, const Toast& toast, const Shape& shape, const Rect& rect, int index) {
   const Look& look = editor.look;
   begin_region(editor, Region::Toast, "toast " + std::to_string(index), rect, 0);
-  const Face face = face_of(look.theme, toast.severity);
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  const int first = canvas.VtxBuffer.Size;
+  const Sign sign = sign_of(look.theme, toast.severity);
   fill(rect, look.theme.panel, look.px(6));
   outline(rect, look.theme.line2, look.px(6), look.line());
-  ImGui::GetWindowDrawList()->AddRectFilled(im(rect.low), {rect.low.x + look.px(3), rect.high.y}, face.colour, look.px(6), ImDrawFlags_RoundCornersLeft);
-  put_icon(look.fonts.regular, face.colour, Rect{{rect.low.x + look.px(14), rect.low.y}, {rect.low.x + look.px(34), rect.high.y}}, face.icon);
-  const float left = rect.low.x + look.px(42), right = rect.high.x - look.px(34), middle = rect.centre().y;
-  const Operator* action = toast.action.empty() ? nullptr : find_operator(editor, toast.action);
-  const float action_width = action ? text_size(look.fonts.regular, action->label).x + look.px(24) : 0, words_right = right - action_width;
-  const std::string line = toast.times > 1 ? toast.line + " (" + std::to_string(toast.times) + " times)" : toast.line;
-  if (toast.detail.empty()) put_text(editor, look.fonts.regular, look.theme.text, Rect{{left, rect.low.y}, {words_right, rect.high.y}}, line);
-  else {
-    put_text(editor, look.fonts.regular, look.theme.text, Rect{{left, middle - look.px(18)}, {words_right, middle}}, line);
-    put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, middle}, {words_right, middle + look.px(16)}}, toast.detail);
+  canvas.AddRectFilled(im(rect.low), {rect.low.x + look.px(3), rect.high.y}, sign.colour, look.px(6), ImDrawFlags_RoundCornersLeft);
+  put_icon(look.fonts.regular, sign.colour, Rect{{rect.low.x + look.px(14), rect.low.y}, {rect.low.x + look.px(34), rect.high.y}}, sign.icon);
+
+  const float left = rect.low.x + look.px(42), middle = rect.centre().y;
+  const float detail = toast.detail.empty() ? 0 : height_of_wrapped(look.fonts.small, toast.detail, shape.words, kDetailLines);
+  const float top = std::round(middle - (shape.line_height + detail) / 2);
+  put_wrapped(editor, look.fonts.regular, look.theme.text, {left, top}, shape.words, shape.line, kLines);
+  if (detail > 0) put_wrapped(editor, look.fonts.small, look.theme.text2, {left, top + shape.line_height}, shape.words, toast.detail, kDetailLines);
+  if (!shape.action.empty()) {
+    const Rect link{{left + shape.words + look.px(8), middle - look.px(12)}, {left + shape.words + shape.action_width, middle + look.px(12)}};
+    const Operator* op = find_operator(editor, toast.action);
+    const Pressed pressed = press_area(editor, shape.action, link);
+    put_text(editor, look.fonts.regular, look.theme.accent_text, link, shape.action, Align::Centre);
+    if (pressed.hovered) op ? operator_tooltip(editor, *op, link) : tooltip(editor, link, "Details", "The whole of it, with what to do.");
+    if (pressed.clicked) op ? run(editor, *op) : editor.messages.show_again(toast.failure);
   }
-  if (action) {
-    const Rect link{{right - action_width + look.px(8), middle - look.px(12)}, {right, middle + look.px(12)}};
-    const Pressed pressed = press_area(editor, action->label, link);
-    put_text(editor, look.fonts.regular, look.theme.accent_text, link, action->label, Align::Centre);
-    if (pressed.hovered) operator_tooltip(editor, *action, link);
-    if (pressed.clicked) run(editor, *action);
-  }
-  held = rect.contains(editor.input.pointer);
   const Rect close{{rect.high.x - look.px(30), middle - look.px(12)}, {rect.high.x - look.px(6), middle + look.px(12)}};
   const bool closed = button(editor, "Close message", close, {icon::kClose, "", ButtonStyle::Flat});
+  fade(canvas, first, presence(editor, toast));
   end_region(editor);
   return closed;
+}
+
+// The older ones; a click shows them in the console.
+void draw_more(Editor& editor, std::size_t count, float bottom, float right) {
+  const Look& look = editor.look;
+  const std::string words = "+" + std::to_string(count) + " more";
+  const float width = text_size(look.fonts.small, words).x + look.px(20);
+  const Rect rect{{right - width, bottom - look.px(22)}, {right, bottom}};
+  begin_region(editor, Region::Toast, "toasts", rect, 0);
+  const Pressed pressed = press_area(editor, "more", rect);
+  fill(rect, pressed.hovered ? look.theme.hover : look.theme.panel, look.px(5));
+  outline(rect, look.theme.line2, look.px(5), look.line());
+  put_text(editor, look.fonts.small, look.theme.text2, rect, words, Align::Centre);
+  if (pressed.hovered) tooltip(editor, rect, "Older messages", "Opens the console, which keeps all of them.");
+  if (pressed.clicked) {
+    editor.messages.toasts.clear();
+    if (!editor.arrangement().console) run(editor, "view.console");
+  }
+  end_region(editor);
 }
 
 }  // namespace
@@ -64,23 +110,25 @@ void draw_toasts(Editor& editor) {
   const Look& look = editor.look;
   for (Toast& toast : toasts)
     if (toast.since < 0) toast.since = editor.now;
-  std::erase_if(toasts, [&](const Toast& toast) { return editor.now - toast.since > life_of(toast.severity); });
+  std::erase_if(toasts, [&](const Toast& toast) { return editor.now - toast.since >= life_of(toast.severity); });
 
   const Rect& views = editor.layout.views;
+  const float width = std::min(look.px(kWidth), views.width() - look.px(24)), right = views.high.x - look.px(12);
   float bottom = views.high.y - look.px(12);
-  const float width = std::min(look.px(332), views.width() - look.px(24));
-  const std::size_t shown = std::min(toasts.size(), kMost);
   std::size_t closed = toasts.size();
+  const std::size_t shown = std::min(toasts.size(), kMost);
   for (std::size_t i = 0; i < shown; ++i) {
-    Toast& toast = toasts[toasts.size() - 1 - i];
-    const Rect rect{{views.high.x - look.px(12) - width, bottom - look.px(52)}, {views.high.x - look.px(12), bottom}};
-    bool held = false;
-    if (draw_toast(editor, toast, rect, static_cast<int>(i), held)) closed = toasts.size() - 1 - i;
-    if (held) toast.since = editor.now;
-    if (life_of(toast.severity) < 1e9) editor.wake_at(toast.since + life_of(toast.severity) + 0.01);
-    bottom = rect.low.y - look.px(8);
+    const std::size_t at = toasts.size() - 1 - i;
+    const Toast toast = toasts[at];  // what is pressed in it may bring others
+    const Shape shape = shape_of(editor, toast, width);
+    const Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
+    if (draw_toast(editor, toast, shape, rect, static_cast<int>(i))) closed = at;
+    if (rect.contains(editor.input.pointer)) toasts[at].since = std::max(toast.since, editor.now - kFadeIn);
+    if (life_of(toast.severity) < 1e9) editor.wake_at(toasts[at].since + life_of(toast.severity) - kFadeOut);
+    bottom = rect.low.y - look.px(kGap);
   }
   if (closed < toasts.size()) toasts.erase(toasts.begin() + static_cast<std::ptrdiff_t>(closed));
+  else if (toasts.size() > shown) draw_more(editor, toasts.size() - shown, bottom, right);
 }
 
 }  // namespace limber::editor

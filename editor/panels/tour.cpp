@@ -45,7 +45,7 @@ void draw_tour(Editor& editor) {
   const TourStep& step = tour_steps()[editor.tour.step];
   ImFont* font = look.fonts.regular;
   const float wrap = look.px(kWidth - 2 * kPadding), padding = look.px(kPadding);
-  const float words = font->CalcTextSizeA(font->FontSize, FLT_MAX, wrap, step.text).y;
+  const float words = height_of_wrapped(font, step.text, wrap);
   const glm::vec2 size{look.px(kWidth), look.px(14 + 24 + 8 + 26 + 14) + words};
   const Widget* target = editor.widgets.find(step.widget);
   const Place place = place_of(editor, target ? target->rect : editor.layout.views, size);
@@ -66,8 +66,7 @@ void draw_tour(Editor& editor) {
     put_key_caps(editor, right - width_of_key_caps(editor, caps), y + look.px(10), caps);
   }
   y += look.px(26);
-  ImGui::GetWindowDrawList()->AddText(font, font->FontSize, {left, y}, look.theme.text2, step.text, nullptr, wrap);
-  editor.widgets.add_text(step.text);
+  put_wrapped(editor, font, look.theme.text2, {left, y}, wrap, step.text);
 
   const float low = place.rect.high.y - look.px(12 + 26), high = low + look.px(26);
   put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, low}, {left + look.px(80), high}},
