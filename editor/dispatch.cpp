@@ -28,7 +28,12 @@ void run_chord(Editor& editor, const Chord& chord) {
   if (const std::string* id = editor.keymap.find(chord, contexts(editor))) run(editor, *id);
 }
 
+void end_modal(Editor& editor, bool goes_on) {
+  if (!goes_on) editor.modal.reset();
+}
+
 void on_key(Editor& editor, const KeyChanged& event) {
+  if (editor.modal) return end_modal(editor, editor.modal->key(editor, event));
   if (!event.down || event.key >= Key::Ctrl) return;
   if (event.key == Key::Escape) {
     if (editor.views->preview_visibility || editor.views->preview_tissues) {
@@ -93,7 +98,14 @@ void on_release(Editor& editor, MouseButton button) {
   if (ended.ended) ended.ended(editor);
 }
 
-void on_move(Editor& editor, const glm::vec2& by) {
+void on_move(Editor& editor, const glm::vec2& from, const glm::vec2& to) {
+  const auto outside = [](const glm::vec2& point) { return point.x < -1e5f; };
+  if (outside(from) || outside(to)) return;
+  if (editor.modal) {
+    end_modal(editor, editor.modal->moved(editor, editor.modal_wrap.moved(from, to)));
+    if (const glm::vec2 leap = editor.modal_wrap.leap(to); editor.modal && leap != glm::vec2(0)) editor.host.shift_pointer(leap);
+    return;
+  }
   if (editor.pending_press && glm::distance(editor.pending_press->from, editor.input.pointer) >= kDragThreshold * editor.look.scale) {
     const PendingPress pending = *editor.pending_press;
     editor.pending_press.reset();
@@ -101,7 +113,18 @@ void on_move(Editor& editor, const glm::vec2& by) {
     if (editor.drag && editor.drag->moved) editor.drag->moved(editor, editor.input.pointer - pending.from);
     return;
   }
-  if (editor.drag && editor.drag->moved) editor.drag->moved(editor, by);
+  if (!editor.drag || !editor.drag->moved) return;
+  editor.drag->moved(editor, editor.drag->wrap.moved(from, to));
+  if (const glm::vec2 leap = editor.drag->wrap.leap(to); leap != glm::vec2(0)) editor.host.shift_pointer(leap);
+}
+
+void on_wheel(Editor& editor, const Wheeled& event) {
+  if (editor.modal) return end_modal(editor, editor.modal->wheel(editor, event.steps));
+  if (!hovered_view(editor) || editor.drag || dialog_open(editor)) return;
+  editor.input.wheel = event.steps;
+  editor.input.wheel_sideways = event.sideways;
+  if (event.steps != 0) run_chord(editor, {Chord::Kind::Wheel, editor.input.modifiers()});
+  if (event.sideways != 0) run(editor, "view.pan_sideways_step");
 }
 
 }  // namespace
@@ -132,19 +155,22 @@ void dispatch(Editor& editor, const std::vector<Event>& events, InputState befor
     before.apply(event);
     editor.input = before;
     if (std::holds_alternative<PointerMoved>(event)) {
-      on_move(editor, before.pointer - from);
+      on_move(editor, from, before.pointer);
     } else if (const auto* button = std::get_if<ButtonChanged>(&event)) {
-      button->down ? on_press(editor, button->button) : on_release(editor, button->button);
+      if (editor.modal) end_modal(editor, editor.modal->button(editor, *button));
+      else button->down ? on_press(editor, button->button) : on_release(editor, button->button);
     } else if (const auto* wheel = std::get_if<Wheeled>(&event)) {
-      editor.input.wheel = wheel->steps;
-      if (hovered_view(editor) && !editor.drag && !dialog_open(editor)) run_chord(editor, {Chord::Kind::Wheel, before.modifiers()});
+      on_wheel(editor, *wheel);
     } else if (const auto* key = std::get_if<KeyChanged>(&event)) {
       on_key(editor, *key);
     } else if (const auto* dropped = std::get_if<FilesDropped>(&event)) {
       editor.to_open.insert(editor.to_open.end(), dropped->paths.begin(), dropped->paths.end());
     } else if (const auto* focus = std::get_if<FocusChanged>(&event); focus && !focus->focused) {
       editor.pending_press.reset();
+      if (editor.drag && editor.drag->ended) editor.drag->ended(editor);
       editor.drag.reset();
+      if (editor.modal) editor.modal->cancel(editor);
+      editor.modal.reset();
     }
   }
   editor.input = after;

@@ -68,7 +68,7 @@ void Dialog::escape(Editor& editor) { editor.close_dialog(); }
 
 Editor::Editor(Host& host, const Preferences& preferences)
     : host(host), preferences(preferences), keymap(read_keymap(asset("keymap.json"))), operators(gather_operators()),
-      jobs(kJobsAtOnce, [&host] { host.wake(); }) {
+      jobs(kJobsAtOnce, [&host] { host.wake(); }), arrangements(preferences.arrangements) {
   IMGUI_CHECKVERSION();
   imgui = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -86,12 +86,12 @@ Editor::Editor(Host& host, const Preferences& preferences)
   ImGui_ImplOpenGL3_Init("#version 330 core");
   views.emplace();
   show_preferred(*this);
-  for (int w = 0; w < 4; ++w) arrangements[w] = default_arrangement(static_cast<Workspace>(w));
   apply_look(look, preferences.theme, scale_for(preferences, host));
   layout = arrange(host.size(), look.scale, arrangement());
 }
 
 Editor::~Editor() {
+  preferences.arrangements = arrangements;
   write_preferences(*this);
   ImGui::SetCurrentContext(imgui);
   pictures.clear();
@@ -104,7 +104,7 @@ void Editor::open_dialog(std::unique_ptr<Dialog> dialog) { next_dialog_ = std::m
 void Editor::close_dialog() { next_dialog_ = std::unique_ptr<Dialog>(); }
 
 double Editor::rest() const {
-  if (frames_wanted_ > 0 || !host.events.empty() || views->body.move) return 0;
+  if (frames_wanted_ > 0 || !host.events.empty() || views->body.move || (modal && modal->moving())) return 0;
   if (layout.place_of(ViewId::Body) && !views->body.picture->complete()) return 0;
   double seconds = kLongestRest;
   seconds = std::min(seconds, wake_at_ - now);
@@ -115,7 +115,7 @@ double Editor::rest() const {
 void Editor::take_input() {
   const std::vector<Event> events = host.events.take_frame();
   const InputState before = input;
-  input.wheel = 0;
+  input.wheel = input.wheel_sideways = 0;
   for (const Event& event : events) input.apply(event);
   if (!events.empty()) touch();
   if (std::any_of(events.begin(), events.end(), begins_something)) views->body.move.reset();
@@ -152,6 +152,7 @@ void Editor::draw() {
   draw_error_message(*this);
   draw_tooltip(*this);
   widgets.end_frame();
+  if (modal && modal->hides_pointer()) cursor = Cursor::Hidden;
   host.set_cursor(ImGui::GetIO().WantTextInput ? Cursor::Text : cursor);
   // Regions stand behind popups and dialogs, in the order in which they were drawn.
   for (auto name = place.windows.rbegin(); name != place.windows.rend(); ++name) ImGui::BringWindowToDisplayBack(ImGui::FindWindowByName(name->c_str()));
@@ -173,6 +174,7 @@ void Editor::frame(double time) {
   ImGui_ImplOpenGL3_NewFrame();
   take_input();
   open_waiting_files(*this);
+  if (modal && !modal->frame(*this, io.DeltaTime)) modal.reset();
   if (poll_jobs(*this)) touch();
   std::erase_if(each_frame, [this](const auto& act) { return !act(*this); });
   layout = arrange(size, look.scale, arrangement());

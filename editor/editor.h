@@ -19,9 +19,11 @@
 #include "editor/layout.h"
 #include "editor/look.h"
 #include "editor/messages.h"
+#include "editor/modal.h"
 #include "editor/operators/operator.h"
 #include "editor/preferences.h"
 #include "editor/pictures.h"
+#include "editor/pointer_wrap.h"
 #include "editor/project_life.h"
 #include "editor/remembered.h"
 #include "editor/task.h"
@@ -39,6 +41,7 @@ struct Drag {
   MouseButton button = MouseButton::Left;
   std::function<void(Editor&, const glm::vec2& pixels)> moved;  // by how much since the last call
   std::function<void(Editor&)> ended, cancelled;
+  PointerWrap wrap = {};  // of the view that the drag began in
 };
 
 // A press that is still either a click or the beginning of a drag.
@@ -124,7 +127,7 @@ struct Editor {
   int start_row = 0;  // of its recent files
   Tour tour;
   Workspace workspace = Workspace::Rig;
-  std::array<Arrangement, 4> arrangements;
+  Arrangements arrangements;
   Layout layout;
   std::unique_ptr<Dialog> dialog;  // null: none
   bool quit = false;
@@ -162,6 +165,9 @@ struct Editor {
   InputState input;
   std::optional<Drag> drag;
   std::optional<PendingPress> pending_press;
+  std::unique_ptr<Modal> modal;  // null: none
+  PointerWrap modal_wrap;
+  float wheel_rest = 0;  // of the slices' wheel: parts of a step that a pad has made
   std::string last_operator;  // id, for Repeat
   double now = 0;
 

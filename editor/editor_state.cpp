@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "editor/arrangement_json.h"
+
 namespace limber::editor {
 
 using Json = nlohmann::json;
@@ -53,31 +55,6 @@ bool take_vector(const Json& json, const char* key, Vector& value) {
   return true;
 }
 
-Json json_of(const Arrangement& arrangement) {
-  Json json{{"views", static_cast<int>(arrangement.views)}, {"tool_strip", arrangement.tool_strip}, {"console", arrangement.console},
-            {"sidebar_width", arrangement.sidebar_width}, {"bottom_height", arrangement.bottom_height}, {"split_x", arrangement.split_x},
-            {"split_y", arrangement.split_y}, {"four_x", arrangement.four_x}, {"four_y", arrangement.four_y}};
-  if (arrangement.sidebar) json["sidebar"] = *arrangement.sidebar;
-  return json;
-}
-
-void restore(const Json& json, Arrangement& arrangement) {
-  take_choice(json, "views", 3, arrangement.views);
-  take(json, "tool_strip", arrangement.tool_strip);
-  take(json, "console", arrangement.console);
-  take(json, "sidebar_width", 260, 520, arrangement.sidebar_width);
-  take(json, "bottom_height", 60, 4000, arrangement.bottom_height);
-  take(json, "split_x", 0.2, 0.8, arrangement.split_x);
-  take(json, "split_y", 0.2, 0.8, arrangement.split_y);
-  take(json, "four_x", 0.2, 0.8, arrangement.four_x);
-  take(json, "four_y", 0.2, 0.8, arrangement.four_y);
-  if (json.contains("sidebar")) {
-    bool open = true;
-    take(json, "sidebar", open);
-    arrangement.sidebar = open;
-  }
-}
-
 Json json_of(const render::Camera& camera) {
   const glm::dquat& q = camera.world_from_view;
   return {{"centre", json_of(camera.centre)}, {"distance", camera.distance}, {"world_from_view", {q.w, q.x, q.y, q.z}},
@@ -101,7 +78,7 @@ std::string editor_state(const Editor& editor) {
   Json json{{"schema", kSchema}, {"workspace", static_cast<int>(editor.workspace)}, {"display", static_cast<int>(views.display)},
             {"slices", static_cast<int>(views.slice_display)}, {"cross_hair", json_of(views.cross_hair)}, {"camera", json_of(views.body.camera)},
             {"grid", views.grid}, {"axes", views.axes}, {"scale_bar", views.scale_bar}, {"letters", views.letters}, {"show_cross_hair", views.show_cross_hair}};
-  for (const Arrangement& arrangement : editor.arrangements) json["arrangements"].push_back(json_of(arrangement));
+  json["arrangements"] = json_of(editor.arrangements);
   for (const SliceState& slice : views.slices)
     json["slice_cameras"].push_back({{"centre", json_of(slice.camera.centre)}, {"millimetres_per_pixel", slice.camera.millimetres_per_pixel}});
   if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
@@ -123,9 +100,7 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   take(json, "show_cross_hair", views.show_cross_hair);
   if (const auto camera = json.find("camera"); camera != json.end() && camera->is_object()) restore(*camera, views.body.camera);
   views.body.name.clear();
-  if (const auto all = json.find("arrangements"); all != json.end() && all->is_array())
-    for (std::size_t i = 0; i < std::min(all->size(), editor.arrangements.size()); ++i)
-      if ((*all)[i].is_object()) restore((*all)[i], editor.arrangements[i]);
+  if (json.contains("arrangements")) restore(json["arrangements"], editor.arrangements);
   if (const auto all = json.find("slice_cameras"); all != json.end() && all->is_array())
     for (std::size_t i = 0; i < std::min(all->size(), views.slices.size()); ++i) {
       if (!(*all)[i].is_object()) continue;

@@ -60,7 +60,10 @@ bool EventQueue::empty() const {
 void InputState::apply(const Event& event) {
   if (const auto* moved = std::get_if<PointerMoved>(&event)) pointer = moved->position;
   if (const auto* button = std::get_if<ButtonChanged>(&event)) buttons[static_cast<std::size_t>(button->button)] = button->down;
-  if (const auto* wheeled = std::get_if<Wheeled>(&event)) wheel += wheeled->steps;
+  if (const auto* wheeled = std::get_if<Wheeled>(&event)) {
+    wheel += wheeled->steps;
+    wheel_sideways += wheeled->sideways;
+  }
   if (const auto* key = std::get_if<KeyChanged>(&event)) keys[static_cast<std::size_t>(key->key)] = key->down;
   // What is released while another window has the focus is never heard of.
   if (const auto* focus = std::get_if<FocusChanged>(&event); focus && !focus->focused) {
@@ -85,6 +88,7 @@ void tell_imgui(const std::vector<Event>& events, const InputState& state) {
   io.MousePos = state.pointer.x < -1e5f ? ImVec2(-FLT_MAX, -FLT_MAX) : ImVec2(state.pointer.x, state.pointer.y);
   for (int button = 0; button < 3; ++button) io.MouseDown[button] = state.buttons[button];
   io.MouseWheel = state.wheel;
+  io.MouseWheelH = state.wheel_sideways;
   for (std::size_t key = 0; key < static_cast<std::size_t>(Key::Count); ++key) io.KeysDown[key] = state.keys[key];
   io.KeyCtrl = state.down(Key::Ctrl);
   if (io.KeyCtrl) io.KeysDown[static_cast<std::size_t>(Key::Tab)] = false;  // else ImGui lists its own windows

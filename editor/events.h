@@ -25,7 +25,8 @@ struct ButtonChanged {
   bool down;
 };
 struct Wheeled {
-  float steps;  // positive: away from the user
+  float steps;         // positive: away from the user
+  float sideways = 0;  // of two fingers on a pad; positive: to the left
 };
 struct KeyChanged {
   Key key;
@@ -60,7 +61,7 @@ struct InputState {
   glm::vec2 pointer{-1e6f};  // outside every region
   bool buttons[3] = {};
   bool keys[static_cast<std::size_t>(Key::Count)] = {};
-  float wheel = 0;  // of this frame
+  float wheel = 0, wheel_sideways = 0;  // of this frame
 
   bool down(Key key) const { return keys[static_cast<std::size_t>(key)]; }
   bool down(MouseButton button) const { return buttons[static_cast<std::size_t>(button)]; }

@@ -11,7 +11,7 @@
 
 namespace limber::editor {
 
-enum class Cursor { Arrow, Hand, Text, ResizeX, ResizeY, Cross, Move };
+enum class Cursor { Arrow, Hand, Text, ResizeX, ResizeY, Cross, Move, Hidden };
 
 class Host {
  public:
@@ -25,6 +25,8 @@ class Host {
   // Returns at the first event, at wake(), or after `seconds`; 0 only gathers what has happened.
   virtual void wait(double seconds) = 0;
   virtual void wake() = 0;  // from any thread
+  // Moves the pointer by so many pixels, where the desktop allows; its next move is seen there.
+  virtual void shift_pointer(const glm::vec2& by) = 0;
   virtual void present() = 0;
   virtual unsigned framebuffer() const { return 0; }
 

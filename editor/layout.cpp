@@ -64,6 +64,12 @@ Arrangement default_arrangement(Workspace workspace) {
   return arrangement;
 }
 
+Arrangements default_arrangements() {
+  Arrangements all;
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = default_arrangement(static_cast<Workspace>(i));
+  return all;
+}
+
 const ViewPlace* Layout::view_at(const glm::vec2& point) const {
   if (sidebar_over_views && sidebar.contains(point)) return nullptr;
   for (const ViewPlace& place : view_places)

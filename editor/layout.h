@@ -12,6 +12,7 @@
 // views; under 720 high the bottom area takes 120.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct Arrangement {
   bool operator==(const Arrangement&) const = default;
 };
 Arrangement default_arrangement(Workspace workspace);
+
+using Arrangements = std::array<Arrangement, 4>;  // by workspace
+Arrangements default_arrangements();
 
 struct ViewPlace {
   ViewId id;

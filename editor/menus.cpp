@@ -72,7 +72,8 @@ std::vector<Menu> menus() {
         "edit.preferences"}},
       {"View",
        {"view.one", "view.split", "view.four", "view.maximize", "-", "> Standard views", "view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom", "view.opposite", "<",
-        "view.ortho", "view.frame_selected", "view.frame_all", "-", "view.solid", "view.xray_display", "view.tissue", "-", "> Clipping", "view.clip_box", "view.clip_plane", "view.reset_clipping",
+        "view.ortho", "view.frame_selected", "view.frame_all", "> Navigate", "view.walk", "view.centre_on_pick", "view.orbit_left", "view.orbit_right", "view.orbit_up",
+        "view.orbit_down", "view.zoom_in", "view.zoom_out", "<", "-", "view.solid", "view.xray_display", "view.tissue", "-", "> Clipping", "view.clip_box", "view.clip_plane", "view.reset_clipping",
         "<", "> Tissues", "view.hide", "view.isolate_selected", "view.reveal", "<", "> Slices", "slice.show_labels", "slice.show_outlines", "slice.next", "slice.previous", "<", "> Overlays",
         "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.cross_hair", "<", "-", "view.sidebar", "view.tool_strip", "view.results", "view.console", "view.full_screen"}},
       {"Help", {"help.guide", "help.keys", "help.tour", "-", "search.commands", "view.console", "help.last_error", "help.system_facts", "-", "help.about"}},
@@ -80,7 +81,7 @@ std::vector<Menu> menus() {
 }
 
 Menu pointer_menu(const std::string& name, ViewId view) {
-  if (name == "Views") return {name, {"view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom", "view.opposite", "-", "view.ortho", "view.frame_selected", "view.frame_all"}};
+  if (name == "Views") return {name, {"view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom", "view.opposite", "-", "view.ortho", "view.frame_selected", "view.frame_all", "view.walk"}};
   if (name == "Display") return {name, {"view.solid", "view.xray_display", "view.tissue", "-", "view.clip_box", "view.clip_plane"}};
   if (name == "Workspaces") return {name, {"workspace.rig", "workspace.skin", "workspace.pose", "workspace.resample"}};
   if (view == ViewId::Body)

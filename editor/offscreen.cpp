@@ -30,6 +30,8 @@ class Picture final : public Offscreen {
   void forget_close_request() override {}
   void wait(double) override {}
   void wake() override {}
+  void shift_pointer(const glm::vec2& by) override { shifted_ += by; }
+  glm::vec2 shifted() const override { return shifted_; }
   void present() override {}
   unsigned framebuffer() const override { return framebuffer_; }
 
@@ -64,6 +66,7 @@ class Picture final : public Offscreen {
   double monitor_scale_;
   unsigned framebuffer_ = 0, colours_ = 0;
   glm::ivec2 size_{0};
+  glm::vec2 shifted_{0};
   std::string clipboard_;
 };
 

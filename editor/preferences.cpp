@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "editor/assets.h"
+#include "editor/arrangement_json.h"
 #include "editor/editor.h"
 
 namespace limber::editor {
@@ -114,6 +115,7 @@ Preferences preferences_from_json(const std::string& text, std::string& problem)
   if (preferences.display != "xray" && preferences.display != "tissue") preferences.display = "solid";
   read_keys(json, preferences.keys);
   read_use(json, preferences);
+  if (json.contains("arrangements")) restore(nlohmann::json(json["arrangements"]), preferences.arrangements);
   return preferences;
 }
 
@@ -134,6 +136,7 @@ std::string to_json(const Preferences& preferences) {
   json["keys"] = Json::array();
   for (const auto& [place, keys] : preferences.keys) json["keys"].push_back({{"context", place.first}, {"operator", place.second}, {"keys", keys}});
   json["recent_commands"] = preferences.recent_commands;
+  json["arrangements"] = json_of(preferences.arrangements);
   json["command_counts"] = Json::object();
   for (const auto& [id, count] : preferences.command_counts) json["command_counts"][id] = count;
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

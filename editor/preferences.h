@@ -8,6 +8,7 @@
 
 #include "core/base/file.h"
 #include "editor/key_changes.h"
+#include "editor/layout.h"
 
 namespace limber::editor {
 
@@ -36,6 +37,7 @@ struct Preferences {
   // Folders
   std::string scratch_folder;  // for what a resampling reads and writes; "": the system's
 
+  Arrangements arrangements = default_arrangements();  // as the window was left; a project has its own
   KeyChanges keys;
   bool advanced_steps = false;
   std::vector<std::string> recent_commands;     // last first, at most kMostRecent

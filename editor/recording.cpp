@@ -188,8 +188,9 @@ void Player::play_line(const ScriptLine& line, const Path& folder) {
     hold(words, 4, true);
     settle();
     host_.events.push(ButtonChanged{button, true});
+    const glm::vec2 shifted = host_.shifted();
     for (int i = 1; i <= kDragSteps; ++i) {
-      host_.events.push(PointerMoved{from + by * (static_cast<float>(i) / kDragSteps)});
+      host_.events.push(PointerMoved{from + by * (static_cast<float>(i) / kDragSteps) + host_.shifted() - shifted});
       step();
     }
     host_.events.push(ButtonChanged{button, false});
@@ -220,6 +221,12 @@ void Player::play_line(const ScriptLine& line, const Path& folder) {
     host_.events.push(KeyChanged{chord->key, true});
     host_.events.push(KeyChanged{chord->key, false});
     hold(caps, 0, false);
+    settle();
+  } else if (command == "key-down" || command == "key-up") {
+    need(words, 2);
+    const auto key = key_from_name(words[1]);
+    if (!key) throw Error("the key is unknown", words[1], "write one key, like W or Shift");
+    host_.events.push(KeyChanged{*key, command == "key-down"});
     settle();
   } else if (command == "type") {
     need(words, 2);

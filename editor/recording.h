@@ -8,6 +8,7 @@
 //   wheel NAME STEPS [MODIFIER...]
 //   move NAME | move X Y
 //   key Ctrl+Z                       pressed and released within one frame's time
+//   key-down W | key-up W            held meanwhile
 //   type "text"
 //   drop FILE                        onto the window
 //   resize WIDTH HEIGHT

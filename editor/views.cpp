@@ -98,6 +98,28 @@ Box tissue_box(Views& views, const Document& document, std::optional<Label> tiss
   return box_of_voxels(document.volume->grid, glm::dvec3(box.low) - 0.5, glm::dvec3(box.high) + 0.5);
 }
 
+std::vector<BoneWeight> weights_at(Views& views, const Document& document, const glm::ivec3& voxel) {
+  if (!document.weights || !document.volume || !document.volume->grid.contains(voxel)) return {};
+  if (views.tissue_voxels_of != document.volume) {
+    views.tissue_voxels = std::make_shared<const TissueVoxels>(*document.volume);
+    views.tissue_voxels_of = document.volume;
+  }
+  const TissueVoxels& tissue = *views.tissue_voxels;
+  const std::int64_t place = tissue.index_of(voxel);
+  if (place < 0 || tissue.size() != document.weights->size()) return {};
+  const int brick = tissue.brick_at(voxel);
+  const Influence& influence = document.weights->chunk(brick)[place - tissue.bricks()[brick].first];
+  std::vector<BoneWeight> weights;
+  for (int i = 0; i < 4; ++i)
+    if (influence.weight[i]) weights.push_back({document.weights->bones()[influence.bone[i]], influence.weight[i] / double(kFullWeight)});
+  return weights;
+}
+
+void shift(SliceState& slice, const glm::dvec2& pixels) {
+  const render::SliceFrame frame = render::frame_of(slice.camera.axis);
+  slice.camera.centre -= (frame.right * pixels.x + frame.down * pixels.y) * slice.camera.millimetres_per_pixel;
+}
+
 void fit(SliceState& slice, const Box& box, const glm::vec2& size) {
   constexpr double kShare = 0.86;  // of the picture that the body fills
   const render::SliceFrame frame = render::frame_of(slice.camera.axis);

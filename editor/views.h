@@ -6,8 +6,11 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "core/project/document.h"
+#include "core/volume/tissue_voxels.h"
 #include "editor/extents.h"
 #include "editor/layout.h"
 #include "render/scene.h"
@@ -43,6 +46,11 @@ struct Selection {
   std::set<int> bones;
 };
 
+struct BoneWeight {
+  std::string bone;
+  double value;  // of 1
+};
+
 // What the pointer is over.
 struct Hover {
   std::optional<ViewId> view;
@@ -50,6 +58,7 @@ struct Hover {
   Label label = 0;
   glm::ivec3 voxel{0};
   glm::dvec3 point{0};
+  std::vector<BoneWeight> weights;  // of that voxel, largest first; empty where there are none
 };
 
 struct Views {
@@ -68,6 +77,8 @@ struct Views {
   Hover hover;
 
   std::shared_ptr<const Extents> extents;  // of the document's volume
+  std::shared_ptr<const TissueVoxels> tissue_voxels;  // likewise, once weights are asked for
+  std::shared_ptr<const LabelVolume> tissue_voxels_of;
   // What is shown instead of the document's while the user drags; dropped or committed at the end.
   std::shared_ptr<const Visibility> preview_visibility;
   std::shared_ptr<const TissueTable> preview_tissues;
@@ -92,6 +103,11 @@ struct Box {
 Box world_box(const Document& document);
 // The same around one tissue, or around all that are visible.
 Box tissue_box(Views& views, const Document& document, std::optional<Label> tissue);
+
+// Shifts what a slice shows by so many pixels.
+void shift(SliceState& slice, const glm::dvec2& pixels);
+// The weights of a voxel of the document's volume.
+std::vector<BoneWeight> weights_at(Views& views, const Document& document, const glm::ivec3& voxel);
 
 // The slice's camera sees that box, `size` pixels large.
 void fit(SliceState& slice, const Box& box, const glm::vec2& size);

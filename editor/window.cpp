@@ -2,6 +2,7 @@
 #include "editor/window.h"
 
 #include <array>
+#include <utility>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -110,6 +111,12 @@ class Window final : public Host {
     else glfwPollEvents();
   }
   void wake() override { glfwPostEmptyEvent(); }
+  void shift_pointer(const glm::vec2& by) override {
+    double x = 0, y = 0;
+    glfwGetCursorPos(window_, &x, &y);
+    const glm::vec2 units = by / pixels(1, 1);
+    glfwSetCursorPos(window_, x + units.x, y + units.y);
+  }
   void present() override { glfwSwapBuffers(window_); }
 
   std::string clipboard() override {
@@ -118,7 +125,9 @@ class Window final : public Host {
   }
   void set_clipboard(const std::string& text) override { glfwSetClipboardString(window_, text.c_str()); }
   void set_cursor(Cursor cursor) override {
-    if (cursor != cursor_) glfwSetCursor(window_, cursors_[static_cast<std::size_t>(cursor)]);
+    if (cursor == cursor_) return;
+    glfwSetInputMode(window_, GLFW_CURSOR, cursor == Cursor::Hidden ? GLFW_CURSOR_HIDDEN : GLFW_CURSOR_NORMAL);
+    if (cursor != Cursor::Hidden) glfwSetCursor(window_, cursors_[static_cast<std::size_t>(cursor)]);
     cursor_ = cursor;
   }
   void set_title(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
@@ -143,6 +152,9 @@ class Window final : public Host {
 void Window::set_callbacks() {
   glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) { of(w).events.push(PointerMoved{of(w).pixels(x, y)}); });
   glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) {
+    // A drag goes on outside.
+    for (int button = 0; button <= GLFW_MOUSE_BUTTON_MIDDLE; ++button)
+      if (glfwGetMouseButton(w, button) == GLFW_PRESS) return;
     if (!entered) of(w).events.push(PointerMoved{glm::vec2(-1e6f)});
   });
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
@@ -151,7 +163,9 @@ void Window::set_callbacks() {
   });
   glfwSetScrollCallback(window_, [](GLFWwindow* w, double x, double y) {
     // Some desktops turn Shift+wheel sideways.
-    if (const double steps = y != 0 ? y : x; steps != 0) of(w).events.push(Wheeled{static_cast<float>(steps)});
+    const bool shift = glfwGetKey(w, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS || glfwGetKey(w, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
+    if (shift && y == 0) std::swap(x, y);
+    if (x != 0 || y != 0) of(w).events.push(Wheeled{static_cast<float>(y), static_cast<float>(x)});
   });
   glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scancode, int action, int) {
     if (const Key ours = key_of(key, scancode); ours != Key::None) of(w).events.push(KeyChanged{ours, action != GLFW_RELEASE, action == GLFW_REPEAT});

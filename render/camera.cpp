@@ -131,4 +131,18 @@ Camera zoomed(const Camera& camera, double factor) {
   return result;
 }
 
+Camera zoomed(const Camera& camera, double factor, const glm::dvec2& pixel, const glm::ivec2& size) {
+  Camera result = zoomed(camera, factor);
+  const double nearer = 1 - result.distance / camera.distance, millimetres_per_pixel = 2 * half_height(camera) / size.y;
+  const glm::dvec2 from_middle = (pixel - glm::dvec2(size) * 0.5) * millimetres_per_pixel;
+  result.centre += camera.world_from_view * glm::dvec3(from_middle.x, -from_middle.y, 0) * nearer;
+  return result;
+}
+
+Camera looked_round(const Camera& camera, const glm::dvec2& pixels) {
+  Camera result = orbited(camera, pixels);
+  result.centre = eye_of(camera) - result.world_from_view * glm::dvec3(0, 0, camera.distance);
+  return result;
+}
+
 }  // namespace limber::render

@@ -43,5 +43,9 @@ bool project(const Camera& camera, const glm::dvec3& point, const glm::ivec2& si
 Camera orbited(const Camera& camera, const glm::dvec2& pixels);               // turntable: x about the world's z, y about the view's x
 Camera panned(const Camera& camera, const glm::dvec2& pixels, const glm::ivec2& size);
 Camera zoomed(const Camera& camera, double factor);                            // distance times factor, within [1e-2, 1e6] mm
+// The same about a pixel: what is seen there, at the depth of the centre, stays there.
+Camera zoomed(const Camera& camera, double factor, const glm::dvec2& pixel, const glm::ivec2& size);
+// The eye stays, and looks elsewhere: pixels as in orbited(). The centre goes with it.
+Camera looked_round(const Camera& camera, const glm::dvec2& pixels);
 
 }  // namespace limber::render

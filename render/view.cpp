@@ -230,9 +230,7 @@ struct View3D::Impl {
   }
 
   // The whole body at once, at every `scale`-th pixel.
-  static void lap(const char* n) { static double last=0; static double c0=0; glFinish(); timespec t; clock_gettime(CLOCK_PROCESS_CPUTIME_ID,&t); double c=t.tv_sec+1e-9*t.tv_nsec; (void)last; if(getenv("LAP")) fprintf(stderr,"%s %.2f ms\n",n,(c-c0)*1e3); c0=c; }
   void draw_at_once(const Source& source, int scale) {
-    lap("-");
     const glm::ivec2 size = glm::max((key.size + scale - 1) / scale, glm::ivec2(1));
     const ViewRays rays = rays_of(source, size, 0);
     rect = VolumePass::covered(*source.layers[0], rays, size);
@@ -334,7 +332,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
     redraw |= my.refine(*source);
   }
   my.drawn = true;
-  if (redraw) {my.compose();my.lap("compose");}
+  if (redraw) my.compose();
 }
 
 bool View3D::complete() const { return impl_->complete(); }

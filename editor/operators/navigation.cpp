@@ -3,9 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "editor/dispatch.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
 #include "editor/project.h"
+#include "editor/walk.h"
 
 namespace limber::editor {
 
@@ -21,9 +23,20 @@ glm::ivec2 view_size(const Editor& editor) {
   return place ? glm::ivec2(place->size()) : glm::ivec2(1);
 }
 
+PointerWrap wrap_in_view(const Editor& editor) {
+  const Rect* place = editor.layout.place_of(ViewId::Body);
+  return place ? PointerWrap(*place, editor.look.px(2)) : PointerWrap();
+}
+
+// Escape brings the camera back.
 void start_drag(Editor& editor, MouseButton button, std::function<void(Editor&, const glm::vec2&)> moved) {
-  editor.views->body.move.reset();
-  editor.drag = Drag{button, std::move(moved), {}, {}};
+  BodyView& body = editor.views->body;
+  body.move.reset();
+  const auto back = [camera = body.camera, name = body.name](Editor& e) {
+    e.views->body.camera = camera;
+    e.views->body.name = name;
+  };
+  editor.drag = Drag{button, std::move(moved), {}, back, wrap_in_view(editor)};
 }
 
 // The button that began it: middle, or left together with Alt.
@@ -45,6 +58,33 @@ void zoom(Editor& editor) {
   start_drag(editor, pressed_button(editor), [](Editor& e, const glm::vec2& by) {
     e.views->body.camera = render::zoomed(e.views->body.camera, std::exp(kZoomPerPixel * by.y / e.look.scale));
   });
+}
+
+// What the pointer is on stays there.
+void zoom_about_pointer(Editor& editor, double factor) {
+  BodyView& body = editor.views->body;
+  body.move.reset();
+  const Rect* place = editor.layout.place_of(ViewId::Body);
+  const glm::vec2 pointer = editor.input.pointer;
+  body.camera = place && place->contains(pointer) ? render::zoomed(body.camera, factor, pointer - place->low, glm::ivec2(place->size())) : render::zoomed(body.camera, factor);
+}
+
+// The view under the pointer, by the wheel or a pad.
+void pan_step(Editor& editor, const glm::vec2& steps) {
+  constexpr float kStep = 40;
+  const glm::vec2 pixels = steps * editor.look.px(kStep);
+  const ViewPlace* place = hovered_view(editor);
+  if (place && place->id != ViewId::Body) {
+    shift(slice_of(*editor.views, place->id), glm::dvec2(pixels));
+    return;
+  }
+  editor.views->body.move.reset();
+  editor.views->body.camera = render::panned(editor.views->body.camera, glm::dvec2(pixels), view_size(editor));
+}
+
+void walk(Editor& editor) {
+  editor.modal = begin_walk(editor);
+  editor.modal_wrap = wrap_in_view(editor);
 }
 
 void go_to(Editor& editor, const render::Camera& camera) {
@@ -73,8 +113,36 @@ Operator orbit_step(const char* id, const char* label, glm::dvec2 direction) {
           }};
 }
 
+std::optional<Box> box_of_selection(Editor& editor) {
+  std::optional<Box> all;
+  const auto add = [&](const glm::dvec3& low, const glm::dvec3& high) {
+    all = all ? Box{glm::min(all->low, low), glm::max(all->high, high)} : Box{low, high};
+  };
+  for (const Label tissue : editor.selection.tissues) {
+    const Box box = tissue_box(*editor.views, editor.document(), tissue);
+    add(box.low, box.high);
+  }
+  if (const auto& armature = editor.document().armature)
+    for (const int b : editor.selection.bones) {
+      if (b >= std::ssize(armature->bones)) continue;
+      const Bone& bone = armature->bones[b];
+      const double thickness = glm::distance(bone.head, bone.tail) * 0.1;
+      add(glm::min(bone.head, bone.tail) - thickness, glm::max(bone.head, bone.tail) + thickness);
+    }
+  return all;
+}
+
+std::string needs_aim(const Editor& editor) {
+  if (!editor.document().volume) return "Open a volume first";
+  const bool aim = !editor.selection.tissues.empty() || !editor.selection.bones.empty() || editor.views->hover.inside;
+  return aim ? "" : "Choose a tissue, or point at one";
+}
+
+// What is chosen fills the view; where nothing is, the point under the pointer becomes its middle.
 void frame_selected(Editor& editor) {
-  const Box box = tissue_box(*editor.views, editor.document(), editor.selection.tissue);
+  const auto chosen = box_of_selection(editor);
+  if (!chosen) return run(editor, "view.centre_on_pick");
+  const Box box = *chosen;
   const glm::vec2 size(view_size(editor));
   go_to(editor, render::framing(goal(editor), box.low, box.high, size.x / std::max(1.0f, size.y)));
 }
@@ -111,8 +179,14 @@ std::vector<Operator> navigation_operators() {
       {"view.zoom_step", "Zoom by wheel", "", "View", "Comes closer or goes back by a step.",
        [](Editor& e) {
          e.views->body.move.reset();
-         e.views->body.camera = render::zoomed(e.views->body.camera, std::pow(kWheelStep, -e.input.wheel));
+         zoom_about_pointer(e, std::pow(kWheelStep, -e.input.wheel));
        }},
+      {"view.zoom_in", "Zoom in", "", "View", "Comes closer.", [](Editor& e) { zoom_about_pointer(e, 1 / kWheelStep); }},
+      {"view.zoom_out", "Zoom out", "", "View", "Goes back.", [](Editor& e) { zoom_about_pointer(e, kWheelStep); }},
+      {"view.pan_step", "Shift by wheel", "", "View", "Shifts the view up or down.", [](Editor& e) { pan_step(e, {0, e.input.wheel}); }},
+      {"view.pan_sideways_step", "Shift sideways by wheel", "", "View", "Shifts the view to the left or right.",
+       [](Editor& e) { pan_step(e, {e.input.wheel_sideways != 0 ? e.input.wheel_sideways : e.input.wheel, 0}); }},
+      {"view.walk", "Walk", "", "View", "Goes through the view with W A S D; the mouse looks round.", walk, needs_volume},
       {"view.centre_on_pick", "Centre on point", icon::kCrossHair, "View", "Turns about the point of the body under the pointer from now on.", centre_on_pick,
        needs_volume},
       standard_view("view.front", "Front", StandardView::Front, "Looks at the body from the front."),
@@ -128,7 +202,7 @@ std::vector<Operator> navigation_operators() {
       orbit_step("view.orbit_left", "Turn left", {1, 0}),
       orbit_step("view.orbit_right", "Turn right", {-1, 0}),
       {"view.opposite", "Opposite side", icon::kCamera, "View", "Looks from the other side.", opposite},
-      {"view.frame_selected", "Frame selected", icon::kExpand, "View", "Brings the chosen tissue to fill the view.", frame_selected, needs_tissue},
+      {"view.frame_selected", "Frame selected", icon::kExpand, "View", "Brings what is chosen to fill the view, or the point under the pointer to its middle.", frame_selected, needs_aim},
       {"view.frame_all", "Frame all", icon::kExpand, "View", "Brings all that is visible to fill the views.", [](Editor& e) { frame_all(e, true); }},
   };
 }

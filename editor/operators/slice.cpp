@@ -40,6 +40,15 @@ void step(Editor& editor, double slices) {
   editor.views->cross_hair = world * voxel;
 }
 
+// A wheel makes whole steps, a pad parts of them.
+double whole_steps(Editor& editor) {
+  if (editor.wheel_rest * editor.input.wheel < 0) editor.wheel_rest = 0;
+  editor.wheel_rest += editor.input.wheel;
+  const float whole = std::trunc(editor.wheel_rest);
+  editor.wheel_rest -= whole;
+  return whole;
+}
+
 void zoom(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   if (!place || place->id == ViewId::Body) return;
@@ -51,14 +60,12 @@ void zoom(Editor& editor) {
   camera.centre += before - world_of(camera, pixel, size);
 }
 
-void pan(Editor& editor) {
+void drag_slice(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   if (!place || place->id == ViewId::Body) return;
-  editor.drag = Drag{MouseButton::Middle, [id = place->id](Editor& e, const glm::vec2& by) {
-                       render::SliceCamera& camera = slice_of(*e.views, id).camera;
-                       const render::SliceFrame frame = render::frame_of(camera.axis);
-                       camera.centre -= (frame.right * static_cast<double>(by.x) + frame.down * static_cast<double>(by.y)) * camera.millimetres_per_pixel;
-                     }};
+  const glm::dvec3 before = slice_of(*editor.views, place->id).camera.centre;
+  editor.drag = Drag{MouseButton::Middle, [id = place->id](Editor& e, const glm::vec2& by) { shift(slice_of(*e.views, id), glm::dvec2(by)); }, {},
+                     [id = place->id, before](Editor& e) { slice_of(*e.views, id).camera.centre = before; }, PointerWrap(place->rect, editor.look.px(2))};
 }
 
 // Where the pointer is in the body, or in a slice's plane.
@@ -94,13 +101,13 @@ Operator display_operator(const char* id, const char* label, const char* sentenc
 
 std::vector<Operator> slice_operators() {
   return {
-      {"slice.step", "Step slice by wheel", "", "View", "Goes one slice further or back.", [](Editor& e) { step(e, std::copysign(1, e.input.wheel)); }, needs_slice},
+      {"slice.step", "Step slice by wheel", "", "View", "Goes one slice further or back.", [](Editor& e) { step(e, whole_steps(e)); }, needs_slice},
       {"slice.step_five", "Step five slices by wheel", "", "View", "Goes five slices further or back.",
-       [](Editor& e) { step(e, std::copysign(5, e.input.wheel)); }, needs_slice},
+       [](Editor& e) { step(e, 5 * whole_steps(e)); }, needs_slice},
       {"slice.next", "Next slice", "", "View", "Goes one slice further.", [](Editor& e) { step(e, 1); }, needs_slice},
       {"slice.previous", "Previous slice", "", "View", "Goes one slice back.", [](Editor& e) { step(e, -1); }, needs_slice},
       {"slice.zoom", "Zoom slice by wheel", "", "View", "Enlarges the slice about the pointer.", zoom, needs_slice},
-      {"slice.pan", "Shift slice", "", "View", "Drag to shift the slice.", pan, needs_slice},
+      {"slice.pan", "Shift slice", "", "View", "Drag to shift the slice.", drag_slice, needs_slice},
       {"slice.outline", "Toggle outlines", "", "View", "Changes the slices between filled labels and their outlines.", toggle_outline, nullptr,
        [](const Editor& e) { return e.views->slice_display == render::SliceDisplay::Outline; }},
       display_operator("slice.show_labels", "Labels", "Slices show tissues as filled areas.", render::SliceDisplay::Labels),

@@ -66,6 +66,7 @@ void draw_axis_ball(Editor& editor, const Rect& rect) {
 }
 
 std::string state_of(const Editor& editor) {
+  if (editor.modal && !editor.modal->title().empty()) return editor.modal->title();
   if (!editor.document().volume) return "";
   std::string state = editor.views->display == render::Display::Solid ? "Solid" : editor.views->display == render::Display::XRay ? "X-ray" : "Tissue";
   if (editor.document().armature) state += " \u00b7 " + std::to_string(editor.document().armature->bones.size()) + " bones";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Key hints that fit what the pointer is over, what is under it, the job at work, whether all is saved.
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
 
@@ -12,40 +13,61 @@ namespace limber::editor {
 
 namespace {
 
-struct Hint {
-  const char* operator_id;
-  const char* words;
-};
+constexpr std::size_t kFewHints = 5, kMostHints = 8;
 
-std::vector<Hint> hints(const Editor& editor) {
-  if (editor.drag) return {};
-  const ViewPlace* view = hovered_view(editor);
-  if (view && view->id != ViewId::Body)
-    return {{"select.pick", editor.tool == Tool::CrossHair ? "Move cross-hair" : "Select"}, {"slice.step", "Slice"}, {"slice.zoom", "Zoom"}, {"slice.pan", "Shift"},
-            {"view.place_cross_hair", "Cross-hair"}, {"slice.outline", "Outline"}, {"view.maximize", "Maximize"}};
-  if (!editor.document().volume || editor.start_screen) return {{"file.open", "Open"}, {"file.new", "New"}, {"search.commands", "Search"}, {"help.guide", "Help"}, {"file.quit", "Quit"}};
-  return {{"view.orbit", "Turn"}, {"view.pan", "Shift"}, {"view.zoom_step", "Zoom"}, {"view.xray", "X-ray"}, {"view.clip_box", "Clip box"}, {"view.hide", "Hide tissue"},
-          {"view.frame_all", "Frame all"}};
+// With modifiers held: what they do together with the keys and buttons of this place.
+std::vector<KeyHint> held_hints(const Editor& editor) {
+  std::vector<KeyHint> all;
+  std::vector<Chord> seen;
+  for (const std::string& context : contexts(editor)) {
+    const auto bindings = editor.keymap.contexts.find(context);
+    if (bindings == editor.keymap.contexts.end()) continue;
+    for (const Binding& binding : bindings->second) {
+      const Operator* op = find_operator(editor, binding.operator_id);
+      if (!(binding.chord.modifiers == editor.input.modifiers()) || std::find(seen.begin(), seen.end(), binding.chord) != seen.end()) continue;
+      seen.push_back(binding.chord);
+      if (!op || !why_not(editor, *op).empty()) continue;
+      Chord alone = binding.chord;
+      alone.modifiers = {};
+      all.push_back({key_caps(alone), op->label});
+    }
+  }
+  return all;
 }
 
-float draw_hints(Editor& editor, const Rect& bar, float right) {
+std::vector<KeyHint> hints(const Editor& editor) {
+  if (editor.modal) return editor.modal->hints(editor);
+  if (editor.drag) return {{{"Esc"}, "Drop the drag"}};
+  if (editor.views->preview_visibility) return {{{"Ctrl"}, "Snap"}, {{"Esc"}, "Drop the drag"}};
+  if (!(editor.input.modifiers() == Modifiers{}) && !editor.dialog) return held_hints(editor);
+  std::vector<std::pair<const char*, const char*>> operators;
+  const ViewPlace* view = hovered_view(editor);
+  if (view && view->id != ViewId::Body)
+    operators = {{"select.pick", editor.tool == Tool::CrossHair ? "Move cross-hair" : "Select"}, {"slice.step", "Slice"}, {"slice.zoom", "Zoom"}, {"slice.pan", "Shift"},
+                 {"view.place_cross_hair", "Cross-hair"}, {"slice.outline", "Outline"}, {"view.maximize", "Maximize"}};
+  else if (!editor.document().volume || editor.start_screen)
+    operators = {{"file.open", "Open"}, {"file.new", "New"}, {"search.commands", "Search"}, {"help.guide", "Help"}, {"file.quit", "Quit"}};
+  else
+    operators = {{"view.orbit", "Turn"}, {"view.pan", "Shift"}, {"view.zoom_step", "Zoom"}, {"view.xray", "X-ray"}, {"view.clip_box", "Clip box"}, {"view.hide", "Hide tissue"},
+                 {"view.frame_all", "Frame all"}};
+  std::vector<KeyHint> all;
+  for (const auto& [id, words] : operators)
+    if (const auto chord = editor.keymap.chord_of(id, contexts(editor)); chord && find_operator(editor, id)) all.push_back({key_caps(*chord), words});
+  return all;
+}
+
+void draw_hints(Editor& editor, const Rect& bar, float right) {
   const Look& look = editor.look;
   float x = bar.low.x + look.px(10);
-  int shown = 0;
-  for (const Hint& hint : hints(editor)) {
-    const auto chord = editor.keymap.chord_of(hint.operator_id, contexts(editor));
-    if (!chord || !find_operator(editor, hint.operator_id)) continue;
-    if (editor.layout.few_hints && shown == 5) break;
-    const std::vector<std::string> caps = key_caps(*chord);
+  std::size_t shown = 0;
+  for (const KeyHint& hint : hints(editor)) {
+    if (shown++ == (editor.layout.few_hints && !editor.modal ? kFewHints : kMostHints)) break;
     const float words = text_size(look.fonts.small, hint.words).x;
-    if (x + width_of_key_caps(editor, caps) + look.px(7) + words > right - look.px(16)) break;
-    x = put_key_caps(editor, x, bar.centre().y, caps) + look.px(7);
+    if (x + width_of_key_caps(editor, hint.caps) + look.px(7) + words > right - look.px(16)) break;
+    x = put_key_caps(editor, x, bar.centre().y, hint.caps) + look.px(7);
     put_text(editor, look.fonts.small, look.theme.text2, Rect{{x, bar.low.y}, {x + words + 1, bar.high.y}}, hint.words);
     x += words + look.px(12);
-    ++shown;
   }
-  if (editor.drag) put_text(editor, look.fonts.small, look.theme.text2, Rect{{x, bar.low.y}, {right, bar.high.y}}, "Esc drops the drag");
-  return x;
 }
 
 // Each of these takes its place at the right and returns what is left.
@@ -94,8 +116,13 @@ float draw_hover(Editor& editor, const Rect& bar, float right) {
     const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(hover.label) : nullptr;
     words = (tissue ? shown_name(*tissue) : std::string("Unknown")) + " \u00b7 label " + std::to_string(hover.label);
     std::snprintf(place, sizeof place, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
+    if (!hover.weights.empty()) {
+      char weight[16];
+      std::snprintf(weight, sizeof weight, " %.3f", hover.weights[0].value);
+      words += " \u00b7 " + hover.weights[0].bone + weight;
+    }
   }
-  const float mono = *place ? look.px(170) : 0, width = std::min(text_size(look.fonts.small, words).x + 1, look.px(220));
+  const float mono = *place ? look.px(170) : 0, width = std::min(text_size(look.fonts.small, words).x + 1, look.px(hover.weights.empty() ? 220 : 320));
   const float left = right - mono - width;
   if (*place) put_text(editor, look.fonts.small_mono, look.theme.text2, Rect{{right - mono, bar.low.y}, {right, bar.high.y}}, place, Align::Right);
   put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, bar.low.y}, {left + width, bar.high.y}}, words);

@@ -68,6 +68,26 @@ void draw_colour(Editor& editor, Column& column, const Tissue& tissue) {
   }
 }
 
+// Four rows always, so that nothing below moves with the pointer.
+void draw_weights(Editor& editor, Column& column, const std::vector<BoneWeight>& weights) {
+  const Look& look = editor.look;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Rect row = column.row(22);
+    const float left = row.low.x + look.px(10), bar = row.high.x - look.px(130), right = row.high.x - look.px(10);
+    if (i >= weights.size()) {
+      if (i == 0) put_text(editor, look.fonts.regular, look.theme.text3, Rect{{left, row.low.y}, row.high}, "No weights here");
+      continue;
+    }
+    put_text(editor, look.fonts.regular, look.theme.text2, Rect{{left, row.low.y}, {bar - look.px(8), row.high.y}}, weights[i].bone);
+    const float y = std::round(row.centre().y - look.px(3)), length = look.px(64);
+    fill({{bar, y}, {bar + length, y + look.px(6)}}, look.theme.field, look.px(3));
+    fill({{bar, y}, {bar + std::max(look.px(2), length * static_cast<float>(weights[i].value)), y + look.px(6)}}, look.theme.accent_text, look.px(3));
+    char text[16];
+    std::snprintf(text, sizeof text, "%.3f", weights[i].value);
+    put_text(editor, look.fonts.mono, look.theme.text, Rect{row.low, {right, row.high.y}}, text, Align::Right);
+  }
+}
+
 }  // namespace
 
 void draw_tissue(Editor& editor, Column& column) {
@@ -119,6 +139,7 @@ void draw_under_cursor(Editor& editor, Column& column) {
     const Rect voxel = column.property("Voxel");
     if (hover.inside) std::snprintf(text, sizeof text, "%d %d %d", hover.voxel.x, hover.voxel.y, hover.voxel.z);
     put_text(editor, look.fonts.mono, look.theme.text, voxel, text, Align::Right);
+    if (editor.document().weights) draw_weights(editor, column, hover.weights);
     column.space(4);
   }
   column.end_section();

@@ -102,6 +102,7 @@ void hover_views(Editor& editor) {
   if (!editor.document().volume || editor.drag) return;
   if (place->id == ViewId::Body) hover_body(editor, *place);
   else hover_slice(editor, *place);
+  if (hover.inside && editor.views->scene.volume == editor.document().volume) hover.weights = weights_at(*editor.views, editor.document(), hover.voxel);
 }
 
 void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state) {
