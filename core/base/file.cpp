@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/pages.h"
 
 namespace limber {
 
@@ -71,7 +72,10 @@ std::string read_file(const Path& path, std::uint64_t limit) {
   if (size > limit)
     throw Error("the file has " + std::to_string(size) + " bytes", path.string(),
                 "files of this kind may have " + std::to_string(limit) + " bytes at most");
-  std::string bytes(size, '\0');
+  std::string bytes;
+  bytes.reserve(size);
+  want_large_pages(bytes.data(), static_cast<std::int64_t>(size));
+  bytes.resize(size);
   if (!in.read(bytes.data(), static_cast<std::streamsize>(size)))
     throw Error("the file cannot be read to its end", path.string(), "check the disk and try again");
   return bytes;

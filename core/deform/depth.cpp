@@ -12,46 +12,56 @@ namespace limber {
 namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
-constexpr int kBrickVoxels = kBrick * kBrick * kBrick;
 
 // One run of tissue along a line, with air (height zero) just before and just after it. Replaces every height f[i] by the
 // least of f[j] + (i - j)^2 spacing^2.
 class LowerEnvelope {
  public:
-  void apply(float* f, int count, double squared_spacing) {
-    place_.clear();
-    height_.clear();
-    from_.clear();
-    push(-1, 0, squared_spacing);
+  explicit LowerEnvelope(double spacing) : squared_spacing_(spacing * spacing) {}
+
+  void apply(float* f, int count) {
+    prepare(count + 2);
+    push(-1, 0);
     for (int i = 0; i < count; ++i)
-      if (f[i] < std::numeric_limits<float>::max()) push(i, f[i], squared_spacing);
-    push(count, 0, squared_spacing);
-    size_t k = 0;
+      if (f[i] < std::numeric_limits<float>::max()) push(i, f[i]);
+    push(count, 0);
+    const Parabola* at = envelope_.data();
+    const Parabola* last = at + size_ - 1;
     for (int i = 0; i < count; ++i) {
-      while (k + 1 < place_.size() && from_[k + 1] <= i) ++k;
-      f[i] = static_cast<float>(height_[k] + squared_spacing * (i - place_[k]) * (i - place_[k]));
+      while (at < last && at[1].from <= i) ++at;
+      const double away = i - at->place;
+      f[i] = static_cast<float>(at->height + squared_spacing_ * away * away);
     }
   }
 
  private:
-  // A parabola at `place`, right of all others; those it lies below everywhere from their own start on go.
-  void push(int place, double height, double squared_spacing) {
-    double from = -std::numeric_limits<double>::infinity();
-    while (!place_.empty()) {
-      const int last = place_.back();
-      from = (height - height_.back()) / (2 * squared_spacing * (place - last)) + 0.5 * (place + last);
-      if (from > from_.back()) break;
-      place_.pop_back();
-      height_.pop_back();
-      from_.pop_back();
-    }
-    place_.push_back(place);
-    height_.push_back(height);
-    from_.push_back(from);
+  struct Parabola {
+    double place, height, from;  // it is the lowest from there on, until the next is
+  };
+
+  void prepare(int count) {
+    size_ = 0;
+    if (std::ssize(envelope_) < count) envelope_.resize(count);
+    for (int steps = static_cast<int>(slope_.size()); steps <= count; ++steps) slope_.push_back(1 / (2 * squared_spacing_ * steps));
   }
 
-  std::vector<int> place_;
-  std::vector<double> height_, from_;
+  // A parabola at `place`, right of all others; those it lies below everywhere from their own start on go.
+  void push(int place, double height) {
+    double from = -std::numeric_limits<double>::infinity();
+    while (size_ > 0) {
+      const Parabola& last = envelope_[size_ - 1];
+      const int steps = place - static_cast<int>(last.place);
+      from = (height - last.height) * slope_[steps] + (last.place + 0.5 * steps);
+      if (from > last.from) break;
+      --size_;
+    }
+    envelope_[size_++] = {double(place), height, from};
+  }
+
+  double squared_spacing_;
+  int size_ = 0;
+  std::vector<Parabola> envelope_;
+  std::vector<double> slope_;  // by steps between two places
 };
 
 // The same where nothing is known yet but the run itself: the nearer end is nearest.
@@ -79,7 +89,7 @@ void TissueDepth::pass(int axis, double spacing) {
   const glm::ivec3 bricks = tissue_->brick_grid();
   const int strides[] = {1, kBrick, kBrick * kBrick};
   parallel_for(std::int64_t{bricks[u]} * bricks[v], 4, [&](std::int64_t begin, std::int64_t end) {
-    LowerEnvelope envelope;
+    LowerEnvelope envelope(spacing);
     std::vector<int> column;
     std::vector<float> line;
     auto lines = [&] {
@@ -92,7 +102,7 @@ void TissueDepth::pass(int axis, double spacing) {
           while (stop < line.size() && line[stop] > 0) ++stop;
           const int run = static_cast<int>(stop - i);
           if (run > 0 && axis == 0) distances_from_ends(&line[i], run, spacing * spacing);
-          if (run > 0 && axis != 0) envelope.apply(&line[i], run, spacing * spacing);
+          if (run > 0 && axis != 0) envelope.apply(&line[i], run);
           i = stop + 1;
         }
         copy_line(column, place, strides[axis], line, Scatter);
@@ -122,13 +132,6 @@ void TissueDepth::copy_line(const std::vector<int>& column, int place, int strid
     float* in_brick = &depth_[std::int64_t{brick} * kBrickVoxels + place];
     for (int i = 0; i < kBrick; ++i, ++at, in_brick += stride) (direction == Gather ? *at : *in_brick) = direction == Gather ? *in_brick : *at;
   }
-}
-
-float TissueDepth::at_voxel(const glm::ivec3& voxel) const {
-  if (voxel.x < 0 || voxel.y < 0 || voxel.z < 0 || glm::any(glm::greaterThanEqual(voxel, tissue_->grid_size()))) return 0;
-  const int brick = tissue_->brick_at(voxel);
-  if (brick < 0) return 0;
-  return depth_[std::int64_t{brick} * kBrickVoxels + (voxel.x & 7) + 8 * (voxel.y & 7) + 64 * (voxel.z & 7)];
 }
 
 double TissueDepth::operator()(const glm::dvec3& rest) const {

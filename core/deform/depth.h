@@ -18,10 +18,18 @@ class TissueDepth {
   // Keeps a reference to `tissue`.    spacing  mm
   TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing);
 
-  float at_voxel(const glm::ivec3& voxel) const;     // mm, 0 in air and outside
+  // mm, 0 in air and outside
+  float at_voxel(const glm::ivec3& voxel) const {
+    const glm::ivec3 size = tissue_->grid_size();
+    const auto inside = [](int v, int end) { return static_cast<unsigned>(v) < static_cast<unsigned>(end); };
+    if (!inside(voxel.x, size.x) || !inside(voxel.y, size.y) || !inside(voxel.z, size.z)) return 0;
+    const int brick = tissue_->brick_at(voxel);
+    return brick < 0 ? 0 : depth_[std::int64_t{brick} * kBrickVoxels + (voxel.x & 7) + 8 * (voxel.y & 7) + 64 * (voxel.z & 7)];
+  }
   double operator()(const glm::dvec3& rest) const;   // mm, trilinear; voxel coordinates
 
  private:
+  static constexpr int kBrickVoxels = 512;
   enum Direction { Gather, Scatter };
   void pass(int axis, double spacing);
   void copy_line(const std::vector<int>& column, int place, int stride, std::vector<float>& line, Direction direction);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/deform/inverse_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -36,6 +37,7 @@ class Claims {
       }
     }
     if (!wins) return;
+    map_.use_row(claim.voxel);
     map_.cell[at] = cell;
     map_.rest[at] = claim.rest;
     map_.posed_per_rest[at] = static_cast<float>(claim.posed_per_rest);
@@ -62,20 +64,49 @@ class Claims {
   const TissueDepth* depth_;
 };
 
+// The steps from the first point of a straight row on, at least 0, after which its points can lie in a box; one more on
+// either side. Empty when first > last.
+struct Steps {
+  int first, last;
+};
+Steps within(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& point, const glm::dvec3& next) {
+  constexpr double kMost = 1 << 20;
+  double first = 0, last = kMost;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double step = next[axis] - point[axis];
+    if (std::abs(step) < 1e-6) continue;
+    const double a = (low[axis] - point[axis]) / step, b = (high[axis] - point[axis]) / step;
+    first = std::max(first, std::min(a, b) - 1);
+    last = std::min(last, std::max(a, b) + 1);
+  }
+  return first > last ? Steps{1, 0} : Steps{static_cast<int>(first), static_cast<int>(last)};
+}
+
 VoxelRange voxels_of(const PosedLattice::FixedBox& box) { return {(box.low + (kFixedOne - 1)) >> 16, box.high >> 16}; }
 
 }  // namespace
 
 void InverseMap::reset(const VoxelRange& new_range) {
+  const glm::ivec3 old_size = range.high - range.low + 1, size = new_range.high - new_range.low + 1;
+  const size_t rows = size_t(size.y) * size.z, voxels = size.x * rows;
   range = new_range;
-  const glm::ivec3 size = range.high - range.low + 1;
-  const size_t voxels = size_t(size.x) * size.y * size.z;
+  lost.clear();
+  if (size == old_size && row_used.size() == rows) {
+    for (size_t row = 0; row < rows; ++row) {
+      if (!row_used[row]) continue;
+      std::fill_n(cell.begin() + row * size.x, size.x, kNoCell);
+      std::fill_n(bone.begin() + row * size.x, size.x, kNoBone);
+      std::fill_n(flags.begin() + row * size.x, size.x, std::uint8_t{0});
+      row_used[row] = 0;
+    }
+    return;
+  }
   rest.resize(voxels);
   posed_per_rest.resize(voxels);
   cell.assign(voxels, kNoCell);
   bone.assign(voxels, kNoBone);
   flags.assign(voxels, 0);
-  lost.clear();
+  row_used.assign(rows, 0);
 }
 
 void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::vector<std::int64_t>& bricks,
@@ -98,12 +129,9 @@ void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::ve
     const glm::ivec3 first = tissue.bricks()[brick].corner;
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
       const glm::ivec3 v = voxel - first;
-      std::array<FixedPoint, 8> corner;
-      for (int i = 0; i < 8; ++i) corner[i] = corners[PosedLattice::place(v.x + (i & 1), v.y + (i >> 1 & 1), v.z + (i >> 2))];
-      const VoxelRange range = intersect(voxels_in_box(corner), reach);
-      if (range.empty()) return;
+      const FixedPoint* lowest = &corners[PosedLattice::place(v.x, v.y, v.z)];
       const auto cell = static_cast<std::uint32_t>(grid.index(voxel));
-      PosedCell(corner, voxel).rasterize(range, [&](const CellClaim& claim) { claims.claim(cell, voxel, claim); });
+      PosedCell(lowest, PosedLattice::place(0, 1, 0), PosedLattice::place(0, 0, 1), voxel).rasterize(reach, [&](const CellClaim& claim) { claims.claim(cell, voxel, claim); });
     });
   }
 }
@@ -223,8 +251,9 @@ void RigidBones::paint(InverseMap& map, const std::vector<std::int64_t>& pieces,
     const VoxelRange range = intersect(pieces_[piece].posed, map.range);
     const glm::dvec3 low = glm::dvec3(pieces_[piece].rest.low) - 0.5, high = glm::dvec3(pieces_[piece].rest.high) + 0.5;
     for (int z = range.low.z; z <= range.high.z; ++z)
-      for (int y = range.low.y; y <= range.high.y; ++y)
-        for (int x = range.low.x; x <= range.high.x; ++x) {
+      for (int y = range.low.y; y <= range.high.y; ++y) {
+        const auto [first, last] = within(low, high, rest_point(bone, {range.low.x, y, z}), rest_point(bone, {range.low.x + 1, y, z}));
+        for (int x = range.low.x + first; x <= std::min(range.high.x, range.low.x + last); ++x) {
           const glm::dvec3 rest = rest_point(bone, {x, y, z});
           if (glm::any(glm::lessThan(rest, low)) || glm::any(glm::greaterThan(rest, high))) continue;
           const std::int64_t at = map.index({x, y, z});
@@ -235,10 +264,12 @@ void RigidBones::paint(InverseMap& map, const std::vector<std::int64_t>& pieces,
             const double mine = depth ? (*depth)(rest) : 0, theirs = depth ? (*depth)(map.rest[at]) : 0;
             if (mine < theirs || (mine == theirs && bone > holder)) continue;
           }
+          map.use_row({x, y, z});
           map.bone[at] = static_cast<std::uint16_t>(bone);
           map.rest[at] = rest;
           map.posed_per_rest[at] = 1;
         }
+      }
   }
 }
 

@@ -36,9 +36,13 @@ struct InverseMap {
   std::vector<std::uint8_t> flags;
   std::vector<float> posed_per_rest; // volume ratio of the map
   std::vector<Label> lost;           // of each claim that a cell lost to one that is no neighbour
+  RowSet row_used;                   // whether any voxel of the row is covered; the other rows are clear
 
   // An empty map of that range.
   void reset(const VoxelRange& new_range);
+  void use_row(const glm::ivec3& voxel) {
+    row_used[voxel.y - range.low.y + std::int64_t{range.high.y - range.low.y + 1} * (voxel.z - range.low.z)] = 1;
+  }
   std::int64_t count() const { return std::ssize(cell); }
   std::int64_t index(const glm::ivec3& voxel) const {
     const glm::ivec3 v = voxel - range.low, size = range.high - range.low + 1;

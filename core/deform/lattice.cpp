@@ -2,6 +2,7 @@
 #include "core/deform/lattice.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 
@@ -41,17 +42,18 @@ class CornerWeights {
         }
     sum_over_corners();
     order_.resize(bones_.size());
+    influences_.resize(bones_.size());
     for (size_t s = 0; s < order_.size(); ++s) order_[s] = static_cast<int>(s);
     std::sort(order_.begin(), order_.end(), [&](int a, int b) { return bones_[a] < bones_[b]; });
   }
 
   // Influences of corner (i, j, k) in rising bone order; none where no tissue is around it.
   std::span<const BoneWeight> at(int i, int j, int k) {
-    influences_.clear();
     const int here = i + kHalo * (j + kHalo * k);
+    BoneWeight* end = influences_.data();
     for (int s : order_)
-      if (const std::uint32_t sum = sums_[s * kHaloCount + here]) influences_.push_back({bones_[s], double(sum)});
-    return influences_;
+      if (const std::uint32_t sum = sums_[s * kHaloCount + here]) *end++ = {bones_[s], double(sum)};
+    return {influences_.data(), end};
   }
 
  private:
@@ -157,10 +159,11 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
     const glm::dmat3 turn = voxel_from_world_.linear * (glm::mat3_cast(posed.rotation) - glm::dmat3(1));
     shift_.push_back({turn * world_from_voxel_.linear, turn * world_from_voxel_.offset + voxel_from_world_.linear * posed.translation});
   }
-  if (count * std::int64_t{sizeof(Corners)} <= kKeptBytes) {
-    kept_.reserve(count);
-    want_large_pages(kept_.data(), count * std::int64_t{sizeof(Corners)});
-    kept_.resize(count);
+  const bool keeps = count * std::int64_t{sizeof(Corners)} <= kKeptBytes;
+  if (keeps) {
+    kept_ = std::make_unique_for_overwrite<Corners[]>(count);
+    kept_at_.resize(count);
+    want_large_pages(kept_.get(), count * std::int64_t{sizeof(Corners)});
   }
   if (count == 0) return;
   choose_base();
@@ -168,20 +171,22 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
   parallel_for(count, 64, [&](std::int64_t begin, std::int64_t end) {
     for (auto brick = begin; brick < end; ++brick) only_bone_[brick] = only_bone(weights.chunk(brick));
   });
+  std::atomic<std::int32_t> kept = 0;
   parallel_for(count, 16, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) throw Cancelled();
     Corners room;
     for (auto brick = begin; brick < end; ++brick) {
-      Corners& corners = kept_.empty() ? room : kept_[brick];
-      bounds_[brick] = compute(brick, corners);
-      still_[brick] = lies_still(brick, corners);
+      const PosedBrick posed = compute(brick, room);
+      bounds_[brick] = posed.box;
+      still_[brick] = posed.still;
+      if (keeps && !posed.still) kept_[kept_at_[brick] = kept++] = room;
     }
   });
   progress.update("pose", 1);
 }
 
 const PosedLattice::Corners& PosedLattice::corners(std::int64_t brick, Corners& room) const {
-  if (!kept_.empty()) return kept_[brick];
+  if (kept_ && !still_[brick]) return kept_[kept_at_[brick]];
   compute(brick, room);
   return room;
 }
@@ -209,6 +214,15 @@ FixedPoint PosedLattice::posed(const glm::ivec3& corner, std::span<const BoneWei
   const glm::dvec3 rest = glm::dvec3(corner) - 0.5;
   const int bone = influences.front().bone;
   if (influences.size() == 1) return fixed(rest, shift_[bone] * rest, bone);
+  if (blend_ == Blend::Linear) {
+    glm::dvec3 moved(0);
+    double total = 0;
+    for (const BoneWeight& influence : influences) {
+      moved += influence.weight * (shift_[influence.bone] * rest);
+      total += influence.weight;
+    }
+    return fixed(rest, moved / total, bone);
+  }
   const glm::dvec3 world = world_from_voxel_ * rest;
   return fixed(rest, voxel_from_world_.linear * (blend_point(blend_, bones_, influences, world) - world), bone);
 }
@@ -231,40 +245,32 @@ std::optional<int> PosedLattice::only_bone_around(std::int64_t brick) const {
   return same ? std::optional(bone) : std::nullopt;
 }
 
-PosedLattice::FixedBox PosedLattice::compute(std::int64_t brick, Corners& corners) const {
-  if (const auto bone = only_bone_around(brick)) return compute_rigid(brick, *bone, corners);
+PosedLattice::PosedBrick PosedLattice::compute(std::int64_t brick, Corners& corners) const {
+  const glm::ivec3 first = tissue_->bricks()[brick].corner;
+  if (const auto bone = only_bone_around(brick)) {
+    const AffineTransform& shift = shift_[*bone];
+    return compute_by(brick, [&](int i, int j, int k) {
+      const glm::dvec3 rest = glm::dvec3(first + glm::ivec3(i, j, k)) - 0.5;
+      return fixed(rest, shift * rest, *bone);
+    }, corners);
+  }
   CornerWeights weights(*tissue_, *weights_, brick);
-  const glm::ivec3 first = tissue_->bricks()[brick].corner;
-  FixedBox box{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)};
-  for_each_corner(tissue_->bricks()[brick], [&](int i, int j, int k) {
-    const FixedPoint corner = posed(first + glm::ivec3(i, j, k), weights.at(i, j, k));
-    corners[place(i, j, k)] = corner;
-    box = {glm::min(box.low, corner), glm::max(box.high, corner)};
-  });
-  return box;
+  return compute_by(brick, [&](int i, int j, int k) { return posed(first + glm::ivec3(i, j, k), weights.at(i, j, k)); }, corners);
 }
 
-// The same where all tissue around follows one bone.
-PosedLattice::FixedBox PosedLattice::compute_rigid(std::int64_t brick, int bone, Corners& corners) const {
-  const glm::ivec3 first = tissue_->bricks()[brick].corner;
-  FixedBox box{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)};
+// posed(i, j, k) is the place of a corner.
+template <class Posed>
+PosedLattice::PosedBrick PosedLattice::compute_by(std::int64_t brick, const Posed& posed, Corners& corners) const {
+  const glm::dvec3 rest = output_.from_rest(glm::dvec3(tissue_->bricks()[brick].corner) - 0.5);
+  const bool may_be_still = output_.ratio == glm::dvec3(1) && glm::all(glm::lessThan(glm::abs(rest), glm::dvec3(kFurthest)));
+  const FixedPoint first(may_be_still ? rest * double(kFixedOne) : glm::dvec3(0));
+  PosedBrick result{{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)}, may_be_still};
   for_each_corner(tissue_->bricks()[brick], [&](int i, int j, int k) {
-    const glm::dvec3 rest = glm::dvec3(first + glm::ivec3(i, j, k)) - 0.5;
-    const FixedPoint corner = fixed(rest, shift_[bone] * rest, bone);
-    corners[place(i, j, k)] = corner;
-    box = {glm::min(box.low, corner), glm::max(box.high, corner)};
+    const FixedPoint corner = corners[place(i, j, k)] = posed(i, j, k);
+    result.box = {glm::min(result.box.low, corner), glm::max(result.box.high, corner)};
+    result.still = result.still && corner == first + glm::ivec3(i, j, k) * kFixedOne;
   });
-  return box;
-}
-
-bool PosedLattice::lies_still(std::int64_t brick, const Corners& corners) const {
-  if (output_.ratio != glm::dvec3(1)) return false;
-  const FixedPoint first = (tissue_->bricks()[brick].corner - output_.base) * kFixedOne - kFixedOne / 2;
-  bool still = true;
-  for_each_corner(tissue_->bricks()[brick], [&](int i, int j, int k) {
-    still = still && corners[place(i, j, k)] == first + glm::ivec3(i, j, k) * kFixedOne;
-  });
-  return still;
+  return result;
 }
 
 }  // namespace limber

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -82,10 +83,14 @@ class PosedLattice {
  private:
   FixedPoint posed(const glm::ivec3& corner, std::span<const BoneWeight> influences) const;
   FixedPoint fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const;
-  FixedBox compute(std::int64_t brick, Corners& corners) const;
-  FixedBox compute_rigid(std::int64_t brick, int bone, Corners& corners) const;
+  struct PosedBrick {
+    FixedBox box;
+    bool still;
+  };
+  PosedBrick compute(std::int64_t brick, Corners& corners) const;
+  template <class Posed>
+  PosedBrick compute_by(std::int64_t brick, const Posed& posed, Corners& corners) const;
   std::optional<int> only_bone_around(std::int64_t brick) const;
-  bool lies_still(std::int64_t brick, const Corners& corners) const;
   void choose_base();
 
   const LabelVolume* volume_;
@@ -99,7 +104,8 @@ class PosedLattice {
   std::vector<FixedBox> bounds_;
   std::vector<std::uint8_t> still_;  // by brick
   std::vector<int> only_bone_;       // by brick: the bone that all its tissue follows wholly, or kSeveral
-  std::vector<Corners> kept_;        // by brick, or none
+  std::unique_ptr<Corners[]> kept_;  // of the bricks that move, or none
+  std::vector<std::int32_t> kept_at_;
 };
 
 }  // namespace limber

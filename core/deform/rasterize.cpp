@@ -2,7 +2,6 @@
 #include "core/deform/rasterize.h"
 
 #include <cmath>
-#include <optional>
 
 namespace limber {
 
@@ -15,9 +14,9 @@ constexpr int kTetCorners[2][5][4] = {
     {{7, 4, 2, 1}, {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}},
 };
 
-// With a slack below a fifth no tet of the cube can be inverted (its edge matrix stays diagonally dominant).
-constexpr double kLargestSlack = 0.1;
 constexpr double kRounding = 1e-9;  // of places in a cube computed in double
+
+int parity(const glm::ivec3& v) { return (v.x + v.y + v.z) & 1; }
 
 glm::dvec3 corner_sign(int corner) { return {corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1}; }
 
@@ -28,25 +27,12 @@ double largest_row_sum(const glm::dmat3& m) {
   return largest;
 }
 
-double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+// Corners further apart than this (1024 voxels) are left to the tets: the sum of eight must fit.
+constexpr int kLargestExtent = 1 << 26;
 
-// Four whole numbers in one register, the last unused.
-using Lanes = int __attribute__((vector_size(16)));
-using UnsignedLanes = unsigned __attribute__((vector_size(16)));
-
-// The trilinear map of a cube by its eight coefficients, times 8 kFixedOne and relative to the first corner: index bits
-// say which of x, y, z are multiplied (a Hadamard transform of the corners). Nothing when the cube is far too large for it.
-std::optional<std::array<Lanes, 8>> trilinear_coefficients(const std::array<FixedPoint, 8>& corner) {
-  // The sum of eight fits; and corners so far apart (at most 64 000 voxels) that their difference wraps differ by more.
-  constexpr int kLargest = 1 << 26;
-  std::array<Lanes, 8> c;
-  Lanes too_large{};
-  const UnsignedLanes first = (UnsignedLanes)Lanes{corner[0].x, corner[0].y, corner[0].z, 0};
-  for (int i = 0; i < 8; ++i) {
-    c[i] = (Lanes)((UnsignedLanes)Lanes{corner[i].x, corner[i].y, corner[i].z, 0} - first);
-    too_large |= (c[i] > kLargest) | (c[i] < -kLargest);
-  }
-  if (too_large[0] | too_large[1] | too_large[2]) return std::nullopt;
+// The trilinear map of a cube by its eight coefficients, times 8, of the corners: index bits say which of x, y, z are
+// multiplied (a Hadamard transform).
+std::array<Lanes, 8> trilinear_coefficients(std::array<Lanes, 8> c) {
   for (int bit : {1, 2, 4})
     for (int i = 0; i < 8; ++i)
       if (!(i & bit)) {
@@ -78,31 +64,30 @@ CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<
   return {voxel, rest[0] + rest_edges * share, determinant / glm::determinant(rest_edges)};
 }
 
-PosedCell::PosedCell(const std::array<FixedPoint, 8>& corner, const glm::ivec3& rest_voxel)
-    : corner_(corner), rest_voxel_(rest_voxel), parity_((rest_voxel.x + rest_voxel.y + rest_voxel.z) & 1) {
-  const auto coefficients = trilinear_coefficients(corner);
-  if (!coefficients) return;
-  const auto& c = *coefficients;
+PosedCell::Inverse PosedCell::affine_inverse() const {
+  Inverse inverse;
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::int64_t{box_.high[axis]} - box_.low[axis] >= kLargestExtent / kFixedOne) return inverse;
+  std::array<Lanes, 8> from_first;
+  for (int i = 0; i < 8; ++i) from_first[i] = lanes(corner(i)) - lanes(corner(0));
+  const auto c = trilinear_coefficients(from_first);
   const glm::dvec3 x = voxels_of(c[1]), y = voxels_of(c[2]), z = voxels_of(c[4]);  // half edges
   const glm::dmat3 faces(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
   const double determinant = glm::dot(x, faces[0]);
-  if (!(determinant > 1e-6)) return;
-  place_from_posed_ = glm::transpose(faces) * (1 / determinant);
-  middle_ = glm::dvec3(corner[0]) / double(kFixedOne) + voxels_of(c[0]);
+  if (!(determinant > 1e-6)) return inverse;
+  inverse.place_from_posed = glm::transpose(faces) * (1 / determinant);
+  inverse.middle = glm::dvec3(corner(0)) / double(kFixedOne) + voxels_of(c[0]);
+  inverse.posed_per_rest = 8 * determinant;
   const double departure = (largest(c[3]) + largest(c[5]) + largest(c[6]) + largest(c[7])) / (8.0 * kFixedOne);
-  slack_ = largest_row_sum(place_from_posed_) * departure + kRounding;
-  near_affine_ = slack_ < kLargestSlack;
+  inverse.slack = largest_row_sum(inverse.place_from_posed) * departure + kRounding;
+  return inverse;
 }
 
-int PosedCell::find_tet(const glm::ivec3& voxel) const {
-  const glm::dvec3 place = place_from_posed_ * (glm::dvec3(voxel) - middle_);
-  const double outermost = largest(place);
-  if (outermost > 1 + slack_) return -1;
-  if (outermost > 1 - slack_) return find_tet_exactly(voxel);
+int PosedCell::find_tet(const glm::ivec3& voxel, const glm::dvec3& place, double slack) const {
   int found = 0;
   for (int t = 1; t < kTets; ++t) {
-    const double beyond = glm::dot(corner_sign(kTetCorners[parity_][t][0]), place) - 1;
-    if (std::abs(beyond) < 3 * slack_) return find_tet_exactly(voxel);
+    const double beyond = glm::dot(corner_sign(kTetCorners[parity(rest_voxel_)][t][0]), place) - 1;
+    if (std::abs(beyond) < 3 * slack) return find_tet_exactly(voxel);
     if (beyond > 0) found = t;
   }
   return found;
@@ -115,13 +100,13 @@ int PosedCell::find_tet_exactly(const glm::ivec3& voxel) const {
 }
 
 std::array<FixedPoint, 4> PosedCell::posed_tet(int t) const {
-  const auto& c = kTetCorners[parity_][t];
-  return {corner_[c[0]], corner_[c[1]], corner_[c[2]], corner_[c[3]]};
+  const auto& c = kTetCorners[parity(rest_voxel_)][t];
+  return {corner(c[0]), corner(c[1]), corner(c[2]), corner(c[3])};
 }
 
 CellClaim PosedCell::claim_in(int t, const glm::ivec3& voxel) const {
   std::array<glm::dvec3, 4> rest;
-  for (int i = 0; i < 4; ++i) rest[i] = glm::dvec3(rest_voxel_) + 0.5 * corner_sign(kTetCorners[parity_][t][i]);
+  for (int i = 0; i < 4; ++i) rest[i] = glm::dvec3(rest_voxel_) + 0.5 * corner_sign(kTetCorners[parity(rest_voxel_)][t][i]);
   return claim_in_tet(posed_tet(t), rest, voxel);
 }
 

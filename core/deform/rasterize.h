@@ -12,10 +12,12 @@
 //
 // Exact tests are the last resort. A cube's map is nearly affine: its inverse gives each centre's place in the cube with
 // an error bounded by the cube's departure from affine, and only centres within that bound of a face are tested exactly.
+// Where the departure is next to nothing that place is the rest point too, and the tets are not asked.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "core/deform/lattice.h"
@@ -139,43 +141,86 @@ struct CellClaim {
 //   rest  vertices, positively oriented
 CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<glm::dvec3, 4>& rest, const glm::ivec3& voxel);
 
+// Four whole numbers in one register, the last unused.
+using Lanes = int __attribute__((vector_size(16)));
+inline Lanes lanes(const FixedPoint& p) { return Lanes{p.x, p.y, p.z, 0}; }
+
 // A tissue voxel's posed cube.
 class PosedCell {
  public:
-  // corner      bit 0 of the index is x, bit 1 y, bit 2 z
+  // lowest      its corner of least x, y and z at rest, in a lattice whose corners lie 1, `row` and `slice` apart; it must
+  //             outlive the cell
   // rest_voxel  its centre is the middle of the cube at rest
-  PosedCell(const std::array<FixedPoint, 8>& corner, const glm::ivec3& rest_voxel);
+  PosedCell(const FixedPoint* lowest, int row, int slice, const glm::ivec3& rest_voxel)
+      : lowest_(lowest), row_(row), slice_(slice), rest_voxel_(rest_voxel) {
+    Lanes low = lanes(*lowest), high = low;
+    for (int offset : {1, row, row + 1, slice, slice + 1, slice + row, slice + row + 1}) {
+      const Lanes c = lanes(lowest[offset]);
+      low = c < low ? c : low;
+      high = c > high ? c : high;
+    }
+    low = (low + (kFixedOne - 1)) >> 16;  // shifts of negative numbers round down
+    high >>= 16;
+    box_ = {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+  }
 
-  // claim(CellClaim) for every voxel of `range` whose centre lies in the cube.
+  // claim(CellClaim) for every voxel of `clip` whose centre lies in the cube.
   template <class Claim>
-  void rasterize(const VoxelRange& range, const Claim& claim) const {
-    if (!near_affine_) {
+  void rasterize(const VoxelRange& clip, const Claim& claim) const {
+    const VoxelRange range = intersect(box_, clip);
+    if (range.empty()) return;
+    const Inverse inverse = affine_inverse();
+    if (inverse.slack > kLargestSlack) {
       for (int t = 0; t < kTets; ++t)
         rasterize_tet(posed_tet(t), range, [&](const glm::ivec3& v, int) { claim(claim_in(t, v)); });
       return;
     }
     for (int z = range.low.z; z <= range.high.z; ++z)
-      for (int y = range.low.y; y <= range.high.y; ++y)
-        for (int x = range.low.x; x <= range.high.x; ++x)
-          if (const int t = find_tet({x, y, z}); t >= 0) claim(claim_in(t, {x, y, z}));
+      for (int y = range.low.y; y <= range.high.y; ++y) {
+        const glm::dvec3 first = inverse.place_from_posed * (glm::dvec3(range.low.x, y, z) - inverse.middle);
+        for (int x = range.low.x; x <= range.high.x; ++x) {
+          const glm::ivec3 v(x, y, z);
+          const glm::dvec3 place = first + double(x - range.low.x) * inverse.place_from_posed[0];
+          const double outermost = std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)});
+          if (outermost > 1 + inverse.slack) continue;
+          const bool near_border = outermost > 1 - inverse.slack;
+          if (inverse.slack > kAffineSlack) {
+            const int t = near_border ? find_tet_exactly(v) : find_tet(v, place, inverse.slack);
+            if (t >= 0) claim(claim_in(t, v));
+          } else if (!near_border || find_tet_exactly(v) >= 0) {
+            claim({v, glm::dvec3(rest_voxel_) + 0.5 * place, inverse.posed_per_rest});
+          }
+        }
+      }
   }
 
  private:
   static constexpr int kTets = 5;
+  // With a slack below a fifth no tet of the cube can be inverted (its edge matrix stays diagonally dominant).
+  static constexpr double kLargestSlack = 0.1;
+  static constexpr double kAffineSlack = 0.01;  // rest points are then right to within 0.005 voxel
 
-  int find_tet(const glm::ivec3& voxel) const;          // -1: outside
-  int find_tet_exactly(const glm::ivec3& voxel) const;
+  // The affine part of the cube's map, read backward.
+  struct Inverse {
+    glm::dmat3 place_from_posed{1};  // place in the cube, [-1, 1]^3
+    glm::dvec3 middle{0};
+    double posed_per_rest = 0;
+    double slack = 1;  // places are right to within this on each axis
+  };
+
+  Inverse affine_inverse() const;
+  int find_tet(const glm::ivec3& voxel, const glm::dvec3& place, double slack) const;  // of a voxel inside the cube
+  int find_tet_exactly(const glm::ivec3& voxel) const;                                // -1: outside
   std::array<FixedPoint, 4> posed_tet(int t) const;
   CellClaim claim_in(int t, const glm::ivec3& voxel) const;
 
-  std::array<FixedPoint, 8> corner_;
+  // Bit 0 of the index is x, bit 1 y, bit 2 z.
+  const FixedPoint& corner(int i) const { return lowest_[(i & 1) + (i >> 1 & 1) * row_ + (i >> 2) * slice_]; }
+
+  const FixedPoint* lowest_;
+  int row_, slice_;
+  VoxelRange box_;  // the voxel centres in the box of the corners
   glm::ivec3 rest_voxel_;
-  int parity_;
-  // The affine part: place in the cube, [-1, 1]^3, of a posed point, right to within slack_ on each axis.
-  bool near_affine_ = false;
-  glm::dmat3 place_from_posed_{1};
-  glm::dvec3 middle_{0};
-  double slack_ = 0;
 };
 
 }  // namespace limber

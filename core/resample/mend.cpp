@@ -177,6 +177,7 @@ class Mending {
       std::vector<glm::ivec3> next;
       for (size_t i = 0; i < layer.size(); ++i) {
         const glm::ivec3 from = layer[i];
+        if (length == 0 && i < own_voxels && is_enclosed(posed_, from)) continue;
         for (const glm::ivec3& step : neighbours()) {
           const glm::ivec3 to = from + step;
           if (!posed_.grid.contains(to)) continue;
@@ -231,7 +232,7 @@ class Mending {
   bool can_take(const glm::ivec3& v, Label taker) const {
     const Label label = tissue_.at(v);
     const bool may_give = label && (in_tissue_ ? soft_[label] == soft_[taker] : soft_[label] != 0);
-    if (!may_give || barred_.contains(posed_.grid.index(v)) || is_beside_air(tissue_, v) || !can_spare(tissue_, v)) return false;
+    if (!may_give || barred_.contains(posed_.grid.index(v)) || !can_spare_inside(tissue_, v)) return false;
     return !in_tissue_ || of_posed_.voxels[component_of(v)] != kSmallestPart;
   }
 
@@ -305,18 +306,23 @@ class Mending {
 
 }  // namespace
 
-std::int64_t mend(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft, const RestPoint& rest_point) {
-  const Components of_rest = connected_components(rest);
-  Components of_posed = connected_components(posed);
-  const std::int64_t parted = part_bones(posed, of_posed, rest, of_rest, soft, rest_point);
-  if (parted > 0) of_posed = connected_components(posed);
+std::int64_t mend(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft, const RestPoint& rest_point,
+                  const RowSet* posed_rows, const RowSet* rest_rows) {
+  const Components of_rest = connected_components(rest, rest_rows);
+  LabelSet rigid(soft.size());
+  for (size_t label = 1; label < soft.size(); ++label) rigid[label] = !soft[label];
+  const Components posed_bones = connected_components(posed, posed_rows, &rigid);
+  const std::int64_t parted = part_bones(posed, posed_bones, rest, of_rest, soft, rest_point);
+  Components of_posed = connected_components(posed, posed_rows);
   return parted + std::ssize(Mending(posed, std::move(of_posed), rest, of_rest, posed, soft, rest_point).run());
 }
 
 std::vector<glm::ivec3> mend_bones(LabelVolume& posed_bones, const LabelVolume& rest_bones, const LabelVolume& tissue,
-                                   const LabelSet& soft, const RestPoint& rest_point) {
-  const Components of_rest = connected_components(rest_bones);
-  return Mending(posed_bones, connected_components(posed_bones), rest_bones, of_rest, tissue, soft, rest_point).run();
+                                   const LabelSet& soft, const RestPoint& rest_point, const RowSet* posed_rows,
+                                   const RowSet* rest_rows) {
+  const Components of_rest = connected_components(rest_bones, rest_rows);
+  Components of_posed = connected_components(posed_bones, posed_rows);
+  return Mending(posed_bones, std::move(of_posed), rest_bones, of_rest, tissue, soft, rest_point).run();
 }
 
 }  // namespace limber

@@ -64,11 +64,11 @@ const std::array<glm::ivec3, 26>& neighbours() {
   return all;
 }
 
-int component_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v) {
+std::int64_t run_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v) {
   const std::int64_t row = v.y + std::int64_t{volume.grid.size.y} * v.z;
   const auto begin = components.runs.begin() + components.first_run[row], end = components.runs.begin() + components.first_run[row + 1];
   const auto run = std::partition_point(begin, end, [&](const Components::Run& r) { return r.end <= v.x; });
-  return run->component;
+  return run - components.runs.begin();
 }
 
 int nearest_component(const Components& components, const LabelVolume& volume, Label label, const glm::dvec3& point) {
@@ -107,6 +107,13 @@ bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel) {
   return bits_hang_together(same);
 }
 
+bool is_enclosed(const LabelVolume& volume, const glm::ivec3& voxel) {
+  const Label own = volume.at(voxel);
+  bool same = true;
+  for_each_around(volume, voxel, [&](int, Label label) { same &= label == own; });
+  return same;
+}
+
 bool touches_air(const LabelVolume& volume, const glm::ivec3& voxel) {
   bool air = false;
   for (int axis = 0; axis < 3; ++axis)
@@ -118,10 +125,14 @@ bool touches_air(const LabelVolume& volume, const glm::ivec3& voxel) {
   return air;
 }
 
-bool is_beside_air(const LabelVolume& volume, const glm::ivec3& voxel) {
-  bool air = false;
-  for_each_around(volume, voxel, [&](int, Label label) { air |= label == 0; });
-  return air;
+bool can_spare_inside(const LabelVolume& volume, const glm::ivec3& voxel) {
+  const Label own = volume.at(voxel);
+  unsigned same = 0, air = 0;
+  for_each_around(volume, voxel, [&](int k, Label label) {
+    same |= unsigned{label == own} << k;
+    air |= label == 0;
+  });
+  return !air && bits_hang_together(same);
 }
 
 }  // namespace limber

@@ -16,8 +16,13 @@ using RestPoint = std::function<glm::dvec3(const glm::ivec3& posed_voxel)>;
 
 const std::array<glm::ivec3, 26>& neighbours();
 
+// The place in components.runs of the run that holds a voxel, or else of the next one that ends after it.
+std::int64_t run_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v);
+
 // The component of a tissue voxel.
-int component_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v);
+inline int component_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v) {
+  return components.runs[run_at(components, volume, v)].component;
+}
 
 // The rest component of `label` nearest to a rest point, -1 when there is none within 8 voxels.
 int nearest_component(const Components& components, const LabelVolume& volume, Label label, const glm::dvec3& point);
@@ -29,10 +34,13 @@ bool hang_together(const std::array<bool, 27>& marked);
 // Whether its tissue can spare the voxel: what is left of it around hangs together.
 bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel);
 
+// Whether all 26 voxels around have the voxel's own label.
+bool is_enclosed(const LabelVolume& volume, const glm::ivec3& voxel);
+
+// The same, and neither the voxel nor one of the 26 around it is air or outside the grid.
+bool can_spare_inside(const LabelVolume& volume, const glm::ivec3& voxel);
+
 // Whether one of the six voxels at its faces is air or outside the grid.
 bool touches_air(const LabelVolume& volume, const glm::ivec3& voxel);
-
-// Whether the voxel or one of the 26 around it is air or outside the grid.
-bool is_beside_air(const LabelVolume& volume, const glm::ivec3& voxel);
 
 }  // namespace limber

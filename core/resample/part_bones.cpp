@@ -47,7 +47,7 @@ class Parting {
         const int other = touched_part(label, v);
         if (other < 0) continue;
         ++contacts;
-        if (round > 0 || gives(part_of_[posed_.grid.index(v)], other)) changed += give(v, label);
+        if (round > 0 || gives(part_of(v), other)) changed += give(v, label);
       }
       if (contacts == 0) break;
     }
@@ -56,6 +56,7 @@ class Parting {
 
   // The voxels of posed parts that come from more than one large rest part.
   void find_fused(Label label) {
+    first_of_run_.assign(of_posed_.runs.size(), -1);
     part_of_.clear();
     fused_.clear();
     std::unordered_map<int, std::set<int>> sources;
@@ -65,26 +66,51 @@ class Parting {
       for (auto r = of_posed_.first_run[row]; r < of_posed_.first_run[row + 1]; ++r) {
         const auto& run = of_posed_.runs[r];
         if (run.label != label || of_posed_.voxels[run.component] < kSmallestPart) continue;
+        first_of_run_[r] = std::ssize(part_of_);
+        part_of_.resize(part_of_.size() + run.end - run.begin);
+        int* parts = &part_of_[first_of_run_[r]];
+        find_sources({run.begin, int(row % height), int(row / height)}, run.end - run.begin, label, parts);
         for (int x = run.begin; x < run.end; ++x) {
-          const glm::ivec3 v(x, int(row % height), int(row / height));
-          const int part = nearest_component(of_rest_, rest_, label, rest_point_(v));
-          if (part < 0 || of_rest_.voxels[part] < kSmallestPart) continue;
-          part_of_[posed_.grid.index(v)] = part;
+          const int part = parts[x - run.begin];
+          if (part < 0) continue;
           sources[run.component].insert(part);
-          voxels.emplace_back(v, run.component);
+          voxels.push_back({{x, int(row % height), int(row / height)}, run.component});
         }
       }
     for (const auto& [v, component] : voxels)
       if (sources[component].size() > 1) fused_.push_back(v);
   }
 
+  // The large rest part of each voxel of a run. Between two voxels of one part, at most four apart, lies no other.
+  void find_sources(const glm::ivec3& first, int count, Label label, int* parts) const {
+    constexpr int kStep = 4;
+    for (int done = -1; done < count - 1;) {
+      const int next = std::min(done + kStep, count - 1);
+      parts[next] = source(first + glm::ivec3(next, 0, 0), label);
+      for (int i = done + 1; i < next; ++i)
+        parts[i] = done >= 0 && parts[done] == parts[next] ? parts[next] : source(first + glm::ivec3(i, 0, 0), label);
+      done = next;
+    }
+  }
+
+  int source(const glm::ivec3& v, Label label) const {
+    const int part = nearest_component(of_rest_, rest_, label, rest_point_(v));
+    return part >= 0 && of_rest_.voxels[part] >= kSmallestPart ? part : -1;
+  }
+
+  // The large rest part that a voxel of the present label comes from, -1 when there is none.
+  int part_of(const glm::ivec3& v) const {
+    const std::int64_t run = run_at(of_posed_, posed_, v);
+    if (run == std::ssize(of_posed_.runs) || first_of_run_[run] < 0 || of_posed_.runs[run].begin > v.x) return -1;
+    return part_of_[first_of_run_[run] + v.x - of_posed_.runs[run].begin];
+  }
+
   // A rest part other than its own that a voxel touches, -1 when there is none.
   int touched_part(Label label, const glm::ivec3& v) const {
-    const int own = part_of_.at(posed_.grid.index(v));
+    const int own = part_of(v);
     for (const glm::ivec3& step : neighbours()) {
       if (posed_.at_or_air(v + step) != label) continue;
-      const auto there = part_of_.find(posed_.grid.index(v + step));
-      if (there != part_of_.end() && there->second != own) return there->second;
+      if (const int there = part_of(v + step); there >= 0 && there != own) return there;
     }
     return -1;
   }
@@ -117,13 +143,11 @@ class Parting {
 
   // What is left of the voxel's own part around it hangs together.
   bool part_can_spare(const glm::ivec3& v, Label label) const {
-    const int own = part_of_.at(posed_.grid.index(v));
+    const int own = part_of(v);
     std::array<bool, 27> same{};
     for (int k = 0; k < 27; ++k) {
       const glm::ivec3 at = v + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-      if (posed_.at_or_air(at) != label) continue;
-      const auto there = part_of_.find(posed_.grid.index(at));
-      same[k] = there != part_of_.end() && there->second == own;
+      same[k] = posed_.at_or_air(at) == label && part_of(at) == own;
     }
     return hang_together(same);
   }
@@ -148,7 +172,8 @@ class Parting {
   const Components& of_rest_;
   const LabelSet& soft_;
   const RestPoint& rest_point_;
-  std::unordered_map<std::int64_t, int> part_of_;  // rest part of the present label's voxels that come from a large one
+  std::vector<std::int64_t> first_of_run_;         // place in part_of_, -1 for runs that are not of the present label's large parts
+  std::vector<int> part_of_;
   std::vector<glm::ivec3> fused_;
   std::unordered_map<std::int64_t, int> given_;    // component that a voxel was given to
 };

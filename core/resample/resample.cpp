@@ -138,6 +138,8 @@ struct UnderSkin {
 
 // What one tile saw.
 struct TileCounts {
+  VoxelRange range;
+  RowSet row_used;  // of the range
   std::int64_t holes = 0, overlap = 0, bone_overlap = 0;
   std::vector<Label> lost;
   std::vector<UnderSkin> under_skin;
@@ -164,6 +166,7 @@ class Resampling {
     posed.volume.grid = output.grid;
     const std::int64_t voxels = output.grid.voxel_count();
     posed.volume.voxels = sparse_zeros<Label>(voxels);
+    rows_.resize(std::int64_t{output.grid.size.y} * output.grid.size.z);
     if (mends) posed_bones_ = {output.grid, sparse_zeros<Label>(voxels)};
     if (settings.displacement) posed.displacement = sparse_zeros<glm::vec3>(voxels);
     if (settings.jacobian) posed.jacobian = sparse_zeros<float>(voxels);
@@ -192,11 +195,14 @@ class Resampling {
     const auto of_bone = [&](const glm::ivec3& voxel) {
       return bones_.rest_point(posed_bones_.at(voxel) - 1, glm::dvec3(output_.range.low + voxel));
     };
-    const auto bridges = mend_bones(posed_bones_, bones_.numbered(), posed_.volume, labels_.soft, of_bone);
+    const RowSet rest_rows = lattice_.tissue().rows();
+    const auto bridges =
+        mend_bones(posed_bones_, bones_.numbered(), posed_.volume, labels_.soft, of_bone, &rows_, &rest_rows);
     for (const glm::ivec3& voxel : bridges) {
       map.reset({output_.range.low + voxel, output_.range.low + voxel});
       map.bone[0] = static_cast<std::uint16_t>(posed_bones_.at(voxel) - 1);
       map.rest[0] = of_bone(voxel);
+      map.use_row(map.range.low);
       TileCounts counts;
       write(map, counts);
       add(counts);
@@ -206,7 +212,8 @@ class Resampling {
       fill(map, {output_.range.low + voxel, output_.range.low + voxel});
       return glm::dvec3(map.rest[0]);
     };
-    posed_.report.mended_voxels = std::ssize(bridges) + close_skin() + mend(posed_.volume, volume_, labels_.soft, rest_point);
+    posed_.report.mended_voxels = std::ssize(bridges) + close_skin() +
+                                  mend(posed_.volume, volume_, labels_.soft, rest_point, &rows_, &rest_rows);
   }
 
  private:
@@ -246,12 +253,17 @@ class Resampling {
   }
 
   void write(const InverseMap& map, TileCounts& counts) {
+    counts.range = map.range;
+    counts.row_used = map.row_used;
     counts.lost = map.lost;
-    std::int64_t i = 0;
+    const std::int64_t length = map.range.high.x - map.range.low.x + 1;
+    std::int64_t map_row = 0;
     glm::ivec3 v;
     for (v.z = map.range.low.z; v.z <= map.range.high.z; ++v.z)
-      for (v.y = map.range.low.y; v.y <= map.range.high.y; ++v.y) {
+      for (v.y = map.range.low.y; v.y <= map.range.high.y; ++v.y, ++map_row) {
+        if (!map.row_used[map_row] && !settings_.grey) continue;
         const std::int64_t row = output_.grid.index(glm::ivec3(0, v.y, v.z) - output_.range.low);
+        std::int64_t i = map_row * length;
         for (v.x = map.range.low.x; v.x <= map.range.high.x; ++v.x, ++i) {
           const bool covered = map.cell[i] != InverseMap::kNoCell || map.bone[i] != InverseMap::kNoBone;
           if (settings_.grey) posed_.grey.voxels[row + v.x] = covered ? moved_grey(map.rest[i]) : still_grey(v);
@@ -336,6 +348,11 @@ class Resampling {
 
   void add(const TileCounts& tile) {
     DeformReport& report = posed_.report;
+    for (std::int64_t i = 0; i < std::ssize(tile.row_used); ++i) {
+      const int height = tile.range.high.y - tile.range.low.y + 1;
+      const glm::ivec3 row(output_.range.low.x, tile.range.low.y + i % height, tile.range.low.z + i / height);
+      if (tile.row_used[i]) rows_[output_.grid.index(row - output_.range.low) / output_.grid.size.x] = 1;
+    }
     report.new_hole_voxels += tile.holes;
     report.overlap_voxels += tile.overlap;
     report.bone_overlap_voxels += tile.bone_overlap;
@@ -358,6 +375,7 @@ class Resampling {
   Posed& posed_;
   const double skin_reach_ = kSkinReach * largest(volume_.grid.spacing);  // mm below air
   std::vector<UnderSkin> under_skin_;
+  RowSet rows_;  // of the output that hold tissue
   LabelVolume posed_bones_;  // 1 + the rig bone of each voxel that a bone paints
   LabelSampler sampler_;
   AffineTransform world_from_rest_;

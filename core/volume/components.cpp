@@ -36,16 +36,18 @@ int end_of_run(const Label* row, int begin, int size) {
   return x;
 }
 
-std::vector<Run> runs_of_slice(const LabelVolume& volume, int z, std::int64_t* runs_in_row) {
+std::vector<Run> runs_of_slice(const LabelVolume& volume, const RowSet* in_rows, const LabelSet* of_labels, int z,
+                               std::int64_t* runs_in_row) {
   std::vector<Run> runs;
   const glm::ivec3 size = volume.grid.size;
   for (int y = 0; y < size.y; ++y) {
+    if (in_rows && !(*in_rows)[y + std::int64_t{size.y} * z]) continue;
     const Label* row = &volume.voxels[volume.grid.index({0, y, z})];
     const std::size_t before = runs.size();
     for (int x = end_of_air(row, 0, size.x); x < size.x;) {
       const int begin = x;
       x = end_of_run(row, begin, size.x);
-      runs.push_back({begin, x, row[begin], 0});
+      if (!of_labels || (*of_labels)[row[begin]]) runs.push_back({begin, x, row[begin], 0});
       if (x < size.x && row[x] == 0) x = end_of_air(row, x, size.x);
     }
     runs_in_row[y] = static_cast<std::int64_t>(runs.size() - before);
@@ -60,13 +62,14 @@ std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t run) {
 
 // The earlier root wins, so that a component's root is its first run.
 void join(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
+  if (parent[a] == parent[b]) return;
   a = root_of(parent, a);
   b = root_of(parent, b);
   if (a != b) parent[std::max(a, b)] = std::min(a, b);
 }
 }  // namespace
 
-Components connected_components(const LabelVolume& volume) {
+Components connected_components(const LabelVolume& volume, const RowSet* in_rows, const LabelSet* of_labels) {
   const glm::ivec3 size = volume.grid.size;
   const std::int64_t rows = std::int64_t{size.y} * size.z;
   Components result;
@@ -74,7 +77,7 @@ Components connected_components(const LabelVolume& volume) {
   std::vector<std::vector<Run>> of_slice(size.z);
   parallel_for(size.z, 4, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t z = begin; z < end; ++z)
-      of_slice[z] = runs_of_slice(volume, static_cast<int>(z), &result.first_run[1 + z * size.y]);
+      of_slice[z] = runs_of_slice(volume, in_rows, of_labels, static_cast<int>(z), &result.first_run[1 + z * size.y]);
   });
   std::partial_sum(result.first_run.begin(), result.first_run.end(), result.first_run.begin());
   if (result.first_run.back() > INT32_MAX)

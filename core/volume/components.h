@@ -22,6 +22,7 @@ struct Components {
   std::vector<std::int64_t> voxels;     // of each component, in order of its first voxel
 };
 
-Components connected_components(const LabelVolume& volume);
+// Those of the labels and rows that are named; nullptr for all. Rows that are known to be air need not be read.
+Components connected_components(const LabelVolume& volume, const RowSet* in_rows = nullptr, const LabelSet* of_labels = nullptr);
 
 }  // namespace limber

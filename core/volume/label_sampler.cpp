@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 #include <map>
 
@@ -25,13 +26,21 @@ double hermite(double f) { return f * f * (3 - 2 * f); }
 // The eight voxels around a point. Bit 0, 1, 2 of a corner's number: upper in x, y, z.
 struct LabelSampler::Neighbours {
   std::array<Label, 8> label;
-  glm::dvec3 fraction;  // of the point between lower and upper voxels, [0, 1)
+  glm::ivec3 low;
+  // Once the point is placed among them:
+  glm::dvec3 fraction;  // between lower and upper voxels, [0, 1)
   int nearest;          // corner of the voxel whose cell holds the point
 
+  const glm::dvec3& place(const glm::dvec3& point) {
+    fraction = point - glm::dvec3(low);
+    nearest = (fraction.x >= 0.5) | (fraction.y >= 0.5) << 1 | (fraction.z >= 0.5) << 2;
+    return fraction;
+  }
+
   bool uniform() const {
-    bool same = true;
-    for (int k = 1; k < 8; ++k) same &= label[k] == label[0];
-    return same;
+    std::uint64_t half[2];
+    std::memcpy(half, label.data(), sizeof half);
+    return half[0] == half[1] && half[0] == label[0] * std::uint64_t{0x0001000100010001};
   }
 
   // Largest membership among the labels that `allowed` lets through; 0 when there is none.
@@ -73,15 +82,14 @@ bool LabelSampler::neighbours(const glm::dvec3& point, Neighbours& out) const {
                          point.z < size.z;
   if (!near_grid) return false;
   const glm::ivec3 low(round_down(point.x), round_down(point.y), round_down(point.z));
-  out.fraction = point - glm::dvec3(low);
-  out.nearest = (out.fraction.x >= 0.5) | (out.fraction.y >= 0.5) << 1 | (out.fraction.z >= 0.5) << 2;
-
+  out.low = low;
   const bool inside = low.x >= 0 && low.y >= 0 && low.z >= 0 && low.x + 1 < size.x && low.y + 1 < size.y &&
                       low.z + 1 < size.z;
   if (inside) {
     const Label* at = volume_->voxels.data() + volume_->grid.index(low);
     const Label* above = at + slice_;
-    out.label = {at[0], at[1], at[row_], at[row_ + 1], above[0], above[1], above[row_], above[row_ + 1]};
+    const Label* pair[] = {at, at + row_, above, above + row_};
+    for (int p = 0; p < 4; ++p) std::memcpy(&out.label[2 * p], pair[p], 2 * sizeof(Label));
   } else {
     for (int k = 0; k < 8; ++k) out.label[k] = volume_->at_or_air(low + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
   }
@@ -99,14 +107,17 @@ Label LabelSampler::nearest(const glm::dvec3& point) const {
 Label LabelSampler::tissue(const glm::dvec3& point) const {
   Neighbours around;
   if (!neighbours(point, around)) return 0;
+  if (around.uniform()) return around.label[0];
+  const glm::dvec3 f = around.place(point);
   const Label nearest = around.label[around.nearest];
-  if (nearest == 0 || around.fraction == glm::dvec3(0) || around.uniform()) return nearest;
+  if (nearest == 0 || f == glm::dvec3(0)) return nearest;
   return around.largest_membership([](Label label) { return label != 0; });
 }
 
 Label LabelSampler::tissue(const glm::dvec3& point, const LabelSet& allowed) const {
   Neighbours around;
   if (!neighbours(point, around)) return 0;
+  around.place(point);
   return around.largest_membership([&](Label label) { return label != 0 && allowed[label] != 0; });
 }
 

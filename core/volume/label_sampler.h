@@ -21,9 +21,6 @@
 
 namespace limber {
 
-// Which labels may be answered: one byte per label, 0 .. 65535; not 0 where allowed. Air never counts.
-using LabelSet = std::vector<std::uint8_t>;
-
 class LabelSampler {
  public:
   // Keeps a reference: the volume must outlive the sampler and not change.

@@ -11,6 +11,12 @@ namespace limber {
 
 using Label = std::uint16_t;
 
+// A byte per label, 0 .. 65535; not 0 for those that belong to the set. Air never counts.
+using LabelSet = std::vector<std::uint8_t>;
+
+// A byte per row along x, y + size.y z; not 0 for those that may hold tissue.
+using RowSet = std::vector<std::uint8_t>;
+
 struct LabelVolume {
   Grid grid;
   std::vector<Label> voxels;  // grid.voxel_count(), x fastest

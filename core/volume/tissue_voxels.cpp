@@ -47,4 +47,13 @@ TissueVoxels::TissueVoxels(const LabelVolume& volume) : grid_size_(volume.grid.s
       }
 }
 
+RowSet TissueVoxels::rows() const {
+  RowSet rows(std::int64_t{grid_size_.y} * grid_size_.z, 0);
+  for (const Brick& brick : bricks_)
+    for (int z = 0; z < kBrick; ++z)
+      for (int y = 0; y < kBrick; ++y)
+        if (brick.mask[z] >> (8 * y) & 0xff) rows[brick.corner.y + y + std::int64_t{grid_size_.y} * (brick.corner.z + z)] = 1;
+  return rows;
+}
+
 }  // namespace limber

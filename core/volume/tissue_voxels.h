@@ -55,6 +55,8 @@ class TissueVoxels {
     return place + std::popcount(b.mask[z] & ((std::uint64_t{1} << bit) - 1));
   }
 
+  RowSet rows() const;  // that hold tissue
+
   // body(place, voxel) for every tissue voxel of bricks [first_brick, end_brick), in list order.
   template <class Body>
   void for_each(std::int64_t first_brick, std::int64_t end_brick, const Body& body) const {

@@ -11,6 +11,8 @@ using namespace limber;
 
 namespace {
 
+constexpr VoxelRange kEverywhere{glm::ivec3(-1000), glm::ivec3(1000)};
+
 // N^3 cubes with edges of three output voxels, their inner corners moved by whole numbers of `step`: coarse steps put many
 // voxel centres exactly on faces, edges and corners.
 template <class Claim>
@@ -29,7 +31,7 @@ void rasterize_jittered(int n, int step, unsigned seed, const Claim& claim) {
       for (int x = 0; x < n; ++x) {
         std::array<FixedPoint, 8> corners;
         for (int i = 0; i < 8; ++i) corners[i] = corner(glm::ivec3(x, y, z) + glm::ivec3(i & 1, i >> 1 & 1, i >> 2));
-        PosedCell(corners, {x, y, z}).rasterize(voxels_in_box(corners), claim);
+        PosedCell(corners.data(), 2, 4, {x, y, z}).rasterize(kEverywhere, claim);
       }
 }
 
@@ -64,7 +66,7 @@ TEST_CASE("rasterize: a turned cube gives back the rest points of its voxels, as
   }
   int count = 0;
   double largest = 0;
-  PosedCell(corners, {4, 5, 6}).rasterize(voxels_in_box(corners), [&](const CellClaim& claim) {
+  PosedCell(corners.data(), 2, 4, {4, 5, 6}).rasterize(kEverywhere, [&](const CellClaim& claim) {
     const glm::dvec3 expected = glm::transpose(turn) * (glm::dvec3(claim.voxel) - glm::dvec3(0.3, 40.1, -7)) / 20.0 + glm::dvec3(4, 5, 6);
     largest = std::max(largest, glm::distance(claim.rest, expected));
     ++count;
