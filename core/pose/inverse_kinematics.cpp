@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/pose/inverse_kinematics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <Eigen/Cholesky>
+
+#include "core/base/error.h"
+#include "core/rig/joint_limits.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kSteps = 80;             // of one search
+constexpr double kLongestStep = 0.6;   // radians of any one parameter
+constexpr double kAtLimit = 1e-10;     // radians
+constexpr double kNoProgress = 1e-6;   // share of the squared error below which a step gains nothing
+constexpr double kRoughly = 1e-3;      // the same while a search only prepares the next
+constexpr double kPoleWeight = 0.1;    // mm beside the plane count as so many mm from the target
+constexpr int kRestartsBeyondReach = 6;
+constexpr double kWorthAJump = 1e-4;   // share of the chain's length by which another pose must come nearer to be taken
+
+double between(std::mt19937& random, double low, double high) { return low + (high - low) * (random() / 4294967296.0); }
+
+// A joint that may turn, with its parameters.
+struct Joint {
+  int bone;
+  JointLimits::Type type;
+  glm::dvec3 axis{0};                // of hinge and twist
+  double minimum = 0, maximum = 0;   // of the hinge or the twist
+  double cone = 0;
+
+  double angle = 0;                  // of the hinge or the twist
+  glm::dvec3 swing{0};
+  glm::dquat free{1, 0, 0, 0};
+
+  int parameters() const { return type == JointLimits::Type::Fixed ? 0 : type == JointLimits::Type::Hinge ? 1 : 3; }
+
+  glm::dquat rotation() const {
+    switch (type) {
+      case JointLimits::Type::Free: return free;
+      case JointLimits::Type::Fixed: return {1, 0, 0, 0};
+      case JointLimits::Type::Hinge: return exponential(angle * axis);
+      case JointLimits::Type::Ball: return rotation_of({swing, angle}, axis);
+    }
+    return free;
+  }
+
+  // Directions of the swing's two parameters: away from rest, and around.
+  std::array<glm::dvec3, 2> swing_directions() const {
+    const double length = glm::length(swing);
+    glm::dvec3 outward = swing;
+    if (length < 1e-12) {
+      const glm::dvec3 across = std::abs(axis.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+      outward = across - axis * glm::dot(axis, across);
+    }
+    outward = glm::normalize(outward);
+    return {outward, glm::cross(axis, outward)};
+  }
+
+  // The axes, in the parent's rest frame, about which a small change of each parameter turns the bone.
+  void turning_axes(glm::dvec3* out) const {
+    if (type == JointLimits::Type::Hinge) out[0] = axis;
+    if (type == JointLimits::Type::Free)
+      for (int i = 0; i < 3; ++i) out[i] = glm::dvec3(i == 0, i == 1, i == 2);
+    if (type != JointLimits::Type::Ball) return;
+    // The derivative of exp at the swing: I + (1 - cos)/a^2 [s] + (a - sin)/a^3 [s]^2.
+    const double a = glm::length(swing);
+    const double first = a < 1e-4 ? 0.5 : (1 - std::cos(a)) / (a * a);
+    const double second = a < 1e-4 ? 1.0 / 6 : (a - std::sin(a)) / (a * a * a);
+    const auto directions = swing_directions();
+    for (int i = 0; i < 2; ++i) {
+      const glm::dvec3 once = glm::cross(swing, directions[i]);
+      out[i] = directions[i] + first * once + second * glm::cross(swing, once);
+    }
+    out[2] = exponential(swing) * axis;
+  }
+
+  // Whether parameter i stands at a limit that `push` leads beyond.
+  bool is_held(int i, double push) const {
+    if (type == JointLimits::Type::Free) return false;
+    if (type == JointLimits::Type::Ball && i == 0) return push > 0 && glm::length(swing) >= cone - kAtLimit;
+    if (type == JointLimits::Type::Ball && i == 1) return cone <= kAtLimit;
+    return (push > 0 && angle >= maximum - kAtLimit) || (push < 0 && angle <= minimum + kAtLimit);
+  }
+
+  void change(const double* by) {
+    switch (type) {
+      case JointLimits::Type::Fixed: break;
+      case JointLimits::Type::Free: free = glm::normalize(exponential({by[0], by[1], by[2]}) * free); break;
+      case JointLimits::Type::Hinge: angle = std::clamp(angle + by[0], minimum, maximum); break;
+      case JointLimits::Type::Ball: {
+        const auto directions = swing_directions();
+        swing += by[0] * directions[0] + by[1] * directions[1];
+        if (const double length = glm::length(swing); length > cone) swing *= cone / length;
+        angle = std::clamp(angle + by[2], minimum, maximum);
+      }
+    }
+  }
+
+  void scatter(std::mt19937& random) {
+    angle = between(random, minimum, maximum);
+    const auto directions = swing_directions();
+    const double around = between(random, 0, 2 * std::numbers::pi), away = cone * std::sqrt(between(random, 0, 1));
+    swing = away * (std::cos(around) * directions[0] + std::sin(around) * directions[1]);
+    free = exponential(2.0 * glm::dvec3(between(random, -1, 1), between(random, -1, 1), between(random, -1, 1)));
+  }
+};
+
+Joint joint_of(const Bone& bone, int index, const glm::dquat& rotation, bool keep_limits) {
+  Joint joint{index, keep_limits ? bone.limits.type : JointLimits::Type::Free};
+  joint.free = rotation;
+  const glm::dquat allowed = keep_limits ? within_limits(bone, rotation) : rotation;
+  if (joint.type == JointLimits::Type::Hinge) {
+    joint.axis = bone.limits.axis;
+    joint.minimum = bone.limits.minimum;
+    joint.maximum = bone.limits.maximum;
+  } else if (joint.type == JointLimits::Type::Ball) {
+    joint.axis = twist_axis(bone);
+    joint.minimum = bone.limits.twist_minimum;
+    joint.maximum = bone.limits.twist_maximum;
+    joint.cone = std::min(bone.limits.cone, std::numbers::pi - 1e-6);  // a swing by half a turn has no direction
+  } else {
+    return joint;
+  }
+  const SwingTwist parts = swing_twist(allowed, joint.axis);
+  joint.swing = parts.swing;
+  joint.angle = parts.twist;
+  for (double turn : {2 * std::numbers::pi, -2 * std::numbers::pi})
+    if (joint.angle < joint.minimum - 1e-6 || joint.angle > joint.maximum + 1e-6)
+      if (parts.twist + turn >= joint.minimum - 1e-6 && parts.twist + turn <= joint.maximum + 1e-6) joint.angle = parts.twist + turn;
+  joint.angle = std::clamp(joint.angle, joint.minimum, joint.maximum);
+  if (const double length = glm::length(joint.swing); length > joint.cone) joint.swing *= joint.cone / length;
+  return joint;
+}
+
+struct State {
+  std::vector<Joint> joints;  // of the bones that move, parents first
+  glm::dvec3 root{0};
+};
+
+class Search {
+ public:
+  Search(const Armature& armature, const Pose& start, const std::vector<ReachGoal>& goals, const ReachSettings& settings)
+      : armature_(armature), start_(start), settings_(settings) {
+    const auto n = armature.bones.size();
+    std::vector<bool> needed(n, false), moves(n, false);
+    for (const ReachGoal& goal : goals) {
+      Goal mine{goal.bone, goal.target, goal.weight, goal.bone, 0, {}};
+      mine.moved_by.resize(n, false);
+      int left = goal.chain > 0 ? goal.chain : static_cast<int>(n);
+      for (int b = goal.bone; b >= 0; b = armature.bones[b].parent) {
+        needed[b] = true;
+        if (left-- <= 0) continue;
+        moves[b] = true;
+        mine.moved_by[b] = true;
+        mine.first = b;
+        mine.length += length_of(b);
+      }
+      goals_.push_back(mine);
+    }
+    for (size_t b = 0; b < n; ++b) {
+      if (!needed[b]) continue;
+      needed_.push_back(static_cast<int>(b));
+      joint_of_.push_back(moves[b] ? static_cast<int>(initial_.joints.size()) : -1);
+      if (moves[b]) initial_.joints.push_back(joint_of(armature.bones[b], int(b), start.rotation[b], settings.keep_limits));
+    }
+    initial_.root = start.root_translation;
+    posed_.resize(n);
+    for (const Joint& joint : initial_.joints) parameters_ += joint.parameters();
+    if (settings.move_root) parameters_ += 3;
+  }
+
+  Reach run() {
+    State best = from(initial_);
+    double nearest = furthest_off(best);
+    std::mt19937 random(20240521);
+    const int restarts = lies_beyond_reach() ? std::min(settings_.restarts, kRestartsBeyondReach) : settings_.restarts;
+    for (int i = 0; i < restarts && nearest > settings_.tolerance && parameters_ > 0; ++i) {
+      State next = initial_;
+      // First from close by: a straight chain cannot tell where to bend.
+      for (Joint& joint : next.joints) {
+        Joint other = joint;
+        other.scatter(random);
+        if (i < 2)
+          nudge(joint, other);
+        else
+          joint = other;
+      }
+      const State found = from(next);
+      const double distance = furthest_off(found);
+      if (distance > settings_.tolerance && distance > nearest - kWorthAJump * goals_[0].length) continue;
+      best = found;
+      nearest = distance;
+    }
+    Reach result{start_, nearest, nearest <= settings_.tolerance};
+    for (const Joint& joint : best.joints) result.pose.rotation[joint.bone] = joint.rotation();
+    result.pose.root_translation = best.root;
+    return result;
+  }
+
+ private:
+  struct Goal {
+    int bone;
+    glm::dvec3 target;
+    double weight;
+    int first;      // uppermost bone that moves for it
+    double length;  // of the chain, mm
+    std::vector<bool> moved_by;
+  };
+
+  double length_of(int b) const {
+    const Bone& bone = armature_.bones[b];
+    const double own = glm::distance(bone.head, bone.tail);
+    return bone.parent < 0 ? own : own + glm::distance(bone.head, armature_.bones[bone.parent].tail);
+  }
+
+  // Whether a goal lies further off than its chain is long.
+  bool lies_beyond_reach() {
+    place(initial_);
+    return !settings_.move_root && std::any_of(goals_.begin(), goals_.end(), [&](const Goal& goal) {
+      return glm::distance(goal.target, pivot(goal.first)) > goal.length;
+    });
+  }
+
+  static void nudge(Joint& joint, const Joint& towards) {
+    constexpr double kShare = 0.15;
+    joint.angle += kShare * (towards.angle - joint.angle);
+    joint.swing += kShare * (towards.swing - joint.swing);
+    joint.free = glm::normalize(glm::slerp(joint.free, towards.free, kShare));
+  }
+
+  void place(const State& state) {
+    for (size_t i = 0; i < needed_.size(); ++i) {
+      const int b = needed_[i];
+      const Bone& bone = armature_.bones[b];
+      const glm::dquat rotation = joint_of_[i] < 0 ? start_.rotation[b] : state.joints[joint_of_[i]].rotation();
+      const RigidTransform own = rotation_about(bone.head, rotation);
+      posed_[b] = bone.parent < 0 ? RigidTransform{own.rotation, own.translation + state.root} : posed_[bone.parent] * own;
+    }
+  }
+
+  glm::dvec3 tip(const Goal& goal) const { return posed_[goal.bone] * armature_.bones[goal.bone].tail; }
+  glm::dvec3 pivot(int b) const { return posed_[b] * armature_.bones[b].head; }
+
+  double furthest_off(const State& state) {
+    place(state);
+    double furthest = 0;
+    for (const Goal& goal : goals_) furthest = std::max(furthest, glm::distance(tip(goal), goal.target));
+    return furthest;
+  }
+
+  // A far target is first drawn to within the chain's reach: the search then has little left to gain that it cannot have.
+  State from(State state) {
+    place(state);
+    std::vector<glm::dvec3> targets;
+    bool drawn = false;
+    for (const Goal& goal : goals_) {
+      const glm::dvec3 base = pivot(goal.first), off = goal.target - base;
+      const double away = glm::length(off);
+      const bool far = away > goal.length && !settings_.move_root;
+      targets.push_back(far ? base + off * (goal.length / away) : goal.target);
+      drawn |= far;
+    }
+    if (settings_.pole) state = search(std::move(state), targets, true, kNoProgress);
+    if (drawn) state = search(std::move(state), targets, false, kRoughly);
+    for (size_t g = 0; g < goals_.size(); ++g) targets[g] = goals_[g].target;
+    return search(std::move(state), targets, false, kNoProgress);
+  }
+
+  int rows(bool pole) const { return static_cast<int>(3 * goals_.size()) + (pole ? 1 : 0); }
+
+  // How far the first chain's last joint lies beside the half plane through its base, its tip and the pole, mm; its gradient.
+  double beside_pole(glm::dvec3& normal) const {
+    const Goal& goal = goals_[0];
+    const glm::dvec3 base = pivot(goal.first), along = tip(goal) - base, joint = pivot(goal.bone) - base;
+    glm::dvec3 towards = *settings_.pole - base;
+    const double squared = glm::dot(along, along);
+    if (squared < 1e-12) return 0;
+    towards -= along * (glm::dot(towards, along) / squared);
+    const double length = glm::length(towards);
+    if (length < 1e-9) return 0;
+    towards /= length;
+    const glm::dvec3 across = joint - along * (glm::dot(joint, along) / squared);
+    normal = glm::length(across) * towards - across;  // from where the joint is to where it should be
+    const double off = glm::length(normal);
+    if (off > 0) normal /= off;
+    return off;
+  }
+
+  void errors(const std::vector<glm::dvec3>& targets, bool pole, Eigen::VectorXd& e, glm::dvec3& pole_normal) const {
+    for (size_t g = 0; g < goals_.size(); ++g) {
+      const glm::dvec3 off = goals_[g].weight * (targets[g] - tip(goals_[g]));
+      for (int axis = 0; axis < 3; ++axis) e[3 * g + axis] = off[axis];
+    }
+    if (pole) e[rows(true) - 1] = kPoleWeight * beside_pole(pole_normal);
+  }
+
+  void jacobian(const State& state, bool pole, const glm::dvec3& pole_normal, Eigen::MatrixXd& J) const {
+    J.setZero();
+    int column = 0;
+    for (const Joint& joint : state.joints) {
+      glm::dvec3 axes[3];
+      joint.turning_axes(axes);
+      const int parent = armature_.bones[joint.bone].parent;
+      const glm::dvec3 at = pivot(joint.bone);
+      for (int i = 0; i < joint.parameters(); ++i, ++column) {
+        const glm::dvec3 axis = parent < 0 ? axes[i] : posed_[parent].rotation * axes[i];
+        for (size_t g = 0; g < goals_.size(); ++g)
+          if (goals_[g].moved_by[joint.bone]) {
+            const glm::dvec3 moved = goals_[g].weight * glm::cross(axis, tip(goals_[g]) - at);
+            for (int r = 0; r < 3; ++r) J(3 * g + r, column) = moved[r];
+          }
+        if (pole && goals_[0].moved_by[joint.bone])
+          J(rows(true) - 1, column) = kPoleWeight * glm::dot(pole_normal, glm::cross(axis, pivot(goals_[0].bone) - at));
+      }
+    }
+    if (settings_.move_root)
+      for (int i = 0; i < 3; ++i, ++column)
+        for (size_t g = 0; g < goals_.size(); ++g) J(3 * g + i, column) = goals_[g].weight;
+  }
+
+  // Leaves out the parameters that a step would push beyond their limits, until none is.
+  Eigen::VectorXd damped_step(const State& state, const Eigen::VectorXd& e, const Eigen::MatrixXd& J, double damping) const {
+    Eigen::MatrixXd free = J;
+    Eigen::VectorXd step;
+    for (int round = 0; round < 4; ++round) {
+      Eigen::MatrixXd normal = free * free.transpose();
+      normal.diagonal().array() += damping;
+      step = free.transpose() * normal.llt().solve(e);
+      bool again = false;
+      int column = 0;
+      for (const Joint& joint : state.joints)
+        for (int i = 0; i < joint.parameters(); ++i, ++column)
+          if (step[column] != 0 && joint.is_held(i, step[column])) {
+            free.col(column).setZero();
+            step[column] = 0;
+            again = true;
+          }
+      if (!again) break;
+    }
+    const double largest = step.size() ? step.head(step.size() - (settings_.move_root ? 3 : 0)).cwiseAbs().maxCoeff() : 0;
+    if (largest > kLongestStep) step *= kLongestStep / largest;
+    return step;
+  }
+
+  void change(State& state, const Eigen::VectorXd& step) const {
+    int column = 0;
+    for (Joint& joint : state.joints) {
+      joint.change(step.data() + column);
+      column += joint.parameters();
+    }
+    if (settings_.move_root) state.root += glm::dvec3(step[column], step[column + 1], step[column + 2]);
+  }
+
+  bool has_arrived(const std::vector<glm::dvec3>& targets) const {
+    bool arrived = true;
+    for (size_t g = 0; g < goals_.size(); ++g) arrived &= glm::distance(tip(goals_[g]), targets[g]) <= 0.5 * settings_.tolerance;
+    return arrived;
+  }
+
+  // Damping is mm^2 per radian^2, against the squared levers of the chain.
+  State search(State state, const std::vector<glm::dvec3>& targets, bool pole, double no_progress) {
+    if (parameters_ == 0) return state;
+    Eigen::VectorXd e(rows(pole));
+    Eigen::MatrixXd J(rows(pole), parameters_);
+    glm::dvec3 pole_normal(0);
+    place(state);
+    errors(targets, pole, e, pole_normal);
+    double error = e.squaredNorm(), damping = 1e-3;
+    for (int i = 0; i < kSteps && !(has_arrived(targets) && !pole); ++i) {
+      jacobian(state, pole, pole_normal, J);
+      const double lever = std::max(J.squaredNorm() / J.rows(), 1e-12);
+      bool better = false;
+      double gained = 0;
+      while (!better && damping < 1e8) {
+        State next = state;
+        change(next, damped_step(state, e, J, damping * lever));
+        place(next);
+        Eigen::VectorXd after(e.size());
+        errors(targets, pole, after, pole_normal);
+        better = after.squaredNorm() < error;
+        if (better) {
+          gained = error - after.squaredNorm();
+          error = after.squaredNorm();
+          e = after;
+          state = std::move(next);
+          damping = std::max(damping * 0.2, 1e-9);
+        } else {
+          damping *= 6;
+        }
+      }
+      if (!better) {
+        place(state);
+        break;
+      }
+      if (gained < no_progress * error) break;
+    }
+    return state;
+  }
+
+  const Armature& armature_;
+  const Pose& start_;
+  const ReachSettings& settings_;
+  std::vector<Goal> goals_;
+  std::vector<int> needed_, joint_of_;  // bones above the goals; their place among the joints, -1 where they do not move
+  State initial_;
+  int parameters_ = 0;
+  std::vector<RigidTransform> posed_;
+};
+
+}  // namespace
+
+Reach reach(const Armature& armature, const Pose& start, const std::vector<ReachGoal>& goals, const ReachSettings& settings) {
+  if (goals.empty()) return {start, 0, true};
+  for (const ReachGoal& goal : goals) {
+    if (goal.bone < 0 || goal.bone >= std::ssize(armature.bones))
+      throw Error("there is no such bone", "goal for bone " + std::to_string(goal.bone), "name one of the rig's bones");
+    if (!std::isfinite(goal.target.x + goal.target.y + goal.target.z))
+      throw Error("the target is not a place", "goal for bone " + armature.bones[goal.bone].name, "give three finite numbers");
+  }
+  return Search(armature, start, goals, settings).run();
+}
+
+}  // namespace limber
