@@ -37,6 +37,7 @@ void start_binding(Editor& editor, BindingMethod method) {
       return next;
     };
   });
+  editor.step_of_job[id] = StepOfWork::Skin;
   editor.after_job[id] = [method, report](Editor& e, const JobStatus& job) {
     if (job.state != JobState::Done || !e.document().weights) return;
     e.messages.ok(label_of(method), grouped(e.document().weights->size()) + " voxels follow " + std::to_string(e.document().armature->bones.size()) + " bones");

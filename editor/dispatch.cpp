@@ -44,6 +44,8 @@ void on_key(Editor& editor, const KeyChanged& event) {
       editor.drag.reset();
     } else if (!editor.messages.errors.empty()) {
       editor.messages.errors.erase(editor.messages.errors.begin());
+    } else if (!editor.dialog && !editor.list_focus.list.empty()) {
+      editor.list_focus = {};
     } else if (!editor.dialog && editor.start_screen && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) {
       editor.start_screen = false;
     } else if (editor.dialog && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) {
@@ -62,7 +64,7 @@ void on_key(Editor& editor, const KeyChanged& event) {
     return;
   }
   if (ImGui::GetIO().WantTextInput && belongs_to_text(chord)) return;
-  if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) return;
+  if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId) || list_takes(editor, chord)) return;
   run_chord(editor, chord);
 }
 
@@ -76,6 +78,7 @@ bool over_widget(const Editor& editor) {
 
 // A press that may become a drag.
 void on_press(Editor& editor, MouseButton button) {
+  editor.list_focus = {};
   const ViewPlace* view = hovered_view(editor);
   if (!view || editor.drag || dialog_open(editor)) return;
   if (button == MouseButton::Left && over_widget(editor)) return;
@@ -106,6 +109,7 @@ void on_move(Editor& editor, const glm::vec2& from, const glm::vec2& to) {
     if (const glm::vec2 leap = editor.modal_wrap.leap(to); editor.modal && leap != glm::vec2(0)) editor.host.shift_pointer(leap);
     return;
   }
+  if (from != to && hovered_view(editor)) editor.list_focus = {};
   if (editor.pending_press && glm::distance(editor.pending_press->from, editor.input.pointer) >= kDragThreshold * editor.look.scale) {
     const PendingPress pending = *editor.pending_press;
     editor.pending_press.reset();

@@ -17,6 +17,7 @@
 #include "editor/host.h"
 #include "editor/keymap.h"
 #include "editor/layout.h"
+#include "editor/lists.h"
 #include "editor/look.h"
 #include "editor/messages.h"
 #include "editor/modal.h"
@@ -108,6 +109,7 @@ struct Editor {
   std::map<int, std::function<void(Editor&, const JobStatus&)>> after_job;  // what follows the end of a job, by id
   Path worker_program = "/proc/self/exe";                                  // what runs `limber job`
   std::map<int, Task> tasks;  // jobs whose end the editor meets, by id
+  std::map<int, StepOfWork> step_of_job;  // what a running job is for
   ProjectLife life;
   std::vector<std::function<bool(Editor&)>> each_frame;  // called once a frame until they return false
   Path project_path;  // empty: never saved
@@ -137,6 +139,13 @@ struct Editor {
   std::optional<Views> views;
   Selection selection;
   std::string tissue_search;
+  ListFocus list_focus;
+  std::optional<Renaming> renaming;
+  struct {
+    std::string search;
+    bool searching = false, focus_search = false;
+    std::map<std::string, bool> open;  // rows that were folded or unfolded
+  } outliner;
   struct {
     std::string name;
     double value = 0;

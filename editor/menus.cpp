@@ -75,8 +75,8 @@ std::vector<Menu> menus() {
         "view.ortho", "view.frame_selected", "view.frame_all", "> Navigate", "view.walk", "view.centre_on_pick", "view.orbit_left", "view.orbit_right", "view.orbit_up",
         "view.orbit_down", "view.zoom_in", "view.zoom_out", "<", "-", "view.solid", "view.xray_display", "view.tissue", "-", "> Clipping", "view.clip_box", "view.clip_plane", "view.reset_clipping",
         "<", "> Tissues", "view.hide", "view.isolate_selected", "view.reveal", "<", "> Slices", "slice.show_labels", "slice.show_outlines", "slice.next", "slice.previous", "<", "> Overlays",
-        "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.cross_hair", "<", "-", "view.sidebar", "view.tool_strip", "view.results", "view.console", "view.full_screen"}},
-      {"Help", {"help.guide", "help.keys", "help.tour", "-", "search.commands", "view.console", "help.last_error", "help.system_facts", "-", "help.about"}},
+        "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.bones", "view.cross_hair", "<", "-", "view.find", "view.sidebar", "view.tool_strip", "view.results", "view.console", "view.full_screen"}},
+      {"Help", {"help.guide", "help.keys", "help.tour", "help.new", "-", "search.commands", "view.console", "help.last_error", "help.system_facts", "-", "help.about"}},
   };
 }
 
@@ -84,6 +84,11 @@ Menu pointer_menu(const std::string& name, ViewId view) {
   if (name == "Views") return {name, {"view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom", "view.opposite", "-", "view.ortho", "view.frame_selected", "view.frame_all", "view.walk"}};
   if (name == "Display") return {name, {"view.solid", "view.xray_display", "view.tissue", "-", "view.clip_box", "view.clip_plane"}};
   if (name == "Workspaces") return {name, {"workspace.rig", "workspace.skin", "workspace.pose", "workspace.resample"}};
+  if (name == "Tissue")
+    return {name, {"view.hide", "view.isolate_selected", "view.reveal", "view.frame_selected", "-", "edit.rename", "prepare.merge"}};
+  if (name == "Volume") return {name, {"view.reveal", "-", "prepare.regrid", "prepare.orient", "prepare.crop", "prepare.pad", "prepare.specks", "prepare.statistics", "-", "file.export_volume", "file.export_tissues"}};
+  if (name == "Armature") return {name, {"view.bones", "-", "skin.heat", "pose.flex", "pose.clear", "-", "file.import_rig", "file.export_rig"}};
+  if (name == "Result") return {name, {"result.toggle", "edit.rename", "result.copy_report", "-", "result.delete", "result.delete_stale"}};
   if (view == ViewId::Body)
     return {"3D view", {"view.hide", "view.isolate_selected", "view.reveal", "-", "view.frame_selected", "view.frame_all", "view.centre_on_pick", "-", "view.clip_box", "view.clip_plane", "view.xray"}};
   return {name_of(view), {"view.hide", "view.isolate_selected", "view.reveal", "-", "slice.outline", "view.cross_hair", "view.frame_all", "-", "view.maximize"}};

@@ -162,6 +162,16 @@ void open_in_order(Editor& editor, std::vector<std::pair<FileKind, Path>> files,
   import_file(editor, kind, path, next);
 }
 
+StepOfWork step_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::Rig: return StepOfWork::Rig;
+    case FileKind::Weights: return StepOfWork::Skin;
+    case FileKind::Pose:
+    case FileKind::Motion: return StepOfWork::Pose;
+    default: return StepOfWork::Prepare;
+  }
+}
+
 }  // namespace
 
 FileKind kind_of(const Path& path) {
@@ -200,7 +210,7 @@ void open_files(Editor& editor, std::vector<Path> paths, Then then) {
 
 void open_volume(Editor& editor, const Path& path, Then then) {
   ask_about_unsaved(editor, [path, then](Editor& e) {
-    start_task(e, "Open " + path.filename().string(), [path, then, agreed = e.history.revision()](Progress& progress) -> Finish {
+    const int job = start_task(e, "Open " + path.filename().string(), [path, then, agreed = e.history.revision()](Progress& progress) -> Finish {
       VolumeFile file = read_volume(path, progress);
       auto opened = std::make_shared<Opened>();
       opened->document = with_volume(file);
@@ -219,11 +229,12 @@ void open_volume(Editor& editor, const Path& path, Then then) {
         replace_project(ed, opened);
       };
     });
+    e.step_of_job[job] = StepOfWork::Prepare;
   });
 }
 
 void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
-  start_task(editor, imported(path), [kind, path, then, before = editor.document()](Progress& progress) -> Finish {
+  const int job = start_task(editor, imported(path), [kind, path, then, before = editor.document()](Progress& progress) -> Finish {
     auto import = std::make_shared<Import>(read_import(kind, path, before, progress));
     return [import, kind, path, then, before](Editor& e) {
       if (!same_basis(kind, before, e.document()))
@@ -239,6 +250,7 @@ void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
       if (then) then(e);
     };
   });
+  editor.step_of_job[job] = step_of(kind);
 }
 
 const SampleFacts& facts_of(Sample sample) {
@@ -252,7 +264,7 @@ const SampleFacts& facts_of(Sample sample) {
 void open_sample(Editor& editor, Sample sample, Then then) {
   ask_about_unsaved(editor, [sample, then](Editor& e) {
     const SampleFacts& facts = facts_of(sample);
-    start_task(e, "Make sample: " + std::string(facts.name), [sample, then, &facts, agreed = e.history.revision()](Progress& progress) -> Finish {
+    const int job = start_task(e, "Make sample: " + std::string(facts.name), [sample, then, &facts, agreed = e.history.revision()](Progress& progress) -> Finish {
       const bool arm = sample == Sample::Arm || sample == Sample::ArmXray;
       Phantom phantom = arm ? make_arm_phantom(2, progress) : make_body_phantom(4, progress);
       auto opened = std::make_shared<Opened>();
@@ -278,6 +290,7 @@ void open_sample(Editor& editor, Sample sample, Then then) {
         replace_project(ed, opened);
       };
     });
+    e.step_of_job[job] = StepOfWork::Prepare;
   });
 }
 

@@ -38,7 +38,8 @@ struct Preferences {
   std::string scratch_folder;  // for what a resampling reads and writes; "": the system's
 
   Arrangements arrangements = default_arrangements();  // as the window was left; a project has its own
-  KeyChanges keys;
+  std::string keymap = "blender";  // the preset: also "maya"
+  KeyChanges keys;                 // from the preset's
   bool advanced_steps = false;
   std::vector<std::string> recent_commands;     // last first, at most kMostRecent
   std::map<std::string, int> command_counts;

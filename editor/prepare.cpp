@@ -88,6 +88,7 @@ void start_preparation(Editor& editor, Preparation preparation) {
       return next;
     };
   });
+  editor.step_of_job[id] = StepOfWork::Prepare;
   editor.after_job[id] = [label, note](Editor& e, const JobStatus& job) {
     if (job.state != JobState::Done) return;
     const bool lost = note->ends_with("gone");

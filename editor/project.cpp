@@ -41,6 +41,7 @@ bool poll_jobs(Editor& editor) {
     if (job.active()) continue;
     if (const auto follow = editor.after_job.extract(job.id)) follow.mapped()(editor, job);
     editor.jobs.dismiss(job.id);
+    editor.step_of_job.erase(job.id);
     if (!end_task(editor, job)) tell_of_ended(editor, job);
   }
   return true;

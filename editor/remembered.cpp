@@ -15,6 +15,7 @@ using Json = nlohmann::json;
 namespace {
 
 constexpr std::size_t kMostRecents = 30;
+constexpr std::size_t kMostFolders = 8;
 constexpr std::uint64_t kLargestSettings = 4 << 20;  // bytes
 constexpr const char* kSchema = "limber-remembered/1";
 
@@ -40,6 +41,12 @@ void add_recent(Remembered& remembered, const Path& path, std::int64_t time) {
   forget_recent(remembered, path);
   remembered.recents.insert(remembered.recents.begin(), {path, time});
   if (remembered.recents.size() > kMostRecents) remembered.recents.resize(kMostRecents);
+}
+
+void add_recent_folder(Remembered& remembered, const Path& folder) {
+  std::erase(remembered.recent_folders, folder);
+  remembered.recent_folders.insert(remembered.recent_folders.begin(), folder);
+  if (remembered.recent_folders.size() > kMostFolders) remembered.recent_folders.resize(kMostFolders);
 }
 
 std::string read_settings_text(const Path& file, const std::string& schema, std::string& warning) {
@@ -74,6 +81,10 @@ Remembered read_remembered(const Path& file, std::string& warning) {
   if (const auto folders = json.find("folders"); folders != json.end() && folders->is_object())
     for (const auto& [purpose, folder] : folders->items())
       if (folder.is_string()) remembered.folders[purpose] = folder.get<std::string>();
+  if (const auto list = json.find("recent_folders"); list != json.end() && list->is_array())
+    for (const Json& folder : *list)
+      if (folder.is_string() && Path(folder.get<std::string>()).is_absolute() && remembered.recent_folders.size() < kMostFolders)
+        remembered.recent_folders.push_back(folder.get<std::string>());
   take(json, "show_start", remembered.show_start);
   take(json, "hidden_files", remembered.hidden_files);
   take(json, "tour_step", remembered.tour_step);
@@ -84,6 +95,8 @@ void write_remembered(const Remembered& remembered, const Path& file) {
   Json json{{"schema", kSchema}, {"recent", Json::array()}, {"folders", Json::object()}};
   for (const Recent& recent : remembered.recents) json["recent"].push_back({{"path", recent.path.string()}, {"time", recent.time}});
   for (const auto& [purpose, folder] : remembered.folders) json["folders"][purpose] = folder.string();
+  json["recent_folders"] = Json::array();
+  for (const Path& folder : remembered.recent_folders) json["recent_folders"].push_back(folder.string());
   json["show_start"] = remembered.show_start;
   json["hidden_files"] = remembered.hidden_files;
   json["tour_step"] = remembered.tour_step;

@@ -23,6 +23,7 @@ struct Recent {
 struct Remembered {
   std::vector<Recent> recents;          // latest first
   std::map<std::string, Path> folders;  // of file dialogs, by purpose
+  std::vector<Path> recent_folders;     // of file dialogs, latest first
   bool show_start = true;
   bool hidden_files = false;
   int tour_step = 0;
@@ -39,6 +40,7 @@ struct RememberedOnDisk {
 };
 
 void add_recent(Remembered& remembered, const Path& path, std::int64_t time);
+void add_recent_folder(Remembered& remembered, const Path& folder);
 void forget_recent(Remembered& remembered, const Path& path);
 
 // `warning` says why a file could not be used; it is then set aside as NAME.damaged. A missing file is no failure.

@@ -137,6 +137,7 @@ void start_resampling(Editor& editor) {
   auto name = std::make_shared<std::string>();
   const std::string label = "Resample " + name_of_pose(*request.from.armature, *request.from.pose);
   const int id = editor.jobs.start(label, [request, name](Progress& progress) mutable { return resample_in_worker(request, name, progress); });
+  editor.step_of_job[id] = StepOfWork::Resample;
   editor.after_job[id] = [name](Editor& e, const JobStatus& job) {
     if (job.state == JobState::Done) tell(e, *name);
   };

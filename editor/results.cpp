@@ -120,6 +120,18 @@ std::shared_ptr<const Result> chosen_result(const Editor& editor) {
   return editor.document().results.empty() ? nullptr : editor.document().results.back();
 }
 
+void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name) {
+  Document next = editor.document();
+  const auto place = std::find(next.results.begin(), next.results.end(), result);
+  if (place == next.results.end() || name.empty() || name == result->name) return;
+  auto renamed = std::make_shared<Result>(*result);
+  renamed->name = unique_name(next.results, name);
+  *place = renamed;
+  const bool shown = editor.shown_result == result->name;
+  editor.history.commit("Rename " + result->name, std::move(next));
+  if (shown) editor.shown_result = renamed->name;
+}
+
 void show_posed(Editor& editor) {
   render::Scene& scene = editor.views->scene;
   const Document& document = editor.document();

@@ -50,6 +50,8 @@ std::string unique_name(const std::vector<std::shared_ptr<const Result>>& result
 std::shared_ptr<const Result> shown_result(const Editor& editor);
 // The one the tables are about: the shown one, else the last.
 std::shared_ptr<const Result> chosen_result(const Editor& editor);
+// Another name, made unique among the results. An edit.
+void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name);
 // Puts the shown result, or the pose of the moment, into the scene of this frame.
 void show_posed(Editor& editor);
 

@@ -20,6 +20,9 @@ using TaskWork = std::function<Finish(Progress&)>;
 // Meets a failure instead of the message that is shown otherwise. `error` is an Error's line.
 using Failure = std::function<void(Editor&, const std::string& error)>;
 
+// The steps from a volume to a posed one, for which a job may be at work.
+enum class StepOfWork { Prepare, Rig, Skin, Pose, Resample };
+
 struct Task {
   std::shared_ptr<Finish> finish;
   Failure failed;

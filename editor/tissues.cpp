@@ -27,7 +27,7 @@ void commit_looks(Editor& editor, const std::string& label, const std::function<
 
 std::string shown_name(const Tissue& tissue) {
   std::string name = tissue.name.empty() ? "Label " + std::to_string(tissue.label) : tissue.name;
-  if ( name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+  if (name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
   return name;
 }
 
@@ -87,6 +87,14 @@ void set_tissue(Editor& editor, const std::string& what, const Tissue& tissue) {
   Document next = editor.document();
   next.tissues = std::make_shared<const TissueTable>(std::move(table));
   commit(editor, what, std::move(next));
+}
+
+void rename_tissue(Editor& editor, Label label, const std::string& name) {
+  Tissue tissue = *editor.document().tissues->find(label);
+  if (name.empty() || name == tissue.name) return;
+  const std::string before = shown_name(tissue);
+  tissue.name = name;
+  set_tissue(editor, "Rename " + before, tissue);
 }
 
 void select_tissue(Editor& editor, Label label, bool extended) {

@@ -22,6 +22,8 @@ void reveal_tissues(Editor& editor);
 // Replaces the entry of that label. `what` names the edit: "Colour of Muscle".
 void set_tissue(Editor& editor, const std::string& what, const Tissue& tissue);
 
+void rename_tissue(Editor& editor, Label label, const std::string& name);
+
 // Chooses a tissue; extended, it is added to the chosen ones or taken out.
 void select_tissue(Editor& editor, Label label, bool extended);
 

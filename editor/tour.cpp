@@ -15,6 +15,11 @@ int hidden_tissues(const Editor& editor) {
   return count;
 }
 
+int statistics_opened(const Editor& editor) {
+  const auto count = editor.preferences.command_counts.find("prepare.statistics");
+  return count == editor.preferences.command_counts.end() ? 0 : count->second;
+}
+
 bool turned(const Editor& editor, const TourStart& start) {
   return std::abs(glm::dot(editor.views->body.camera.world_from_view, start.turn)) < 0.999 && !editor.drag;
 }
@@ -25,8 +30,16 @@ bool undid(const Editor& editor, const TourStart& start) { return editor.history
 bool sees_slices(const Editor& editor, const TourStart&) { return editor.arrangement().views == ViewLayout::Four; }
 bool moved_cross_hair(const Editor& editor, const TourStart& start) { return glm::distance(editor.views->cross_hair, start.cross_hair) > 1 && !editor.drag; }
 
+bool counted(const Editor& editor, const TourStart& start) { return statistics_opened(editor) > start.statistics && !editor.dialog; }
+bool weighted(const Editor& editor, const TourStart&) { return editor.document().weights != nullptr; }
+bool bent(const Editor& editor, const TourStart&) {
+  const Document& document = editor.document();
+  return document.armature && document.pose && *document.pose != rest_pose(*document.armature);
+}
+bool resampled(const Editor& editor, const TourStart& start) { return editor.document().results.size() > start.results; }
+
 TourStart start_of(const Editor& editor) {
-  return {editor.views->body.camera.world_from_view, editor.views->cross_hair, editor.history.position(), hidden_tissues(editor)};
+  return {editor.views->body.camera.world_from_view, editor.views->cross_hair, editor.history.position(), hidden_tissues(editor), editor.document().results.size(), statistics_opened(editor)};
 }
 
 void show_tour(Editor& editor) {
@@ -47,6 +60,11 @@ const std::vector<TourStep>& tour_steps() {
       {"Take it back", "Every edit can be undone, and done again.", "top/Edit", "edit.undo", undid},
       {"See slices", "Four views: the body and three slices through it, linked by the cross-hair.", "view.four", "view.four", sees_slices},
       {"Move the cross-hair", "Press Shift and the right button in any view: the slices follow.", "3D view/view", "view.place_cross_hair", moved_cross_hair},
+      {"Count the tissue", "The steps lead from a volume to a posed one. Statistics lists what each tissue amounts to; Advanced has tools that prepare a volume.", "Steps/Prepare/Statistics",
+       "prepare.statistics", counted},
+      {"Let tissue follow the bones", "Compute spreads weights from the bones through the flesh. It runs beside your work.", "Steps/Skin/Compute", "skin.heat", weighted},
+      {"Bend the elbow", "Flex turns a bone about its joint, in degrees. Choose Forearm.", "Steps/Pose/Flex...", "pose.flex", bent},
+      {"Resample", "Writes the posed arm as a new label volume, with a report of what changed.", "Steps/Resample/Resample", "resample.run", resampled},
   };
   return steps;
 }

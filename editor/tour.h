@@ -20,6 +20,8 @@ struct TourStart {
   glm::dvec3 cross_hair{0};
   std::int64_t position = 0;  // in the history
   int hidden = 0;             // tissues
+  std::size_t results = 0;
+  int statistics = 0;         // how often they were counted
 };
 
 struct Tour {

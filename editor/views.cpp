@@ -71,9 +71,9 @@ void update_scene(Views& views, const Document& document, const Selection& selec
   if (visibility && visibility->clip_box.enabled) scene.clip.box = {visibility->clip_box.low, visibility->clip_box.high};
   if (visibility && visibility->clip_plane.enabled) scene.clip.plane = {visibility->clip_plane.point, visibility->clip_plane.normal};
   scene.outlined = selection.tissue;
-  scene.armature = document.armature;
+  scene.armature = views.bones ? document.armature : nullptr;
   scene.bones_in_front = views.display == render::Display::XRay;
-  scene.bones.assign(document.armature ? document.armature->bones.size() : 0, {});
+  scene.bones.assign(scene.armature ? scene.armature->bones.size() : 0, {});
   for (const int bone : selection.bones)
     if (bone < std::ssize(scene.bones)) scene.bones[bone].selected = true;
   if (selection.bone && *selection.bone < std::ssize(scene.bones)) scene.bones[*selection.bone].active = scene.bones[*selection.bone].selected = true;

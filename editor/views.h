@@ -72,7 +72,7 @@ struct Views {
   bool show_cross_hair = true;
   render::Display display = render::Display::Solid;
   render::SliceDisplay slice_display = render::SliceDisplay::Labels;
-  bool grid = true, axes = true, scale_bar = true, letters = true;
+  bool grid = true, axes = true, scale_bar = true, letters = true, bones = true;
   ViewId active = ViewId::Body;
   Hover hover;
 

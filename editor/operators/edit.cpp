@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
+#include "editor/results.h"
 
 namespace limber::editor {
 
@@ -9,12 +10,32 @@ namespace {
 std::string nothing_to_undo(const Editor& editor) { return editor.history.can_undo() ? "" : "Nothing to undo"; }
 std::string nothing_to_redo(const Editor& editor) { return editor.history.can_redo() ? "" : "Nothing to redo"; }
 
+// The row that the keyboard is in is renamed by the list itself; this is for what is chosen, from anywhere.
+std::string nothing_to_rename(const Editor& editor) {
+  return editor.shown_popup == "Result" || editor.selection.tissue || shown_result(editor) ? "" : "Choose a tissue or show a result first";
+}
+
+void rename(Editor& editor) {
+  editor.arrangement().sidebar = true;
+  const auto result = shown_result(editor);
+  const bool of_result = result && (!editor.selection.tissue || editor.shown_popup == "Result");
+  if (of_result) {
+    editor.open_sections["Outliner"] = editor.outliner.open["results"] = true;
+    return begin_renaming(editor, "outlinerresult " + result->name, result->name);
+  }
+  const Tissue* tissue = editor.document().tissues->find(*editor.selection.tissue);
+  editor.open_sections["Tissues"] = true;
+  editor.tissue_search.clear();
+  begin_renaming(editor, "tissues" + std::to_string(tissue->label), tissue->name);
+}
+
 }  // namespace
 
 std::vector<Operator> edit_operators() {
   return {
       {"edit.undo", "Undo", icon::kUndo, "Edit", "Takes the last edit back.", [](Editor& e) { e.history.undo(); }, nothing_to_undo},
       {"edit.redo", "Redo", icon::kRedo, "Edit", "Does the edit again that was taken back.", [](Editor& e) { e.history.redo(); }, nothing_to_redo},
+      {"edit.rename", "Rename", icon::kRename, "Edit", "Gives the chosen tissue, or the result that is shown, another name.", rename, nothing_to_rename},
       {"edit.history", "History", icon::kHistory, "Edit", "Opens the list of edits in the sidebar.",
        [](Editor& e) {
          e.arrangement().sidebar = true;

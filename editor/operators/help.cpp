@@ -2,11 +2,14 @@
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
 #include "editor/panels/help.h"
+#include "editor/panels/reader.h"
 
 namespace limber::editor {
 
 std::vector<Operator> help_operators() {
   return {
+      {"help.guide", "User guide", icon::kHelp, "Help", "How to go from a volume to a posed one, page by page.", [](Editor& e) { e.open_dialog(open_document("User guide", "docs/guide.md")); }},
+      {"help.new", "What is new", icon::kInfo, "Help", "What this version can do that the one before could not.", [](Editor& e) { e.open_dialog(open_document("What is new", "docs/new.md")); }},
       {"help.keys", "Keys", icon::kKeyboard, "Help", "Every key and what it does.", [](Editor& e) { e.open_dialog(open_keys_page()); }},
       {"help.last_error", "Details", icon::kError, "Help", "Shows the last failure of a job again, with what to do.",
        [](Editor& e) { e.messages.show_again(e.messages.last_failure); },

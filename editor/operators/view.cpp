@@ -42,6 +42,11 @@ void open_context_menu(Editor& editor) {
   editor.open_popup = "context";
 }
 
+void search_outliner(Editor& editor) {
+  editor.arrangement().sidebar = true;
+  editor.open_sections["Outliner"] = editor.outliner.searching = editor.outliner.focus_search = true;
+}
+
 void toggle_xray(Editor& editor) {
   editor.views->display = editor.views->display == render::Display::XRay ? render::Display::Solid : render::Display::XRay;
 }
@@ -64,7 +69,9 @@ std::vector<Operator> view_operators() {
       overlay_operator("view.axes", "Axes", "Shows the axis ball.", &Views::axes),
       overlay_operator("view.scale_bar", "Scale bar", "Shows a scale bar in every view.", &Views::scale_bar),
       overlay_operator("view.letters", "Orientation letters", "Shows which side of the body is where.", &Views::letters),
+      overlay_operator("view.bones", "Bones", "Shows the skeleton in the views.", &Views::bones),
       overlay_operator("view.cross_hair", "Cross-hair", "Shows where the slices meet.", &Views::show_cross_hair),
+      {"view.find", "Search the project", icon::kSearch, "View", "Finds a tissue, a bone or a result in the outliner.", search_outliner},
       {"view.sidebar", "Sidebar", "", "View", "Opens or closes the sidebar.",
        [](Editor& e) { e.arrangement().sidebar = e.layout.sidebar.empty(); }, nullptr, [](const Editor& e) { return !e.layout.sidebar.empty(); }},
       {"view.tool_strip", "Tool strip", "", "View", "Shows or hides the tools at the left.",

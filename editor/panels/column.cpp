@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/panels/column.h"
 
+#include <utility>
+
 #include "editor/icons.h"
 
 namespace limber::editor {
@@ -59,12 +61,19 @@ Rect Column::property(const std::string& label) {
   return {{rect.low.x + look.px(122), rect.low.y + inset}, {rect.high.x - look.px(10), rect.high.y - inset}};
 }
 
-bool Column::list_row(Rect& rect, int index, bool chosen) {
+bool Column::list_row(Rect& rect, int index, bool chosen, const std::string& list) {
   const Look& look = editor_.look;
   rect = row(24);
+  const bool focused = !list.empty() && has_focus(editor_, list, index);
+  if (focused && std::exchange(editor_.list_focus.reveal, false)) {
+    if (rect.low.y < area_.low.y) ImGui::SetScrollY(ImGui::GetScrollY() - (area_.low.y - rect.low.y));
+    if (rect.high.y > area_.high.y) ImGui::SetScrollY(ImGui::GetScrollY() + rect.high.y - area_.high.y);
+    editor_.touch();
+  }
   if (!ImGui::IsRectVisible(im(rect.low), im(rect.high))) return false;
   if (chosen) fill(rect, look.theme.accent_soft);
   else if (index % 2) fill(rect, look.theme.row_alt);
+  if (focused) outline(rect, look.theme.accent_text, 0, 2 * look.line());
   return true;
 }
 

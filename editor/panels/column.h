@@ -26,7 +26,8 @@ class Column {
   Rect property(const std::string& label);
   // Of a list: 24 high, every second one shaded, chosen ones in accent. Also for rows that lie outside what is seen:
   // those return false and need not be drawn.
-  bool list_row(Rect& rect, int index, bool chosen);
+  // `list`: the one that has the keyboard marks its row and brings it into sight.
+  bool list_row(Rect& rect, int index, bool chosen, const std::string& list = "");
   const Rect& head() const { return head_; }  // of the section begun last
 
  private:

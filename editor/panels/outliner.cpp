@@ -1,72 +1,304 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the project holds: the volume, its tissues, the bones, the results.
+// What the project holds, as a tree: the volume with its tissues, the bones by their parents, the results. A triangle
+// folds, an eye shows and hides, a double click or F2 renames, the right button lists what can be done. The search keeps
+// the parents of what it finds.
+#include <algorithm>
+
+#include <imgui_internal.h>
+
+#include "editor/fields.h"
+#include "editor/fuzzy.h"
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
+#include "editor/prepare.h"
+#include "editor/results.h"
 #include "editor/tissues.h"
 
 namespace limber::editor {
 
 namespace {
 
+constexpr const char kList[] = "outliner";
+constexpr int kManyBones = 24;     // more are folded below their first generation
+constexpr int kDeepest = 8;        // that still moves to the right
+
 struct Row {
-  std::string name, count;
-  const char* icon;
-  int depth = 0;
+  enum class Kind { Volume, Tissues, Tissue, Armature, Bone, Results, Result } kind;
+  std::string key, name, count;
+  const char* icon = "";
+  int depth = 0, index = 0;       // among its kind
   bool folds = false, open = false, chosen = false;
+  std::optional<bool> visible;    // none: no eye
+  std::optional<Colour> swatch;
 };
 
-// Returns whether its name was pressed; the triangle folds by itself.
-Pressed draw_row(Editor& editor, Column& column, int index, const Row& row, bool* open) {
-  const Look& look = editor.look;
-  Rect rect;
-  if (!column.list_row(rect, index, row.chosen)) return {};
-  const PathScope path(editor, row.name + "#" + std::to_string(index));
-  const float x = rect.low.x + look.px(8 + 16 * row.depth);
-  if (row.folds) {
-    const Rect fold{{x, rect.low.y}, {x + look.px(18), rect.high.y}};
-    if (press_area(editor, "fold", fold).clicked && open) *open = !*open;
-    put_icon(look.fonts.regular, look.theme.text2, fold, row.open ? icon::kOpened : icon::kClosed);
+class Tree {
+ public:
+  explicit Tree(const Editor& editor) : editor_(editor), document_(editor.document()) {
+    add_volume();
+    add_bones();
+    add_results();
+    if (!editor.outliner.search.empty()) keep_found();
   }
-  const Rect name{{x + look.px(20), rect.low.y}, {rect.high.x - look.px(104), rect.high.y}};
-  const Pressed pressed = press_area(editor, "name", name);
-  put_icon(look.fonts.regular, row.chosen ? look.theme.accent_text : look.theme.text2, Rect{name.low, {name.low.x + look.px(18), name.high.y}}, row.icon);
-  put_text(editor, look.fonts.regular, look.theme.text, Rect{{name.low.x + look.px(24), name.low.y}, name.high}, row.name);
-  put_text(editor, look.fonts.small, row.chosen ? look.theme.text2 : look.theme.text3, Rect{{name.high.x, rect.low.y}, {rect.high.x - look.px(10), rect.high.y}}, row.count,
-           Align::Right);
-  return pressed;
+  std::vector<Row> rows;
+
+ private:
+  bool open(const std::string& key, bool at_first) const {
+    if (!editor_.outliner.search.empty()) return true;
+    const auto found = editor_.outliner.open.find(key);
+    return found == editor_.outliner.open.end() ? at_first : found->second;
+  }
+
+  void add_volume() {
+    if (!document_.volume) return;
+    const bool shown = any_visible();
+    rows.push_back({Row::Kind::Volume, "volume", editor_.name.empty() ? "Volume" : editor_.name, size_text(document_.volume->grid.size), icon::kVolume, 0, 0, true, open("volume", true)});
+    rows.back().visible = shown;
+    if (!rows.back().open) return;
+    const auto& tissues = document_.tissues->tissues;
+    rows.push_back({Row::Kind::Tissues, "tissues", "Tissues", std::to_string(tissues.size()), icon::kTissues, 1, 0, !tissues.empty(), open("tissues", false)});
+    rows.back().visible = shown;
+    if (!rows.back().open) return;
+    for (int i = 0; i < std::ssize(tissues); ++i) {
+      const Tissue& tissue = tissues[i];
+      rows.push_back({Row::Kind::Tissue, "tissue " + std::to_string(tissue.label), shown_name(tissue), std::to_string(tissue.label), "", 2, i});
+      rows.back().chosen = editor_.selection.tissues.contains(tissue.label);
+      rows.back().visible = look_of(document_, tissue.label).visible;
+      rows.back().swatch = rgb(tissue.colour.r, tissue.colour.g, tissue.colour.b);
+    }
+  }
+
+  bool any_visible() const {
+    return std::any_of(document_.tissues->tissues.begin(), document_.tissues->tissues.end(), [&](const Tissue& tissue) { return look_of(document_, tissue.label).visible; });
+  }
+
+  void add_bones() {
+    if (!document_.armature) return;
+    const auto& bones = document_.armature->bones;
+    rows.push_back({Row::Kind::Armature, "armature", "Armature", std::to_string(bones.size()), icon::kRig, 0, 0, !bones.empty(), open("armature", true)});
+    rows.back().visible = editor_.views->bones;
+    if (!rows.back().open) return;
+    children_.assign(bones.size() + 1, {});
+    for (int b = 0; b < std::ssize(bones); ++b) children_[bones[b].parent + 1].push_back(b);
+    for (const int root : children_[0]) add_bone(root, 1);
+  }
+
+  void add_bone(int b, int depth) {
+    const Bone& bone = document_.armature->bones[b];
+    const std::string key = "bone " + bone.name;
+    rows.push_back({Row::Kind::Bone, key, bone.name, "", "", std::min(depth, kDeepest), b, !children_[b + 1].empty(), open(key, std::ssize(document_.armature->bones) <= kManyBones || depth < 2)});
+    rows.back().chosen = editor_.selection.bones.contains(b);
+    if (!rows.back().open) return;
+    for (const int child : children_[b + 1]) add_bone(child, depth + 1);
+  }
+
+  void add_results() {
+    if (document_.results.empty()) return;
+    rows.push_back({Row::Kind::Results, "results", "Results", std::to_string(document_.results.size()), icon::kResample, 0, 0, true, open("results", true)});
+    if (!rows.back().open) return;
+    const auto shown = shown_result(editor_);
+    for (int i = 0; i < std::ssize(document_.results); ++i) {
+      const Result& result = *document_.results[i];
+      rows.push_back({Row::Kind::Result, "result " + result.name, result.name, method_name(result.method), icon::kResample, 1, i});
+      rows.back().chosen = rows.back().visible.emplace(document_.results[i] == shown);
+    }
+  }
+
+  // From the last row up: a parent stays for a child that stays.
+  void keep_found() {
+    std::vector<Row> kept;
+    int needed = 0;  // depth of the parents that are wanted
+    for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
+      const bool found = contains_ignoring_case(row->name, editor_.outliner.search);
+      if (!found && row->depth >= needed) continue;
+      needed = row->depth;
+      kept.push_back(*row);
+    }
+    rows.assign(kept.rbegin(), kept.rend());
+  }
+
+  const Editor& editor_;
+  const Document& document_;
+  std::vector<std::vector<int>> children_;  // of each bone, the first list without a parent
+};
+
+// ---- what is done with a row
+
+void toggle_eye(Editor& editor, const Row& row, bool alone) {
+  std::set<Label> all;
+  if (editor.document().tissues)
+    for (const Tissue& tissue : editor.document().tissues->tissues) all.insert(tissue.label);
+  switch (row.kind) {
+    case Row::Kind::Volume:
+    case Row::Kind::Tissues: return show_tissues(editor, all, !*row.visible);
+    case Row::Kind::Tissue: {
+      const Label label = editor.document().tissues->tissues[row.index].label;
+      return alone ? solo_tissues(editor, {label}) : show_tissues(editor, {label}, !*row.visible);
+    }
+    case Row::Kind::Armature: editor.views->bones = !editor.views->bones; return editor.touch();
+    case Row::Kind::Result: editor.shown_result = *row.visible ? "" : row.name; return editor.touch();
+    default: return;
+  }
 }
 
-std::string size_text(const Grid& grid) {
-  return std::to_string(grid.size.x) + "\u00d7" + std::to_string(grid.size.y) + "\u00d7" + std::to_string(grid.size.z);
+void choose(Editor& editor, const Row& row, bool extended) {
+  Selection& selection = editor.selection;
+  if (row.kind == Row::Kind::Tissue) return select_tissue(editor, editor.document().tissues->tissues[row.index].label, extended);
+  if (row.kind != Row::Kind::Bone) return;
+  if (!extended) selection.bones.clear();
+  if (extended && selection.bones.erase(row.index) > 0) {
+    if (selection.bone == row.index) selection.bone = selection.bones.empty() ? std::nullopt : std::optional(*selection.bones.begin());
+    return;
+  }
+  selection.bone = row.index;
+  selection.bones.insert(row.index);
+}
+
+bool can_rename(const Row& row) { return row.kind == Row::Kind::Tissue || row.kind == Row::Kind::Result; }
+
+void rename(Editor& editor, const Row& row, const std::string& name) {
+  if (row.kind == Row::Kind::Tissue) rename_tissue(editor, editor.document().tissues->tissues[row.index].label, name);
+  if (row.kind == Row::Kind::Result) rename_result(editor, editor.document().results[row.index], name);
+}
+
+void open_menu(Editor& editor, const Row& row) {
+  switch (row.kind) {
+    case Row::Kind::Volume:
+    case Row::Kind::Tissues: editor.open_popup = "Volume"; return;
+    case Row::Kind::Armature:
+    case Row::Kind::Bone: editor.open_popup = "Armature"; return;
+    case Row::Kind::Tissue: editor.open_popup = "Tissue"; return;
+    case Row::Kind::Results: return;
+    case Row::Kind::Result: editor.shown_result = row.name; editor.open_popup = "Result"; return;
+  }
+}
+
+// ---- drawing
+
+void draw_fold(Editor& editor, const Row& row, const Rect& rect) {
+  if (!row.folds) return;
+  if (press_area(editor, "fold", rect).clicked) {
+    editor.outliner.open[row.key] = !row.open;
+    editor.touch();
+  }
+  put_icon(editor.look.fonts.regular, editor.look.theme.text2, rect, row.open ? icon::kOpened : icon::kClosed);
+}
+
+void draw_eye(Editor& editor, const Row& row, const Rect& rect) {
+  if (!row.visible) return;
+  const Look& look = editor.look;
+  const Pressed eye = press_area(editor, "eye", rect);
+  put_icon(look.fonts.regular, *row.visible || eye.hovered ? look.theme.text2 : look.theme.text3, rect, *row.visible ? icon::kVisible : icon::kHidden);
+  if (eye.hovered) tooltip(editor, rect, *row.visible ? "Hide" : "Show", row.kind == Row::Kind::Tissue ? "Ctrl+click shows only this tissue." : "");
+  if (eye.clicked) toggle_eye(editor, row, editor.input.down(Key::Ctrl));
+}
+
+// Of a bone, in its workspace's colours.
+void draw_bone_icon(const Look& look, const Rect& rect, Colour colour) {
+  const glm::vec2 middle = rect.centre();
+  const float wide = look.px(4), high = look.px(6);
+  ImGui::GetWindowDrawList()->AddQuadFilled({middle.x, middle.y - high}, {middle.x + wide, middle.y - high / 3}, {middle.x, middle.y + high}, {middle.x - wide, middle.y - high / 3}, colour);
+}
+
+void draw_row(Editor& editor, Column& column, int index, const Row& row) {
+  const Look& look = editor.look;
+  Rect rect;
+  const std::string renamed = kList + row.key;
+  if (is_renaming(editor, renamed) && !editor.renaming->shown) focus_list(editor, kList, index);
+  if (!column.list_row(rect, index, row.chosen, kList)) return;
+  const PathScope path(editor, row.key);
+  const float x = rect.low.x + look.px(8 + 14 * static_cast<float>(row.depth)), end = rect.high.x - look.px(30);
+  draw_fold(editor, row, {{x, rect.low.y}, {x + look.px(16), rect.high.y}});
+  draw_eye(editor, row, {{end, rect.low.y}, {rect.high.x - look.px(6), rect.high.y}});
+
+  const Rect icon{{x + look.px(18), rect.low.y}, {x + look.px(36), rect.high.y}};
+  const bool active_bone = row.kind == Row::Kind::Bone && editor.selection.bone == row.index;
+  if (row.swatch) {
+    const glm::vec2 side(look.px(7));
+    fill({glm::round(icon.centre() - side), glm::round(icon.centre() + side)}, *row.swatch, look.px(3));
+  } else if (row.kind == Row::Kind::Bone) {
+    draw_bone_icon(look, icon, active_bone ? look.theme.select : row.chosen ? look.theme.accent_text : look.theme.text2);
+  } else {
+    put_icon(look.fonts.regular, row.chosen ? look.theme.accent_text : look.theme.text2, icon, row.icon);
+  }
+
+  const float count = row.count.empty() ? 0 : text_size(look.fonts.small, row.count).x + look.px(8);
+  const Rect name{{icon.high.x, rect.low.y}, {end, rect.high.y}}, words{{name.low.x + look.px(4), rect.low.y}, {end - count, rect.high.y}};
+  if (is_renaming(editor, renamed)) {
+    std::string accepted = row.name;
+    if (rename_field(editor, {words.low + glm::vec2(0, look.px(1)), words.high - glm::vec2(0, look.px(1))}, accepted)) rename(editor, row, accepted);
+    return;
+  }
+  const Pressed pressed = press_area(editor, "name", name);
+  const bool faint = row.visible == false && row.kind != Row::Kind::Result;
+  put_text(editor, look.fonts.regular, faint ? (row.chosen ? look.theme.text2 : look.theme.text3) : look.theme.text, words, row.name);
+  put_text(editor, look.fonts.small, row.chosen ? look.theme.text2 : look.theme.text3, Rect{{end - count, rect.low.y}, {end - look.px(4), rect.high.y}}, row.count, Align::Right);
+  if (pressed.clicked) {
+    focus_list(editor, kList, index);
+    choose(editor, row, editor.input.down(Key::Ctrl) || editor.input.down(Key::Shift));
+  }
+  if (pressed.double_clicked) can_rename(row) ? begin_renaming(editor, renamed, row.name) : void(editor.outliner.open[row.key] = !row.open);
+  if (pressed.right_clicked) {
+    if (!row.chosen) choose(editor, row, false);
+    open_menu(editor, row);
+  }
+}
+
+void take_key(Editor& editor, const std::vector<Row>& rows) {
+  const ListKey key = list_key(editor, kList, static_cast<int>(rows.size()));
+  if (key == ListKey::None || rows.empty()) return;
+  const Row& row = rows[editor.list_focus.row];
+  switch (key) {
+    case ListKey::Moved: return choose(editor, row, false);
+    case ListKey::Activate: return row.folds ? void(editor.outliner.open[row.key] = !row.open) : row.kind == Row::Kind::Result ? toggle_eye(editor, row, false) : choose(editor, row, false);
+    case ListKey::Toggle: return row.visible ? toggle_eye(editor, row, false) : void();
+    case ListKey::Rename: return can_rename(row) ? begin_renaming(editor, kList + row.key, row.name) : void();
+    case ListKey::Unfold: if (row.folds) editor.outliner.open[row.key] = true; return;
+    case ListKey::Fold: {
+      if (row.folds && row.open) return void(editor.outliner.open[row.key] = false);
+      for (int i = editor.list_focus.row; i >= 0; --i)
+        if (rows[i].depth < row.depth) return focus_list(editor, kList, i);
+      return;
+    }
+    case ListKey::None: return;
+  }
+}
+
+void draw_search(Editor& editor, Column& column) {
+  if (!editor.outliner.searching) return;
+  const Look& look = editor.look;
+  const Rect row = column.row(32);
+  const bool focus = std::exchange(editor.outliner.focus_search, false);
+  text_field(editor, "search", {row.low + glm::vec2(look.px(10), look.px(4)), row.high - glm::vec2(look.px(10), look.px(4))}, editor.outliner.search, "Search the project", focus);
+  if ((ImGui::IsItemActive() || ImGui::IsItemDeactivated()) && (ImGui::IsKeyPressed(static_cast<int>(Key::Down)) || ImGui::IsKeyPressed(static_cast<int>(Key::Return)))) {
+    ImGui::ClearActiveID();
+    focus_list(editor, kList, 0);
+  }
 }
 
 }  // namespace
 
 void draw_outliner(Editor& editor, Column& column) {
-  if (column.begin_section("Outliner")) {
-    const Document& document = editor.document();
-    int index = 0;
-    if (!document.volume) {
-      Rect rect = column.row(30);
-      put_text(editor, editor.look.fonts.regular, editor.look.theme.text2, Rect{{rect.low.x + editor.look.px(14), rect.low.y}, rect.high}, "Nothing is open");
-    } else {
-      draw_row(editor, column, index++, {editor.name.empty() ? "Volume" : editor.name, size_text(document.volume->grid), icon::kVolume}, nullptr);
-      const std::string tissues = std::to_string(document.tissues ? document.tissues->tissues.size() : 0);
-      if (draw_row(editor, column, index++, {"Tissues", tissues, icon::kTissues, 1}, nullptr).clicked) editor.open_sections["Tissues"] = true;
+  const Look& look = editor.look;
+  const bool open = column.begin_section("Outliner");
+  const Rect head = column.head(), place{{head.high.x - look.px(34), head.low.y + look.px(2)}, {head.high.x - look.px(6), head.high.y - look.px(2)}};
+  const Operator& search = *find_operator(editor, "view.find");
+  if (button(editor, "Search outliner", place, {icon::kSearch, "", editor.outliner.searching ? ButtonStyle::Soft : ButtonStyle::Flat})) {
+    if (editor.outliner.searching) editor.outliner.searching = false, editor.outliner.search.clear();
+    else run(editor, search);
+  }
+  if (ImGui::IsItemHovered()) operator_tooltip(editor, search, place);
+  if (open) {
+    draw_search(editor, column);
+    const std::vector<Row> rows = Tree(editor).rows;
+    take_key(editor, rows);
+    for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[i]);
+    if (rows.empty() && editor.outliner.search.empty()) {
+      const Rect row = column.row(30);
+      put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(14), row.low.y}, row.high}, "Nothing is open");
+    } else if (rows.empty() && empty_state(editor, column.row(72), "Nothing is named '" + editor.outliner.search + "'", "Clear search")) {
+      editor.outliner.search.clear();
     }
-    if (document.armature) {
-      draw_row(editor, column, index++, {"Armature", std::to_string(document.armature->bones.size()), icon::kRig}, nullptr);
-      std::vector<int> depth(document.armature->bones.size());
-      for (int b = 0; b < std::ssize(document.armature->bones); ++b) {
-        const Bone& bone = document.armature->bones[b];
-        depth[b] = bone.parent < 0 ? 1 : std::min(depth[bone.parent] + 1, 8);
-        if (draw_row(editor, column, index++, {bone.name, "", icon::kDot, depth[b], false, false, editor.selection.bone == b}, nullptr).clicked) {
-          editor.selection.bone = b;
-          editor.selection.bones = {b};
-        }
-      }
-    }
-    for (const auto& result : document.results) draw_row(editor, column, index++, {result->name, result->method, icon::kResample}, nullptr);
   }
   column.end_section();
 }

@@ -124,6 +124,7 @@ std::unique_ptr<Dialog> open_statistics(Editor& editor) {
     *rows = label_statistics(*volume);
     return {};
   });
+  editor.step_of_job[job] = StepOfWork::Prepare;
   editor.after_job[job] = [counted, rows](Editor& e, const JobStatus& status) {
     counted->done = status.state == JobState::Done;
     counted->rows = std::move(*rows);

@@ -11,11 +11,12 @@ namespace limber::editor {
 
 namespace {
 
-// A running job whose label begins so, as "Heat diffusion 40 %"; "" for none.
-std::string at_work(const Editor& editor, std::initializer_list<const char*> beginnings) {
-  for (const JobStatus& job : editor.jobs.statuses())
-    for (const char* beginning : beginnings)
-      if (job.active() && job.label.starts_with(beginning)) return job.label + ", " + (job.stage.empty() ? "waiting" : job.stage);
+// The job at work for that step: "Heat diffusion, weights"; "" for none.
+std::string at_work(const Editor& editor, StepOfWork step) {
+  for (const JobStatus& job : editor.jobs.statuses()) {
+    const auto known = editor.step_of_job.find(job.id);
+    if (job.active() && known != editor.step_of_job.end() && known->second == step) return job.label + ", " + (job.stage.empty() ? "waiting" : job.stage);
+  }
   return "";
 }
 
@@ -141,13 +142,11 @@ void draw_more(Editor& editor, Column& column, const Step& step) {
 
 std::vector<Step> steps(const Editor& editor) {
   std::vector<Step> all = {prepare_step(editor), rig_step(editor), skin_step(editor), pose_step(editor), resample_step(editor)};
-  const std::string working[] = {at_work(editor, {"Open", "Re-grid", "Orient", "Flip", "Crop", "Pad", "Merge", "Drop specks", "Statistics"}), at_work(editor, {"Import rig"}),
-                                 at_work(editor, {"Heat", "Geodesic", "Rigid"}), "", at_work(editor, {"Resample"})};
   bool found = false;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!working[i].empty()) {
+    if (const std::string working = at_work(editor, static_cast<StepOfWork>(i)); !working.empty()) {
       all[i].state = StepState::Working;
-      all[i].line = working[i];
+      all[i].line = working;
       found = true;
     }
     if (found || all[i].state == StepState::Done) continue;

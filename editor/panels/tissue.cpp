@@ -98,11 +98,7 @@ void draw_tissue(Editor& editor, Column& column) {
   if (column.begin_section("Tissue", shown_name(tissue))) {
     column.space(6);
     std::string name = tissue.name;
-    if (text_field(editor, "Name", column.property("Name"), name) && !name.empty() && name != tissue.name) {
-      Tissue next = tissue;
-      next.name = name;
-      set_tissue(editor, "Rename " + shown_name(tissue), next);
-    }
+    if (text_field(editor, "Name", column.property("Name"), name)) rename_tissue(editor, tissue.label, name);
     const Rect kind = column.property("Kind");
     put_text(editor, editor.look.fonts.regular, editor.look.theme.text, kind, to_string(tissue.kind));
     draw_colour(editor, column, tissue);

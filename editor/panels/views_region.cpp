@@ -43,11 +43,11 @@ void draw_pointer_menu(Editor& editor) {
     ImGui::OpenPopup("pointer menu");
     editor.shown_popup = std::exchange(editor.open_popup, "");
   }
-  if (!ImGui::BeginPopup("pointer menu", ImGuiWindowFlags_NoMove)) return;
+  if (!ImGui::BeginPopup("pointer menu", ImGuiWindowFlags_NoMove)) return editor.shown_popup.clear();
   editor.place.region = Region::Popup;
   const Menu menu = pointer_menu(editor.shown_popup, editor.views->active);
   const Tissue* tissue = editor.selection.tissue && editor.document().tissues ? editor.document().tissues->find(*editor.selection.tissue) : nullptr;
-  const std::string title = tissue && editor.shown_popup == "context" ? shown_name(*tissue) : menu.title;
+  const std::string title = tissue && (editor.shown_popup == "context" || editor.shown_popup == "Tissue") ? shown_name(*tissue) : menu.title;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   put_text(editor, editor.look.fonts.semibold, editor.look.theme.text2, from_im(corner) + glm::vec2(editor.look.px(8), editor.look.px(2)), title);
   ImGui::Dummy({text_size(editor.look.fonts.semibold, title).x + editor.look.px(16), editor.look.px(22)});
