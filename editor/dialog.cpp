@@ -5,7 +5,7 @@
 
 namespace limber::editor {
 
-Rect begin_dialog(Editor& editor, const std::string& title, float width, float height) {
+Rect begin_dialog(Editor& editor, const std::string& title, float width, float height, const std::function<void()>& close) {
   const Look& look = editor.look;
   const glm::vec2 window = editor.layout.window.size();
   const glm::vec2 size = glm::min(glm::vec2(look.px(width), look.px(height)), window - look.px(16));
@@ -21,8 +21,8 @@ Rect begin_dialog(Editor& editor, const std::string& title, float width, float h
   ImGui::GetWindowDrawList()->AddRectFilled(im(head.low), im(head.high), look.theme.head, look.px(8), ImDrawFlags_RoundCornersTop);
   outline(rect, look.theme.line2, look.px(8), look.line());
   put_text(editor, look.fonts.semibold, look.theme.text, Rect{{head.low.x + look.px(14), head.low.y}, {head.high.x - look.px(40), head.high.y}}, title);
-  const Rect close{{head.high.x - look.px(32), head.low.y + look.px(6)}, {head.high.x - look.px(8), head.low.y + look.px(30)}};
-  if (button(editor, "Close", close, {icon::kClose, "", ButtonStyle::Flat})) editor.close_dialog();
+  const Rect cross{{head.high.x - look.px(32), head.low.y + look.px(6)}, {head.high.x - look.px(8), head.low.y + look.px(30)}};
+  if (button(editor, "Close", cross, {icon::kClose, "", ButtonStyle::Flat})) close ? close() : editor.close_dialog();
   return {{rect.low.x + look.px(18), head.high.y + look.px(18)}, rect.high - look.px(18)};
 }
 

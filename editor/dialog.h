@@ -2,6 +2,7 @@
 // The frame of a dialog. A panel derives from Dialog (editor.h) and is put into Editor::dialog.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "editor/widgets.h"
@@ -9,8 +10,8 @@
 namespace limber::editor {
 
 // Centred on the window, everything behind it dimmed; height 0: as high as its content. Width and height at scale 1.
-// Returns the content's rectangle. Escape closes it unless `stays`.
-Rect begin_dialog(Editor& editor, const std::string& title, float width, float height);
+// Returns the content's rectangle. `close`: what its cross does, in place of closing Editor::dialog.
+Rect begin_dialog(Editor& editor, const std::string& title, float width, float height, const std::function<void()>& close = {});
 void end_dialog(Editor& editor);
 
 }  // namespace limber::editor

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <nlohmann/json.hpp>
+
 namespace limber::editor {
 
 std::vector<Chord> chords_of(const Keymap& keymap, const std::string& context, const std::string& operator_id) {
@@ -34,6 +36,30 @@ void rebind(KeyChanges& changes, const Keymap& original, const std::string& cont
   std::vector<std::string>& keys = changes[{context, operator_id}];
   keys.clear();
   for (const Chord& chord : chords) keys.push_back(to_text(chord));
+}
+
+KeyChanges differences(const Keymap& original, const Keymap& wanted) {
+  KeyChanges changes;
+  for (const Keymap* keymap : {&original, &wanted})
+    for (const auto& [context, bindings] : keymap->contexts)
+      for (const Binding& binding : bindings) rebind(changes, original, context, binding.operator_id, chords_of(wanted, context, binding.operator_id));
+  return changes;
+}
+
+KeyChanges key_changes_from_json(const std::string& text) {
+  KeyChanges changes;
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_array()) return changes;
+  const auto text_of = [](const nlohmann::json& entry, const char* key) { return entry.contains(key) && entry[key].is_string() ? entry[key].get<std::string>() : std::string(); };
+  for (const auto& entry : json) {
+    if (!entry.is_object()) continue;
+    const std::string context = text_of(entry, "context"), id = text_of(entry, "operator");
+    if (context.empty() || id.empty() || !entry.contains("keys") || !entry["keys"].is_array()) continue;
+    std::vector<std::string>& list = changes[{context, id}];
+    for (const auto& key : entry["keys"])
+      if (key.is_string() && chord_from_text(key.get<std::string>())) list.push_back(key);
+  }
+  return changes;
 }
 
 std::vector<Clash> clashes(const Keymap& keymap) {

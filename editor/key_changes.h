@@ -19,6 +19,12 @@ Keymap changed(Keymap keymap, const KeyChanges& changes);
 // Gives `chord` to the operator in place of the keys it has there; the same as its own keys: no change any more.
 void rebind(KeyChanges& changes, const Keymap& original, const std::string& context, const std::string& operator_id, const std::vector<Chord>& chords);
 
+// What must be changed in `original` so that it does what `wanted` does.
+KeyChanges differences(const Keymap& original, const Keymap& wanted);
+
+// A list of objects with context, operator and keys; what cannot be read of it is left out.
+KeyChanges key_changes_from_json(const std::string& text);
+
 struct Clash {
   std::string context;
   Chord chord;

@@ -11,6 +11,8 @@ namespace limber::editor {
 
 namespace {
 
+constexpr std::uint64_t kLargestFile = 4 << 20;
+
 Binding binding_of(const nlohmann::json& json, const std::string& context, const Path& path) {
   const std::string place = path.string() + ", context " + context;
   if (!json.is_object() || !json.contains("key") || !json["key"].is_string() || !json.contains("operator") || !json["operator"].is_string())
@@ -47,8 +49,8 @@ std::optional<Chord> Keymap::chord_of(std::string_view operator_id, const std::v
   return std::nullopt;
 }
 
-Keymap read_keymap(const Path& path) {
-  const auto json = nlohmann::json::parse(read_file(path), nullptr, false);
+Keymap read_keymap(const Path& path, TwoMeanings two_meanings) {
+  const auto json = nlohmann::json::parse(read_file(path, kLargestFile), nullptr, false);
   if (!json.is_object() || json.value("schema", nlohmann::json()) != "limber-keymap/1" || !json.contains("contexts") || !json["contexts"].is_object())
     throw Error("this is not a key map", path.string(), "choose another file");
   Keymap keymap;
@@ -57,12 +59,21 @@ Keymap read_keymap(const Path& path) {
     auto& list = keymap.contexts[context];
     for (const auto& entry : bindings) {
       const Binding binding = binding_of(entry, context, path);
-      if (keymap.find(binding.chord, {context}))
+      if (two_meanings == TwoMeanings::Refuse && keymap.find(binding.chord, {context}))
         throw Error("the key " + to_text(binding.chord) + " has two meanings", path.string() + ", context " + context, "remove one of them");
       list.push_back(binding);
     }
   }
   return keymap;
+}
+
+std::string to_json(const Keymap& keymap) {
+  nlohmann::ordered_json json{{"schema", "limber-keymap/1"}, {"contexts", nlohmann::ordered_json::object()}};
+  for (const auto& [context, bindings] : keymap.contexts) {
+    auto& list = json["contexts"][context] = nlohmann::ordered_json::array();
+    for (const Binding& binding : bindings) list.push_back({{"key", to_text(binding.chord)}, {"operator", binding.operator_id}});
+  }
+  return json.dump(1) + "\n";
 }
 
 }  // namespace limber::editor

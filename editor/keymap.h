@@ -28,7 +28,10 @@ struct Keymap {
   std::optional<Chord> chord_of(std::string_view operator_id, const std::vector<std::string>& first = {}) const;
 };
 
-// Throws Error for a file that is no key map, an unreadable chord, or a chord with two meanings in one context.
-Keymap read_keymap(const Path& path);
+// Throws Error for a file that is no key map, an unreadable chord, or, unless they are let in, a chord with two meanings
+// in one context.
+enum class TwoMeanings { Refuse, LetIn };
+Keymap read_keymap(const Path& path, TwoMeanings two_meanings = TwoMeanings::Refuse);
+std::string to_json(const Keymap& keymap);
 
 }  // namespace limber::editor

@@ -11,6 +11,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::size_t kRecentFolders = 6;
+
 // Disks and sticks that are mounted where desktops mount them.
 void add_volumes(std::vector<Place>& places) {
   const char* user = std::getenv("USER");
@@ -44,12 +46,12 @@ std::vector<Place> places_of(const Editor& editor) {
   for (const char* name : {"Desktop", "Documents", "Downloads"}) add(icon::kFolder, name, home / name);
   add(icon::kVolume, "Computer", "/");
   add_volumes(places);
-  int recent = 0;
-  for (const Recent& one : editor.remembered.recents) {
-    const std::size_t before = places.size();
-    if (recent < 5) add(icon::kHistory, one.path.parent_path().filename().string(), one.path.parent_path());
-    recent += places.size() > before;
-  }
+  const std::size_t most = places.size() + kRecentFolders;
+  const auto add_recent = [&](const Path& folder) {
+    if (places.size() < most) add(icon::kHistory, folder.filename().string(), folder);
+  };
+  for (const Path& folder : editor.remembered.recent_folders) add_recent(folder);
+  for (const Recent& one : editor.remembered.recents) add_recent(one.path.parent_path());
   return places;
 }
 

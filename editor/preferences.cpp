@@ -27,6 +27,7 @@ void visit(P& p, const Visit& visit) {
   visit("interface", "scale", p.scale, 0.75, 3);
   visit("interface", "tooltip_delay", p.tooltip_delay, 0, 3);
   visit("interface", "reduce_motion", p.reduce_motion, {}, {});
+  visit("interface", "keymap", p.keymap, {}, {});
   visit("interface", "advanced_steps", p.advanced_steps, {}, {});
   visit("view", "grid", p.grid, {}, {});
   visit("view", "axes", p.axes, {}, {});
@@ -72,19 +73,6 @@ struct Writer {
   }
 };
 
-void read_keys(const Json& json, KeyChanges& keys) {
-  if (!json.contains("keys") || !json["keys"].is_array()) return;
-  for (const Json& entry : json["keys"]) {
-    if (!entry.is_object()) continue;
-    const std::string context = entry.contains("context") && entry["context"].is_string() ? entry["context"].get<std::string>() : "";
-    const std::string id = entry.contains("operator") && entry["operator"].is_string() ? entry["operator"].get<std::string>() : "";
-    if (context.empty() || id.empty() || !entry.contains("keys") || !entry["keys"].is_array()) continue;
-    std::vector<std::string>& list = keys[{context, id}];
-    for (const Json& key : entry["keys"])
-      if (key.is_string() && chord_from_text(key.get<std::string>())) list.push_back(key);
-  }
-}
-
 void read_use(const Json& json, Preferences& preferences) {
   if (json.contains("recent_commands") && json["recent_commands"].is_array())
     for (const Json& id : json["recent_commands"])
@@ -113,7 +101,8 @@ Preferences preferences_from_json(const std::string& text, std::string& problem)
   visit(preferences, Reader{json});
   if (preferences.theme != "light") preferences.theme = "dark";
   if (preferences.display != "xray" && preferences.display != "tissue") preferences.display = "solid";
-  read_keys(json, preferences.keys);
+  if (json.contains("keys")) preferences.keys = key_changes_from_json(json["keys"].dump());
+  if (preferences.keymap != "maya") preferences.keymap = "blender";
   read_use(json, preferences);
   if (json.contains("arrangements")) restore(nlohmann::json(json["arrangements"]), preferences.arrangements);
   return preferences;
@@ -142,9 +131,29 @@ std::string to_json(const Preferences& preferences) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+Keymap keymap_preset(const std::string& name) {
+  const Keymap blender = read_keymap(asset("keymap.json"));
+  if (name != "maya") return blender;
+  const Json json = Json::parse(read_file(asset("keymap_maya.json")), nullptr, false);
+  return changed(blender, key_changes_from_json(json.at("keys").dump()));
+}
+
+void export_keymap(Editor& editor, const Path& path) {
+  write_file_atomically(path, to_json(editor.keymap));
+  editor.messages.ok("Keys exported", path.string());
+}
+
+void import_keymap(Editor& editor, const Path& path) {
+  editor.preferences.keys = differences(keymap_preset(editor.preferences.keymap), read_keymap(path, TwoMeanings::LetIn));
+  keep_preferences(editor);
+  const auto count = clashes(editor.keymap).size();
+  if (count > 0) editor.messages.warn("Keys imported", std::to_string(count) + (count == 1 ? " key has" : " keys have") + " two meanings");
+  else editor.messages.ok("Keys imported", path.filename().string());
+}
+
 void apply_preferences(Editor& editor) {
   const Preferences& preferences = editor.preferences;
-  editor.keymap = changed(read_keymap(asset("keymap.json")), preferences.keys);
+  editor.keymap = changed(keymap_preset(preferences.keymap), preferences.keys);
   editor.history.set_limit(std::int64_t{preferences.undo_limit_mb} << 20);
   editor.jobs.set_at_once(preferences.jobs_at_once);
   editor.touch();

@@ -56,6 +56,12 @@ Preferences read_preferences(const Path& path, std::string& problem);
 Preferences preferences_from_json(const std::string& text, std::string& problem);
 std::string to_json(const Preferences& preferences);
 
+// "blender" or "maya", as the program brings it.
+Keymap keymap_preset(const std::string& name);
+// The keys of the moment as a key map; and such a file in their place, kept as changes of the preset.
+void export_keymap(Editor& editor, const Path& path);
+void import_keymap(Editor& editor, const Path& path);
+
 // After a change: acts on the editor at once, and is written to Editor::preferences_path unless that is empty.
 void keep_preferences(Editor& editor);
 void apply_preferences(Editor& editor);

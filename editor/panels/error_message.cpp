@@ -44,9 +44,10 @@ void draw_error_message(Editor& editor) {
   std::erase_if(parts, [](const Part& part) { return part.text.empty(); });
   float words = 0;
   for (const Part& part : parts) words += height_of_wrapped(part.font, part.text, width, 6) + look.px(8);
+  const auto close_first = [&editor] { editor.messages.errors.erase(editor.messages.errors.begin()); };
   const std::string details = editor.error_details ? details_of(editor, message) : "";
   const float plate = editor.error_details ? height_of_wrapped(look.fonts.small_mono, details, width - look.px(16), 12) + look.px(12 + 8) : 0;
-  const Rect rect = begin_dialog(editor, "Message", kWidth, (words + plate) / look.scale + 36 + 18 + 10 + kButton + 18);
+  const Rect rect = begin_dialog(editor, "Message", kWidth, (words + plate) / look.scale + 36 + 18 + 10 + kButton + 18, close_first);
 
   const Rect whole{{rect.low.x - look.px(18), rect.low.y - look.px(54)}, rect.high + look.px(18)};
   fill({whole.low + glm::vec2(look.px(6), 0), {whole.high.x - look.px(6), whole.low.y + look.px(3)}}, look.theme.error);
@@ -72,7 +73,7 @@ void draw_error_message(Editor& editor) {
   const Rect copy{{close.low.x - look.px(8) - width_of_button(editor, copy_face), low}, {close.low.x - look.px(8), rect.high.y}};
   if (button(editor, "Copy message", copy, copy_face)) editor.host.set_clipboard(details_of(editor, message));
   if (ImGui::IsItemHovered()) tooltip(editor, copy, "Copy", "Puts the details on the clipboard.");
-  if (button(editor, "Close", close, {"", "Close", ButtonStyle::Primary})) editor.messages.errors.erase(editor.messages.errors.begin());
+  if (button(editor, "Close", close, {"", "Close", ButtonStyle::Primary})) close_first();
   end_dialog(editor);
 }
 

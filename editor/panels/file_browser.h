@@ -25,6 +25,7 @@ struct FileRequest {
   bool takes_dicom = false;         // a folder of DICOM images is offered to be opened as one
   Path folder;                      // to begin in, where the purpose has none yet
   std::function<void(Editor&, const Path&)> chosen;
+  std::function<void(Editor&)> left;  // without a choice; may be empty
 };
 
 void browse(Editor& editor, FileRequest request);

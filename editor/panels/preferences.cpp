@@ -173,7 +173,7 @@ void PreferencesDialog::draw_folders(Editor& editor, Column& column) {
 
 void PreferencesDialog::draw_pages(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
-  fill(rect, look.theme.head);
+  ImGui::GetWindowDrawList()->AddRectFilled(im(rect.low), im(rect.high), look.theme.head, look.px(8), ImDrawFlags_RoundCornersBottomLeft);
   float y = rect.low.y + look.px(8);
   for (int i = 0; i < std::ssize(kPages); ++i, y += look.px(32)) {
     const Rect row{{rect.low.x, y}, {rect.high.x, y + look.px(32)}};
@@ -209,7 +209,7 @@ void PreferencesDialog::draw(Editor& editor) {
   const Rect rect = begin_dialog(editor, "Preferences", 760, 440);
   const Rect body{rect.low - look.px(18), rect.high + look.px(18)};
   const float middle = body.low.x + look.px(176);
-  draw_pages(editor, {{body.low.x + look.line(), body.low.y}, {middle, body.high.y - look.px(8)}});
+  draw_pages(editor, {{body.low.x + look.line(), body.low.y}, {middle, body.high.y - look.line()}});
   fill({{middle, body.low.y}, {middle + look.line(), body.high.y - look.line()}}, look.theme.line2);
   draw_page(editor, {{middle + look.line(), body.low.y}, {body.high.x - look.line(), body.high.y - look.px(4)}});
   end_dialog(editor);

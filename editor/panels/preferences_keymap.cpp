@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "editor/assets.h"
 #include "editor/fields.h"
 #include "editor/fuzzy.h"
 #include "editor/icons.h"
@@ -36,7 +35,8 @@ std::string others_of(const Editor& editor, const Clash& clash, const std::strin
   return others;
 }
 
-Keymap original() { return read_keymap(asset("keymap.json")); }
+// A key as someone types it.
+bool same_ignoring_case(const std::string& a, const std::string& b) { return a.size() == b.size() && contains_ignoring_case(a, b); }
 
 }  // namespace
 
@@ -66,7 +66,7 @@ std::vector<KeymapPage::Row> KeymapPage::rows(const Editor& editor) const {
   std::erase_if(rows, [&](const Row& row) {
     if (fuzzy_match(search_, row.label)) return false;
     for (const Chord& chord : chords_of(editor.keymap, row.context, row.operator_id))
-      if (to_text(chord) == search_) return false;
+      if (same_ignoring_case(to_text(chord), search_)) return false;
     return true;
   });
   return rows;
@@ -81,7 +81,7 @@ bool KeymapPage::key(Editor& editor, const Chord& chord) {
   std::erase_if(chords, [](const Chord& old) { return old.kind == Chord::Kind::Key; });
   const bool clear = chord.modifiers == Modifiers{} && (chord.key == Key::Delete || chord.key == Key::Backspace);
   if (!clear) chords.insert(chords.begin(), chord);
-  rebind(editor.preferences.keys, original(), waiting_context_, waiting_operator_, chords);
+  rebind(editor.preferences.keys, keymap_preset(editor.preferences.keymap), waiting_context_, waiting_operator_, chords);
   waiting_operator_.clear();
   keep_preferences(editor);
   return true;
@@ -90,17 +90,31 @@ bool KeymapPage::key(Editor& editor, const Chord& chord) {
 void KeymapPage::draw_head(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
   const float y = rect.low.y + look.px(9), bottom = y + look.px(26);
-  const float right = rect.high.x - look.px(12), preset = look.px(150);
-  text_field(editor, "search", {{rect.low.x + look.px(12), y}, {right - preset - look.px(12), bottom}}, search_, "Search commands, or a key such as Ctrl+Z");
-  const bool own = editor.preferences.keys.empty();
-  const Rect blender{{right - preset, y}, {right - preset / 2 - look.px(1), bottom}}, custom{{right - preset / 2, y}, {right, bottom}};
-  if (button(editor, "Blender", blender, {"", "Blender", own ? ButtonStyle::Chosen : ButtonStyle::Plain}) && !own) {
-    editor.preferences.keys.clear();
+  const float right = rect.high.x - look.px(12), width = look.px(70), undo = look.px(30);
+  const float presets = right - undo - look.px(6) - 3 * width;
+  text_field(editor, "search", {{rect.low.x + look.px(12), y}, {presets - look.px(12), bottom}}, search_, "Search commands, or a key such as Ctrl+Z");
+  Preferences& preferences = editor.preferences;
+  const bool custom = !preferences.keys.empty();
+  const auto place = [&](int i) { return Rect{{presets + width * static_cast<float>(i), y}, {presets + width * static_cast<float>(i + 1) - look.px(1), bottom}}; };
+  int i = 0;
+  for (const auto& [name, label] : {std::pair("blender", "Blender"), std::pair("maya", "Maya")}) {
+    const bool chosen = !custom && preferences.keymap == name;
+    if (button(editor, label, place(i), {"", label, chosen ? ButtonStyle::Chosen : ButtonStyle::Plain}) && !chosen) {
+      preferences.keymap = name;
+      preferences.keys.clear();
+      keep_preferences(editor);
+    }
+    if (ImGui::IsItemHovered()) tooltip(editor, place(i), label, std::string("Keys near to ") + label + "'s. Takes every change of your own back.");
+    ++i;
+  }
+  button(editor, "Custom", place(i), {"", "Custom", custom ? ButtonStyle::Chosen : ButtonStyle::Plain});
+  if (ImGui::IsItemHovered()) tooltip(editor, place(i), "Custom", "With changes of your own: press the keys beside a command to change them.");
+  const Rect restore{{right - undo, y}, {right, bottom}};
+  if (button(editor, "Restore all", restore, {icon::kUndo, "", ButtonStyle::Plain, custom})) {
+    preferences.keys.clear();
     keep_preferences(editor);
   }
-  if (ImGui::IsItemHovered()) tooltip(editor, blender, "Blender", "The keys as Limber brings them, near to Blender's. Takes every change back.");
-  button(editor, "Custom", custom, {"", "Custom", own ? ButtonStyle::Plain : ButtonStyle::Chosen});
-  if (ImGui::IsItemHovered()) tooltip(editor, custom, "Custom", "With changes of your own: press the keys beside a command to change them.");
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) tooltip(editor, restore, "Restore all", custom ? "Takes every change of your own back." : "Nothing was changed.");
 }
 
 void KeymapPage::draw_row(Editor& editor, Column& column, int index, const Row& row, const std::vector<Clash>& clashes) {
@@ -167,9 +181,16 @@ void KeymapPage::draw_row(Editor& editor, Column& column, int index, const Row& 
 void KeymapPage::draw_foot(Editor& editor, const Rect& rect, const std::vector<Clash>& clashes) {
   const Look& look = editor.look;
   fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.line2);
-  const float left = rect.low.x + look.px(14);
+  const float left = rect.low.x + look.px(14), low = rect.low.y + look.px(8), high = rect.high.y - look.px(8);
+  const Rect write{{rect.high.x - look.px(12 + 84), low}, {rect.high.x - look.px(12), high}}, read{{write.low.x - look.px(8 + 84), low}, {write.low.x - look.px(8), high}};
+  for (const auto& [id, label, place] : {std::tuple("edit.import_keymap", "Import...", read), std::tuple("edit.export_keymap", "Export...", write)}) {
+    const Operator& op = *find_operator(editor, id);
+    if (button(editor, label, place, {"", label})) run(editor, op);
+    if (ImGui::IsItemHovered()) operator_tooltip(editor, op, place);
+  }
+  const float right = read.low.x - look.px(10);
   if (clashes.empty()) {
-    put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, rect.low.y}, {rect.high.x, rect.high.y}},
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, rect.low.y}, {right, rect.high.y}},
              editor.preferences.keys.empty() ? "No key has two meanings" : std::to_string(editor.preferences.keys.size()) + " changed, no key has two meanings");
     return;
   }
@@ -178,13 +199,13 @@ void KeymapPage::draw_foot(Editor& editor, const Rect& rect, const std::vector<C
   const std::string words = to_text(first.chord) + " runs " + label_of(editor, first.operators.front()) + ", not " + others_of(editor, first, first.operators.front());
   put_icon(look.fonts.regular, look.theme.warn, Rect{{left, rect.low.y}, {left + look.px(16), rect.high.y}}, icon::kWarning);
   put_text(editor, look.fonts.regular, look.theme.warn, Rect{{left + look.px(22), rect.low.y}, {left + look.px(100), rect.high.y}}, count);
-  put_text(editor, look.fonts.small, look.theme.text2, Rect{{left + look.px(100), rect.low.y}, {rect.high.x - look.px(12), rect.high.y}}, words);
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{left + look.px(100), rect.low.y}, {right, rect.high.y}}, words);
 }
 
 void KeymapPage::draw(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
   const std::vector<Clash> found = clashes(editor.keymap);
-  const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(44)}}, foot{{rect.low.x, rect.high.y - look.px(34)}, rect.high};
+  const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(44)}}, foot{{rect.low.x, rect.high.y - look.px(44)}, rect.high};
   draw_head(editor, head);
   {
     Column column(editor, "keys", {{rect.low.x, head.high.y}, {rect.high.x, foot.low.y}});

@@ -21,7 +21,7 @@ class Reader final : public Dialog {
   void draw(Editor& editor) override {
     const Look& look = editor.look;
     const Rect rect = begin_dialog(editor, title_, kWidth, kHeight);
-    const Rect body{rect.low - look.px(18) + glm::vec2(look.line(), 0), rect.high + look.px(18) - glm::vec2(look.line(), look.px(8))};
+    const Rect body{rect.low - look.px(18) + glm::vec2(look.line(), 0), rect.high + look.px(18) - look.line()};
     if (blocks_.empty()) blocks_ = parse_markdown(text_, [&](const std::string& id) {
       const auto chord = editor.keymap.chord_of(id);
       return chord ? to_text(*chord) : std::string("(no key)");
@@ -47,7 +47,7 @@ class Reader final : public Dialog {
 
   void draw_chapters(Editor& editor, const Rect& rect) {
     const Look& look = editor.look;
-    fill(rect, look.theme.head);
+    ImGui::GetWindowDrawList()->AddRectFilled(im(rect.low), im(rect.high), look.theme.head, look.px(8), ImDrawFlags_RoundCornersBottomLeft);
     Column column(editor, "chapters", rect);
     column.space(8);
     for (int b = 0; b < std::ssize(blocks_); ++b) {

@@ -2,6 +2,8 @@
 // Jobs at work: a slot in the status bar, and the list that it opens, with stage, time left and Cancel.
 #include "editor/panels/running.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "editor/icons.h"
@@ -24,10 +26,12 @@ std::vector<JobStatus> at_work(const Editor& editor) {
 
 std::string state_of(Editor& editor, const JobStatus& job) {
   if (job.state == JobState::Queued) return "Waiting";
-  if (job.state != JobState::Stopping) return job.stage.empty() ? "Starting" : job.stage;
+  std::string stage = job.stage.empty() ? "starting" : job.stage;
+  stage[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(stage[0])));
+  if (job.state != JobState::Stopping) return stage;
   const double since = editor.stopping_since.try_emplace(job.id, editor.now).first->second;
   editor.wake_at(since + kQuickEnd);
-  return editor.now - since >= kQuickEnd ? "Stopping" : job.stage;
+  return editor.now - since >= kQuickEnd ? "Stopping" : stage;
 }
 
 void draw_spinner(Editor& editor, const glm::vec2& centre, float radius) {
@@ -52,7 +56,7 @@ void draw_job_row(Editor& editor, const JobStatus& job, const Rect& row) {
   const Look& look = editor.look;
   const PathScope path(editor, job.label);
   const float left = row.low.x + look.px(10), right = row.high.x - look.px(10);
-  const Rect cancel{{right - look.px(72), row.high.y - look.px(30)}, {right, row.high.y - look.px(6)}};
+  const Rect cancel{{right - look.px(84), row.high.y - look.px(30)}, {right, row.high.y - look.px(6)}};
   const float line = row.low.y + look.px(20);
   char percent[16];
   std::snprintf(percent, sizeof percent, "%.0f %%", 100 * job.fraction);
@@ -62,10 +66,10 @@ void draw_job_row(Editor& editor, const JobStatus& job, const Rect& row) {
   const std::string state = state_of(editor, job);
   put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, cancel.low.y}, {cancel.low.x - look.px(116), cancel.high.y}}, state);
   if (job.seconds_left && job.seconds >= kFirstEstimate)
-    put_text(editor, look.fonts.small, look.theme.text2, Rect{{cancel.low.x - look.px(116), cancel.low.y}, {cancel.low.x - look.px(8), cancel.high.y}}, time_left_text(*job.seconds_left),
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{cancel.low.x - look.px(116), cancel.low.y}, {cancel.low.x - look.px(8), cancel.high.y}}, time_left_text(*job.seconds_left) + " left",
              Align::Right);
   const bool stopping = job.state == JobState::Stopping;
-  if (button(editor, "Cancel", cancel, {"", "Cancel", ButtonStyle::Plain, !stopping})) editor.jobs.cancel(job.id);
+  if (button(editor, "Cancel", cancel, {icon::kClose, "Cancel", ButtonStyle::Plain, !stopping})) editor.jobs.cancel(job.id);
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) tooltip(editor, cancel, "Cancel", stopping ? "It has been told to stop." : "Stops it; nothing of the project changes.");
 }
 
@@ -81,7 +85,10 @@ std::string time_left_text(double seconds) {
 
 void draw_running(Editor& editor, Column& column) {
   const std::vector<JobStatus> jobs = at_work(editor);
-  const std::string count = jobs.empty() ? "" : jobs.size() == 1 ? "1 job" : std::to_string(jobs.size()) + " jobs";
+  const auto queued = std::count_if(jobs.begin(), jobs.end(), [](const JobStatus& job) { return job.state == JobState::Queued; });
+  const auto running = std::ssize(jobs) - queued;
+  std::string count = jobs.empty() ? "" : running == 1 ? "1 job" : std::to_string(running) + " jobs";
+  if (queued > 0) count += ", " + std::to_string(queued) + " queued";
   if (column.begin_section("Running", count)) {
     if (jobs.empty()) {
       const Rect row = column.row(30);

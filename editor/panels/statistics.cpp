@@ -2,14 +2,12 @@
 #include "editor/panels/statistics.h"
 
 #include <cstdio>
-#include <cstdlib>
 
-#include "core/base/error.h"
 #include "core/volume/prepare.h"
 #include "editor/dialog.h"
-#include "editor/fields.h"
 #include "editor/icons.h"
 #include "editor/panels/column.h"
+#include "editor/panels/file_browser.h"
 #include "editor/prepare.h"
 
 namespace limber::editor {
@@ -27,7 +25,7 @@ struct Counted {
 
 class StatisticsDialog final : public Dialog {
  public:
-  StatisticsDialog(std::shared_ptr<Counted> counted, int job, std::string path) : counted_(std::move(counted)), job_(job), path_(std::move(path)) {}
+  StatisticsDialog(std::shared_ptr<Counted> counted, int job) : counted_(std::move(counted)), job_(job) {}
 
   void draw(Editor& editor) override;
   void escape(Editor& editor) override {
@@ -41,10 +39,27 @@ class StatisticsDialog final : public Dialog {
 
   std::shared_ptr<Counted> counted_;
   int job_;
-  std::string path_;
 };
 
 constexpr float kSwatch = 14;
+
+// The table stays behind it, and is there again afterwards.
+void browse_csv(Editor& editor, const std::shared_ptr<Counted>& counted) {
+  const auto back = [counted](Editor& e) { e.open_dialog(std::make_unique<StatisticsDialog>(counted, 0)); };
+  browse(editor, {.purpose = "statistics",
+                  .title = "Export statistics",
+                  .action = "Export",
+                  .kind = FileRequest::Kind::Save,
+                  .filters = {{"Tables", {".csv"}}},
+                  .name = (editor.name.empty() ? std::string("volume") : Path(editor.name).stem().string()) + "-statistics.csv",
+                  .folder = editor.project_path.parent_path(),
+                  .chosen = [counted, back](Editor& e, const Path& path) {
+                    back(e);
+                    write_file_atomically(path, to_csv(counted->rows, *counted->tissues));
+                    e.messages.ok("Statistics exported", path.string());
+                  },
+                  .left = back});
+}
 
 void put_row(Editor& editor, const Rect& row, Colour colour, const Theme& theme, const std::array<std::string, 5>& words, ImFont* digits) {
   const Look& look = editor.look;
@@ -84,23 +99,14 @@ void StatisticsDialog::draw_table(Editor& editor, const Rect& rect) {
 
 void StatisticsDialog::draw_foot(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
-  const ButtonLook export_face{icon::kExport, "Export CSV", ButtonStyle::Primary, counted_->done}, copy_face{icon::kCopy, "Copy", ButtonStyle::Plain, counted_->done};
+  const ButtonLook export_face{icon::kExport, "Export CSV...", ButtonStyle::Primary, counted_->done}, copy_face{icon::kCopy, "Copy", ButtonStyle::Plain, counted_->done};
   const float export_width = width_of_button(editor, export_face) + look.px(8), copy_width = width_of_button(editor, copy_face);
   const Rect write{{rect.high.x - export_width, rect.low.y}, rect.high}, copy{{write.low.x - look.px(8) - copy_width, rect.low.y}, {write.low.x - look.px(8), rect.high.y}};
-  const Rect path{rect.low, {copy.low.x - look.px(8), rect.high.y}};
-  text_field(editor, "path", path, path_, "File to write");
-  if (ImGui::IsItemHovered()) tooltip(editor, path, "File", "Where Export CSV writes the table.");
   if (button(editor, "Copy", copy, copy_face)) editor.host.set_clipboard(to_csv(counted_->rows, *counted_->tissues));
   if (ImGui::IsItemHovered()) tooltip(editor, copy, "Copy", "Puts the table on the clipboard, as CSV.");
   const bool pressed = button(editor, "Export CSV", write, export_face);
   if (ImGui::IsItemHovered()) tooltip(editor, write, "Export CSV", "Writes the table with mass, centre, box and surface of every tissue.");
-  if (!pressed) return;
-  try {
-    write_file_atomically(path_, to_csv(counted_->rows, *counted_->tissues));
-    editor.messages.ok("Statistics exported", path_);
-  } catch (const Error& error) {
-    editor.messages.show_error(error.what());
-  }
+  if (pressed) browse_csv(editor, counted_);
 }
 
 void StatisticsDialog::draw(Editor& editor) {
@@ -131,8 +137,7 @@ std::unique_ptr<Dialog> open_statistics(Editor& editor) {
     counted->problem = status.state == JobState::Done ? "" : status.state == JobState::Cancelled ? "Cancelled" : status.message;
     e.touch();
   };
-  const Path folder = editor.project_path.empty() ? Path(std::getenv("HOME") ? std::getenv("HOME") : ".") : editor.project_path.parent_path();
-  return std::make_unique<StatisticsDialog>(counted, job, (folder / ((editor.name.empty() ? "volume" : editor.name) + "-statistics.csv")).string());
+  return std::make_unique<StatisticsDialog>(counted, job);
 }
 
 }  // namespace limber::editor

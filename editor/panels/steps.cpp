@@ -46,7 +46,7 @@ Step skin_step(const Editor& editor) {
   const Document& document = editor.document();
   if (!document.weights) return step;
   step.state = StepState::Done;
-  step.line = grouped(document.weights->size()) + " voxels weighted";
+  step.line = grouped(document.weights->size()) + " voxels";
   if (document.armature && document.weights->bones().size() != document.armature->bones.size()) {
     step.state = StepState::Warning;
     step.line = "The weights belong to another rig";
@@ -102,7 +102,7 @@ void draw_step(Editor& editor, Column& column, const Step& step, int number) {
 
   const Operator* op = find_operator(editor, step.operator_id);
   const bool next = step.state == StepState::Next;
-  const float width = op && !step.button.empty() ? look.px(88) : 0;
+  const float width = op && !step.button.empty() && step.state != StepState::Working ? look.px(88) : 0;
   const Rect place{{row.high.x - look.px(10) - width, row.low.y + look.px(7)}, {row.high.x - look.px(10), row.high.y - look.px(7)}};
   const float left = row.low.x + look.px(34), right = width > 0 ? place.low.x - look.px(8) : row.high.x - look.px(10), middle = row.centre().y;
   put_text(editor, next ? look.fonts.semibold : look.fonts.regular, step.state == StepState::Later ? look.theme.text2 : look.theme.text,

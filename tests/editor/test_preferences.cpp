@@ -146,6 +146,47 @@ TEST_CASE("preferences: Escape gives up waiting for a key, Delete takes it away,
   CHECK(test.editor->preferences.keys.empty());
 }
 
+TEST_CASE("preferences: Maya's keys have no clash, name only operators that exist, and act at once") {
+  const Keymap maya = keymap_preset("maya");
+  CHECK(clashes(maya).empty());
+  SmallEditor test({1280, 720});
+  for (const auto& [context, bindings] : maya.contexts)
+    for (const Binding& binding : bindings) {
+      INFO(context, ": ", binding.operator_id);
+      CHECK((find_operator(*test.editor, binding.operator_id) || keymap_preset("blender").chord_of(binding.operator_id)));
+    }
+  test.play(R"(
+    click Edit/Preferences...
+    click dialog/Keymap
+    click dialog/Maya
+    key Escape
+    click Muscle/17/name
+    move "3D view/view"
+    key Ctrl+H
+    expect hidden 1
+    key Z
+    expect hidden 0
+  )");
+  CHECK(test.editor->preferences.keymap == "maya");
+}
+
+TEST_CASE("preferences: keys are exported and imported as a file; a file that is no key map changes nothing") {
+  const TemporaryFolder folder;
+  SmallEditor test({1280, 720});
+  test.editor->preferences.keys[{"select", "select.none"}] = {"A"};
+  test.editor->preferences.keys[{"global", "edit.undo"}] = {"Ctrl+U"};
+  const KeyChanges mine = test.editor->preferences.keys;
+  keep_preferences(*test.editor);
+  const std::string file = "type \"" + (folder / "keys.json").string() + "\"\nkey Return\n";
+  test.play("click \"Edit/Change keys...\"\nclick dialog/Export...\n" + file + "expect error none\nclick \"Restore all\"");
+  CHECK(test.editor->preferences.keys.empty());
+  test.play("click dialog/Import...\nkey Escape\nexpect \"text:No key has two meanings\"\nclick dialog/Import...\n" + file + "expect error none\nexpect \"text:1 clash\"");
+  CHECK(test.editor->preferences.keys == mine);
+  std::ofstream(folder / "keys.json") << "{}";
+  test.play("click dialog/Import...\n" + file + "expect error \"This is not a key map\"\nkey Return\nkey Escape");
+  CHECK(test.editor->preferences.keys == mine);
+}
+
 TEST_CASE("preferences: a folder that cannot be written is one warning, not an error") {
   SmallEditor test;
   test.editor->preferences_path = "/proc/limber/preferences.json";

@@ -124,14 +124,13 @@ TEST_CASE("prepare: statistics count each tissue, are copied and exported") {
     wait-job
     expect "text:Cortical bone" shown
     click dialog/Copy
-    click dialog/path
-    key Ctrl+A
-  )--");
-  test.play("type \"" + (folder / "s.csv").string() + "\"");
-  test.play(R"--(
     click "Export CSV"
-    expect error none
+    key Escape
+    expect "text:Cortical bone" shown
+    click "Export CSV"
   )--");
+  test.play("type \"" + (folder / "s").string() + "\"\nkey Return\nexpect error none\nexpect \"text:Cortical bone\" shown\nclick \"Export CSV\"");
+  test.play("type \"" + (folder / "s.csv").string() + "\"\nkey Return\nexpect \"text:s.csv is there already\"\nclick \"Keep it\"\nkey Escape");
   const std::string expected = to_csv(label_statistics(*test.editor->document().volume), *test.editor->document().tissues);
   CHECK(test.host->clipboard() == expected);
   std::ifstream in(folder / "s.csv");
