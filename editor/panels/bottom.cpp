@@ -8,7 +8,9 @@ void draw_bottom(Editor& editor) {
   const Rect& rect = editor.layout.bottom;
   if (rect.empty()) return;
   begin_region(editor, Region::Bottom, "bottom", rect, editor.look.theme.panel);
-  editor.arrangement().console ? draw_console(editor, rect) : draw_results(editor, rect);
+  Rect seen = rect;
+  if (editor.layout.sidebar_over_views && !editor.layout.sidebar.empty()) seen.high.x = std::min(seen.high.x, editor.layout.sidebar.low.x);
+  editor.arrangement().console ? draw_console(editor, seen) : draw_results(editor, seen);
   end_region(editor);
 }
 

@@ -112,7 +112,8 @@ void draw_toasts(Editor& editor) {
     if (toast.since < 0) toast.since = editor.now;
   std::erase_if(toasts, [&](const Toast& toast) { return editor.now - toast.since >= life_of(toast.severity); });
 
-  const Rect& views = editor.layout.views;
+  Rect views = editor.layout.views;
+  if (editor.layout.sidebar_over_views && !editor.layout.sidebar.empty()) views.high.x = std::min(views.high.x, editor.layout.sidebar.low.x);
   const float width = std::min(look.px(kWidth), views.width() - look.px(24)), right = views.high.x - look.px(12);
   float bottom = views.high.y - look.px(12);
   std::size_t closed = toasts.size();

@@ -80,3 +80,15 @@ TEST_CASE("messages: long ones take more lines and stay whole, within the window
     CHECK(test.editor->layout.window.contains(widget->rect));
   }
 }
+
+TEST_CASE("messages: in a small window neither they nor the console lie under or over the sidebar") {
+  SmallEditor test({1024, 640});
+  test.play("key N\nclick Help/Console");
+  test.editor->messages.warn("A warning");
+  test.play("wait 0.1");
+  for (const char* name : {"Close message", "Close console"}) {
+    const Widget* widget = test.editor->widgets.find(name);
+    REQUIRE(widget);
+    CHECK_FALSE(widget->rect.overlaps(test.editor->layout.sidebar));
+  }
+}
