@@ -9,6 +9,7 @@ namespace limber::editor {
 namespace {
 
 constexpr double kThinnest = 1;  // voxels between two faces of the box
+constexpr double kSnap = 10;     // mm of the world that Ctrl goes by
 
 const Visibility& shown(const Editor& editor) {
   const auto& preview = editor.views->preview_visibility;
@@ -71,6 +72,13 @@ void end_preview(Editor& editor, const std::string& label) {
   commit(editor, label, std::move(next));
 }
 
+void commit_clip(Editor& editor, const std::string& label, Visibility visibility) {
+  editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(visibility));
+  end_preview(editor, label);
+}
+
+double snapped(double millimetres) { return std::round(millimetres / kSnap) * kSnap; }
+
 void draw_box(Editor& editor, const Painter& painter) {
   const auto volume = editor.document().volume;
   const Grid& grid = volume->grid;
@@ -95,14 +103,24 @@ void draw_box(Editor& editor, const Painter& painter) {
       const glm::dvec3 normal(grid.direction[axis]), size = glm::abs(normal);
       const int world_axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
       const std::string name = std::string("Clip face ") + "xyz"[axis] + (high ? "+" : "-");
-      const Pressed pressed = painter.handle(name, face_centre(box), editor.look.theme.axis[world_axis], "Drag to move this face of the clip box.");
+      const Pressed pressed = painter.handle(name, face_centre(box), editor.look.theme.axis[world_axis], "Drag to move this face of the clip box, with Ctrl by 10 mm. A double click brings it back to the volume's end.");
+      if (pressed.double_clicked) {
+        Visibility next = *editor.document().visibility;
+        move_face(next.clip_box, grid, axis, high, high ? grid.size[axis] - 0.5 : -0.5);
+        commit_clip(editor, "Reset clip face", std::move(next));
+        continue;
+      }
       if (pressed.activated) begin_preview(editor);
       if (pressed.held && editor.views->preview_visibility) {
         Visibility next = *editor.document().visibility;
         const ClipBox& start = editor.document().visibility->clip_box;
-        const double by = std::round(painter.dragged(face_centre(start), world.linear[axis]));
-        if (high) next.clip_box.high[axis] = std::clamp(start.high[axis] + by, start.low[axis] + kThinnest, grid.size[axis] - 0.5);
-        else next.clip_box.low[axis] = std::clamp(start.low[axis] + by, -0.5, start.high[axis] - kThinnest);
+        double place = (high ? start.high : start.low)[axis] + std::round(painter.dragged(face_centre(start), world.linear[axis]));
+        if (editor.input.modifiers().ctrl) {
+          // Whole centimetres of the world's axis that the face moves along.
+          const double step = world.linear[axis][world_axis], first = face_centre(start)[world_axis] - step * (high ? start.high : start.low)[axis];
+          place = (snapped(first + step * place) - first) / step;
+        }
+        move_face(next.clip_box, grid, axis, high, place);
         editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(next));
         editor.touch();
       }
@@ -119,11 +137,17 @@ void draw_plane(Editor& editor, const Painter& painter) {
   const glm::dvec3 corners[] = {plane.point + half * (right + up), plane.point + half * (up - right), plane.point - half * (right + up), plane.point + half * (right - up)};
   for (int i = 0; i < 4; ++i) painter.line(corners[i], corners[(i + 1) % 4]);
   painter.line(plane.point, plane.point + half * normal);
-  const Pressed pressed = painter.handle("Clip plane", plane.point + half * normal, editor.look.theme.accent_text, "Drag to move the clip plane along its normal.");
+  const Pressed pressed = painter.handle("Clip plane", plane.point + half * normal, editor.look.theme.accent_text, "Drag to move the clip plane along its normal, with Ctrl by 10 mm. A double click brings it to the cross-hair.");
+  if (pressed.double_clicked) {
+    Visibility next = *editor.document().visibility;
+    next.clip_plane.point = editor.views->cross_hair;
+    return commit_clip(editor, "Reset clip plane", std::move(next));
+  }
   if (pressed.activated) begin_preview(editor);
   if (pressed.held && editor.views->preview_visibility) {
     Visibility next = *editor.document().visibility;
-    next.clip_plane.point += normal * painter.dragged(next.clip_plane.point + half * normal, normal);
+    const double by = painter.dragged(next.clip_plane.point + half * normal, normal);
+    next.clip_plane.point += normal * (editor.input.modifiers().ctrl ? snapped(by) : by);
     editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(next));
     editor.touch();
   }
@@ -131,6 +155,11 @@ void draw_plane(Editor& editor, const Painter& painter) {
 }
 
 }  // namespace
+
+void move_face(ClipBox& box, const Grid& grid, int axis, bool high, double voxel) {
+  if (high) box.high[axis] = std::clamp(voxel, box.low[axis] + kThinnest, std::max(grid.size[axis] - 0.5, box.low[axis] + kThinnest));
+  else box.low[axis] = std::clamp(voxel, std::min(-0.5, box.high[axis] - kThinnest), box.high[axis] - kThinnest);
+}
 
 double along(const render::Camera& camera, const glm::ivec2& size, const glm::dvec3& point, const glm::dvec3& direction, const glm::dvec2& pixels) {
   glm::dvec2 from, to;

@@ -10,6 +10,9 @@ namespace limber::editor {
 // Into the current window, over the 3D view that fills `rect`.
 void draw_clip_handles(Editor& editor, const Rect& rect);
 
+// A face to that voxel coordinate, within the grid and off the opposite face.
+void move_face(ClipBox& box, const Grid& grid, int axis, bool high, double voxel);
+
 // How far a point moves along `direction` (world, any length) when the pointer moves by `pixels`: multiples of it.
 // 0 where the direction points at the eye.
 double along(const render::Camera& camera, const glm::ivec2& size, const glm::dvec3& point, const glm::dvec3& direction, const glm::dvec2& pixels);

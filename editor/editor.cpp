@@ -22,11 +22,20 @@ constexpr double kLongestRest = 60;   // s; only so that a wait ends at all
 constexpr double kJobPulse = 0.1;     // s between frames while a job runs
 constexpr int kJobsAtOnce = 2;
 
+// Made when it is needed first.
+template <class Picture>
+Picture& drawn(Views& views, std::unique_ptr<Picture>& picture) {
+  if (!picture) picture = std::make_unique<Picture>(views.renderer);
+  return *picture;
+}
+
 void draw_view_picture(Views& views, const Document& document, const ViewPlace& place, double now) {
   const glm::ivec2 size(place.rect.size());
   if (size.x < 1 || size.y < 1) return;
   if (place.id == ViewId::Body) {
     views.body.picture->draw(views.scene, views.body.camera, size, now);
+    if (views.other_scene) drawn(views, views.body.other).draw(*views.other_scene, views.body.camera, size, now);
+    else views.body.other.reset();
     return;
   }
   SliceState& slice = slice_of(views, place.id);
@@ -34,6 +43,8 @@ void draw_view_picture(Views& views, const Document& document, const ViewPlace& 
   const glm::dvec3 normal = render::frame_of(slice.camera.axis).normal;
   slice.camera.centre += normal * glm::dot(views.cross_hair - slice.camera.centre, normal);
   slice.picture->draw(views.scene, slice.camera, views.slice_display, size);
+  if (views.other_scene) drawn(views, slice.other).draw(*views.other_scene, slice.camera, views.slice_display, size);
+  else slice.other.reset();
 }
 
 void move_camera(BodyView& body, double now, bool at_once) {
@@ -94,6 +105,7 @@ Editor::~Editor() {
   preferences.arrangements = arrangements;
   write_preferences(*this);
   ImGui::SetCurrentContext(imgui);
+  each_frame.clear();
   pictures.clear();
   views.reset();
   ImGui_ImplOpenGL3_Shutdown();
@@ -105,7 +117,7 @@ void Editor::close_dialog() { next_dialog_ = std::unique_ptr<Dialog>(); }
 
 double Editor::rest() const {
   if (frames_wanted_ > 0 || !host.events.empty() || views->body.move || (modal && modal->moving())) return 0;
-  if (layout.place_of(ViewId::Body) && !views->body.picture->complete()) return 0;
+  if (layout.place_of(ViewId::Body) && (!views->body.picture->complete() || (views->body.other && !views->body.other->complete()))) return 0;
   double seconds = kLongestRest;
   seconds = std::min(seconds, wake_at_ - now);
   if (jobs.busy()) seconds = std::min(seconds, kJobPulse);
@@ -128,7 +140,8 @@ void Editor::draw_views() {
   update_scene(*views, document(), selection, preferences.theme == "dark");
   show_posed(*this);
   move_camera(views->body, now, preferences.reduce_motion);
-  for (const ViewPlace& place : layout.view_places) draw_view_picture(*views, document(), place, now);
+  const Document shown = shown_document(*this);
+  for (const ViewPlace& place : layout.view_places) draw_view_picture(*views, shown, place, now);
   hover_views(*this);
 }
 

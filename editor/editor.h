@@ -157,7 +157,12 @@ struct Editor {
   std::string shown_popup;  // the one that is open
   bool open_pick_list = false;  // likewise
   std::vector<Label> pick_list;  // tissues under the pointer, nearest first
-  std::string shown_result;  // in place of the volume; empty or unknown: the volume
+  Comparison comparison;
+  struct {
+    std::string result;  // whose name is a text field now; "" for none
+    std::string text;
+    bool focused = false;
+  } renaming_result;
   std::vector<KnownResult> known_results;
   struct {
     std::string method = "dqs";

@@ -12,6 +12,8 @@
 #include "core/rig/bvh.h"
 #include "core/skin/weights_io.h"
 #include "core/volume/volume_io.h"
+#include "editor/icons.h"
+#include "editor/panels/question.h"
 #include "render/image_io.h"
 
 namespace limber::editor {
@@ -53,7 +55,6 @@ struct TurntableBoard {
   std::mutex mutex;
   std::condition_variable changed;
   std::optional<render::Image> picture;
-  int wanted = 0;  // of the next picture
   bool over = false;
 };
 
@@ -99,8 +100,24 @@ void export_picture(Editor& editor, const Path& path) {
   });
 }
 
-void export_turntable(Editor& editor, const Path& path, int pictures) {
-  check_place(path);
+namespace {
+
+// A turn of the body, one picture a frame, so that the editor stays live.
+struct Turntable {
+  std::unique_ptr<render::View3D> view;
+  render::Camera camera;
+  glm::ivec2 size;
+  int pictures, drawn = 0;
+  double time = 0;
+
+  render::Camera turned() const {
+    render::Camera result = camera;
+    result.world_from_view = glm::normalize(glm::angleAxis(2 * std::numbers::pi * drawn / pictures, glm::dvec3(0, 0, 1)) * camera.world_from_view);
+    return result;
+  }
+};
+
+void begin_turntable(Editor& editor, const Path& path, int pictures) {
   auto board = std::make_shared<TurntableBoard>();
   start_task(
       editor, "Export turntable",
@@ -121,26 +138,43 @@ void export_turntable(Editor& editor, const Path& path, int pictures) {
             if (!here) continue;
             image = std::move(*board->picture);
             board->picture.reset();
-            board->wanted = i + 1;
           }
           render::write_png(image, numbered(path, i));
         }
         return [path, pictures](Editor& e) { e.messages.ok("Exported " + std::to_string(pictures) + " pictures", path.parent_path().string()); };
       });
 
-  const render::Camera camera = editor.views->body.camera;
-  const glm::ivec2 size = size_of_view(editor, ViewId::Body);
-  editor.each_frame.push_back([board, camera, size, pictures](Editor& e) {
+  auto turn = std::make_shared<Turntable>();
+  turn->view = std::make_unique<render::View3D>(editor.views->renderer);
+  turn->camera = editor.views->body.camera;
+  turn->size = size_of_view(editor, ViewId::Body);
+  turn->pictures = pictures;
+  // Of the body as it was when the turn began, whatever is done to it meanwhile.
+  editor.each_frame.push_back([board, turn, scene = editor.views->scene](Editor& e) {
     const std::lock_guard lock(board->mutex);
-    if (board->over || board->wanted >= pictures) return false;
+    if (board->over || turn->drawn >= turn->pictures) return false;
     e.touch();
     if (board->picture) return true;
-    render::Camera turned = camera;
-    turned.world_from_view = glm::normalize(glm::angleAxis(2 * std::numbers::pi * board->wanted / pictures, glm::dvec3(0, 0, 1)) * camera.world_from_view);
-    board->picture = picture_of_body(*e.views, turned, size);
+    turn->view->draw(scene, turn->turned(), turn->size, turn->time += 1, 1);
+    board->picture = turn->view->read();
+    ++turn->drawn;
     board->changed.notify_all();
     return true;
   });
+}
+
+}  // namespace
+
+void export_turntable(Editor& editor, const Path& path, int pictures) {
+  check_place(path);
+  int there = 0;
+  for (int i = 0; i < pictures; ++i) there += std::filesystem::exists(numbered(path, i));
+  if (there == 0) return begin_turntable(editor, path, pictures);
+  const std::string first = numbered(path, 0).filename().string(), last = numbered(path, pictures - 1).filename().string();
+  ask(editor, {.title = "Replace pictures?",
+               .lines = {std::to_string(there) + (there == 1 ? " picture" : " pictures") + " of " + first + " to " + last + " are there already.", path.parent_path().string()},
+               .icon = icon::kWarning,
+               .answers = {{"Cancel", {}}, {"Replace", [path, pictures](Editor& e) { begin_turntable(e, path, pictures); }}}});
 }
 
 }  // namespace limber::editor

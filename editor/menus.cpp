@@ -68,7 +68,7 @@ std::vector<Menu> menus() {
       {"Edit",
        {"edit.undo", "edit.redo", "edit.history", "-", "edit.repeat_last", "-", "select.all", "select.none", "-", "edit.rename", "-", "> Prepare volume", "prepare.regrid",
         "prepare.flip_x", "prepare.flip_y", "prepare.flip_z", "prepare.orient", "prepare.crop", "prepare.crop_to_clip_box", "prepare.pad", "prepare.merge", "prepare.specks", "prepare.statistics", "<", "> Weights", "skin.heat", "skin.geodesic", "skin.rigid", "skin.drop_weights", "<", "> Pose", "pose.flex", "pose.clear", "<",
-        "> Resample", "resample.run", "resample.lbs", "resample.dqs", "result.toggle", "result.copy_report", "result.delete", "result.delete_stale", "<", "-", "edit.keymap",
+        "> Resample", "resample.run", "resample.lbs", "resample.dqs", "result.toggle", "compare.show_a", "compare.show_b", "compare.wipe", "compare.swap", "result.rename", "result.copy_report", "result.delete", "result.delete_stale", "<", "-", "edit.keymap",
         "edit.preferences"}},
       {"View",
        {"view.one", "view.split", "view.four", "view.maximize", "-", "> Standard views", "view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom", "view.opposite", "<",

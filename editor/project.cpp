@@ -54,7 +54,7 @@ void commit(Editor& editor, const std::string& label, Document next) {
 
 void frame_all(Editor& editor, bool animated) {
   Views& views = *editor.views;
-  const Box box = tissue_box(views, editor.document(), std::nullopt);
+  const Box box = tissue_box(views, shown_document(editor), std::nullopt);
   const Rect* place = editor.layout.place_of(ViewId::Body);
   const double aspect = place && place->height() > 0 ? place->width() / place->height() : 1.5;
   const render::Camera framed = render::framing(views.body.camera, box.low, box.high, aspect);

@@ -109,15 +109,25 @@ std::string unique_name(const std::vector<std::shared_ptr<const Result>>& result
     if (const std::string candidate = name + " (" + std::to_string(i) + ")"; !taken(candidate)) return candidate;
 }
 
-std::shared_ptr<const Result> shown_result(const Editor& editor) {
-  for (const auto& result : editor.document().results)
-    if (result->name == editor.shown_result) return result;
+std::shared_ptr<const Result> result_named(const Document& document, const std::string& name) {
+  for (const auto& result : document.results)
+    if (result->name == name) return result;
   return nullptr;
+}
+
+std::shared_ptr<const Result> shown_result(const Editor& editor) {
+  const Comparison& comparison = editor.comparison;
+  return result_named(editor.document(), comparison.shows_a && !wiping(editor) ? comparison.a : comparison.b);
 }
 
 std::shared_ptr<const Result> chosen_result(const Editor& editor) {
   if (auto shown = shown_result(editor)) return shown;
   return editor.document().results.empty() ? nullptr : editor.document().results.back();
+}
+
+void show_result(Editor& editor, const std::string& name) {
+  editor.comparison.b = name;
+  editor.comparison.shows_a = false;
 }
 
 void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name) {
@@ -127,26 +137,63 @@ void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, 
   auto renamed = std::make_shared<Result>(*result);
   renamed->name = unique_name(next.results, name);
   *place = renamed;
-  const bool shown = editor.shown_result == result->name;
+  for (std::string* side : {&editor.comparison.a, &editor.comparison.b})
+    if (*side == result->name) *side = renamed->name;
   editor.history.commit("Rename " + result->name, std::move(next));
-  if (shown) editor.shown_result = renamed->name;
+  editor.touch();
 }
 
-void show_posed(Editor& editor) {
-  render::Scene& scene = editor.views->scene;
+std::string why_no_comparison(const Editor& editor) {
+  if (editor.document().results.empty()) return "Nothing was resampled yet";
+  const bool same = result_named(editor.document(), editor.comparison.a) == result_named(editor.document(), editor.comparison.b);
+  return same ? "Choose two results: a click makes one B, Shift and a click A" : "";
+}
+
+bool wiping(const Editor& editor) { return editor.comparison.wipe && why_no_comparison(editor).empty(); }
+
+std::string name_of_side(const Editor& editor, const std::string& result) { return result_named(editor.document(), result) ? result : "At rest"; }
+
+std::shared_ptr<const LabelVolume> shown_volume(const Editor& editor) {
+  const auto shown = shown_result(editor);
+  return shown ? shown->volume : editor.document().volume;
+}
+
+Document shown_document(const Editor& editor) {
+  Document document = editor.document();
+  document.volume = shown_volume(editor);
+  return document;
+}
+
+namespace {
+
+// `result` null: at rest, or in the pose of the moment.
+void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<const Result>& result) {
   const Document& document = editor.document();
   scene.posed_from_rest.clear();
-  if (const auto shown = shown_result(editor); shown && document.volume) {
-    scene.volume = shown->volume;
+  if (result && document.volume) {
+    scene.volume = result->volume;
     if (scene.clip.box) {
-      if (shown->volume->grid.direction == document.volume->grid.direction) scene.clip.box = in_grid(*scene.clip.box, document.volume->grid, shown->volume->grid);
+      if (result->volume->grid.direction == document.volume->grid.direction) scene.clip.box = in_grid(*scene.clip.box, document.volume->grid, result->volume->grid);
       else scene.clip.box.reset();
     }
-    if (document.armature && shown->from_pose && shown->from_pose->rotation.size() == document.armature->bones.size())
-      scene.posed_from_rest = posed_from_rest(*document.armature, *shown->from_pose);
+    if (document.armature && result->from_pose && result->from_pose->rotation.size() == document.armature->bones.size())
+      scene.posed_from_rest = posed_from_rest(*document.armature, *result->from_pose);
   } else if (editor.workspace == Workspace::Pose && document.armature && document.pose) {
     scene.posed_from_rest = posed_from_rest(*document.armature, *document.pose);
   }
+}
+
+}  // namespace
+
+void show_posed(Editor& editor) {
+  Views& views = *editor.views;
+  if (wiping(editor)) {
+    views.other_scene = views.scene;
+    put_into(*views.other_scene, editor, result_named(editor.document(), editor.comparison.a));
+  } else {
+    views.other_scene.reset();
+  }
+  put_into(views.scene, editor, shown_result(editor));
 }
 
 }  // namespace limber::editor

@@ -46,13 +46,33 @@ std::string name_of_pose(const Armature& armature, const Pose& pose);
 // `name`, or with a number behind it when a result has that already.
 std::string unique_name(const std::vector<std::shared_ptr<const Result>>& results, const std::string& name);
 
+// What the views show in place of the volume at rest, and what that is compared with. Names of results; one that is
+// empty or unknown is the volume at rest.
+struct Comparison {
+  std::string a, b;
+  bool shows_a = false;  // else b
+  bool wipe = false;     // a left of a line that is dragged, b right of it
+  float share = 0.5f;    // of the view that a takes
+};
+std::shared_ptr<const Result> result_named(const Document& document, const std::string& name);  // null for none
+// Why there is nothing to compare; "" when there is.
+std::string why_no_comparison(const Editor& editor);
+bool wiping(const Editor& editor);
+// Name of a side as the views show it: "Fore 30°, DQ", "At rest".
+std::string name_of_side(const Editor& editor, const std::string& result);
+
 // The result that is seen in the views in place of the volume; null: the volume at rest.
 std::shared_ptr<const Result> shown_result(const Editor& editor);
 // The one the tables are about: the shown one, else the last.
 std::shared_ptr<const Result> chosen_result(const Editor& editor);
+void show_result(Editor& editor, const std::string& name);  // "": the volume at rest
 // Another name, made unique among the results. An edit.
 void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name);
-// Puts the shown result, or the pose of the moment, into the scene of this frame.
+// The grid and tissue of what the views show. Needs a volume.
+std::shared_ptr<const LabelVolume> shown_volume(const Editor& editor);
+// The document with that volume in place of its own.
+Document shown_document(const Editor& editor);
+// Puts the shown result, or the pose of the moment, into the scene of this frame, and side a of a wipe into the other one.
 void show_posed(Editor& editor);
 
 }  // namespace limber::editor

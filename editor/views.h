@@ -30,12 +30,13 @@ struct BodyView {
   std::optional<CameraMove> move;
   std::string name;  // "Front", while seen from there; else empty
   std::unique_ptr<render::View3D> picture;
+  std::unique_ptr<render::View3D> other;  // of the scene that it is compared with
 };
 
 struct SliceState {
   render::SliceCamera camera;
   bool fitted = false;  // to the body, which waits until the slice is shown and has a size
-  std::unique_ptr<render::SliceView> picture;
+  std::unique_ptr<render::SliceView> picture, other;
 };
 
 // What is picked in the scene. Not a part of the document: choosing is no edit.
@@ -84,6 +85,7 @@ struct Views {
   std::shared_ptr<const TissueTable> preview_tissues;
   glm::vec2 handle_from{0};  // where the pointer pressed the handle that is dragged
   render::Scene scene;  // of the last frame
+  std::optional<render::Scene> other_scene;  // what it is compared with; nothing: no comparison
   std::shared_ptr<const TissueTable> looks_of_tissues;
   std::shared_ptr<const Visibility> looks_of_visibility;
 };

@@ -7,6 +7,7 @@
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
 #include "editor/project.h"
+#include "editor/results.h"
 #include "editor/walk.h"
 
 namespace limber::editor {
@@ -118,8 +119,9 @@ std::optional<Box> box_of_selection(Editor& editor) {
   const auto add = [&](const glm::dvec3& low, const glm::dvec3& high) {
     all = all ? Box{glm::min(all->low, low), glm::max(all->high, high)} : Box{low, high};
   };
+  const Document shown = shown_document(editor);
   for (const Label tissue : editor.selection.tissues) {
-    const Box box = tissue_box(*editor.views, editor.document(), tissue);
+    const Box box = tissue_box(*editor.views, shown, tissue);
     add(box.low, box.high);
   }
   if (const auto& armature = editor.document().armature)

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <utility>
+
+#include "editor/dispatch.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
+#include "editor/project.h"
 #include "editor/resampling.h"
 #include "editor/results.h"
 
@@ -15,20 +19,64 @@ Operator method_operator(const char* id, const char* label, const char* sentence
 
 std::string needs_result(const Editor& editor) { return editor.document().results.empty() ? "Nothing was resampled yet" : ""; }
 
-void toggle_posed(Editor& editor) { editor.shown_result = shown_result(editor) ? "" : chosen_result(editor)->name; }
+void toggle_posed(Editor& editor) { show_result(editor, shown_result(editor) ? "" : chosen_result(editor)->name); }
+
+// Where nothing was chosen to compare: the volume at rest with the last result.
+void choose_sides(Editor& editor) {
+  if (!why_no_comparison(editor).empty()) editor.comparison.b = editor.document().results.back()->name;
+  if (!why_no_comparison(editor).empty()) editor.comparison.a.clear();
+}
+
+// The side alone, over the whole view.
+void show_side(Editor& editor, bool a) {
+  choose_sides(editor);
+  editor.comparison.wipe = false;
+  editor.comparison.shows_a = a;
+}
+
+void toggle_wipe(Editor& editor) {
+  const bool on = !wiping(editor);
+  choose_sides(editor);
+  editor.comparison.wipe = on;
+  editor.comparison.shows_a = false;
+}
+
+// The other side, for as long as the key is held.
+class Flicker final : public Modal {
+ public:
+  explicit Flicker(Editor& editor) : before_(editor.comparison), key_(Key::F) {
+    if (const auto chord = editor.keymap.chord_of("compare.flicker", contexts(editor))) key_ = chord->key;
+    const bool showed_a = before_.shows_a;
+    show_side(editor, !showed_a);
+  }
+  bool key(Editor& editor, const KeyChanged& event) override {
+    if (event.key != key_ || event.down) return true;
+    cancel(editor);
+    return false;
+  }
+  void cancel(Editor& editor) override {
+    const std::string b = editor.comparison.b;
+    editor.comparison = before_;
+    editor.comparison.b = b;
+  }
+  std::vector<KeyHint> hints(const Editor&) const override { return {{{std::string(name_of(key_))}, "Let go: back"}}; }
+
+ private:
+  Comparison before_;
+  Key key_;
+};
 
 void delete_result(Editor& editor) {
   const auto gone = chosen_result(editor);
   Document next = editor.document();
   std::erase(next.results, gone);
-  if (editor.shown_result == gone->name) editor.shown_result.clear();
-  editor.history.commit("Delete " + gone->name, std::move(next));
+  commit(editor, "Delete " + gone->name, std::move(next));
 }
 
 void delete_stale(Editor& editor) {
   Document next = editor.document();
   std::erase_if(next.results, [&](const auto& result) { return !stale_reason(editor.document(), *result).empty(); });
-  editor.history.commit("Delete stale results", std::move(next));
+  commit(editor, "Delete stale results", std::move(next));
 }
 
 std::string needs_stale(const Editor& editor) {
@@ -46,11 +94,25 @@ std::vector<Operator> resample_operators() {
       method_operator("resample.dqs", "DQ", "Dual quaternions: keeps the thickness of twisted limbs.", "dqs"),
       {"result.toggle", "Posed volume", icon::kPose, "Result", "The views show the chosen result, or the volume at rest again.", toggle_posed, needs_result,
        [](const Editor& e) { return shown_result(e) != nullptr; }},
-      {"result.show_last", "Show", icon::kVisible, "Result", "The views show the last result.", [](Editor& e) { e.shown_result = e.document().results.back()->name; }, needs_result},
+      {"result.show_last", "Show", icon::kVisible, "Result", "The views show the last result.", [](Editor& e) { show_result(e, e.document().results.back()->name); }, needs_result},
+      {"result.rename", "Rename result...", icon::kRename, "Result", "Gives the chosen result another name, in the table below the views.",
+       [](Editor& e) {
+         e.renaming_result = {chosen_result(e)->name, chosen_result(e)->name};
+         e.arrangement().results = true;
+         e.arrangement().console = false;
+       },
+       needs_result},
       {"result.delete", "Delete result", icon::kTrash, "Result", "Takes the chosen result out of the project.", delete_result, needs_result},
       {"result.delete_stale", "Delete stale results", icon::kTrash, "Result", "Takes out the results whose inputs have changed.", delete_stale, needs_stale},
       {"result.copy_report", "Copy report", icon::kCopy, "Result", "Puts the chosen result's report on the clipboard, as JSON.",
        [](Editor& e) { e.host.set_clipboard(chosen_result(e)->report); }, needs_result},
+      {"compare.show_a", "Show A", icon::kVisible, "Result", "The views show side A of the comparison.", [](Editor& e) { show_side(e, true); }, needs_result,
+       [](const Editor& e) { return !wiping(e) && e.comparison.shows_a; }},
+      {"compare.show_b", "Show B", icon::kVisible, "Result", "The views show side B of the comparison.", [](Editor& e) { show_side(e, false); }, needs_result,
+       [](const Editor& e) { return !wiping(e) && !e.comparison.shows_a; }},
+      {"compare.wipe", "Wipe", icon::kSplitViews, "Result", "Shows A left and B right of a line that can be dragged, in every view.", toggle_wipe, needs_result, wiping},
+      {"compare.flicker", "Flicker", "", "Result", "Shows the other side while the key is held.", [](Editor& e) { e.modal = std::make_unique<Flicker>(e); }, needs_result},
+      {"compare.swap", "Swap A and B", icon::kMirror, "Result", "Makes A B, and B A.", [](Editor& e) { std::swap(e.comparison.a, e.comparison.b); }, needs_result},
       {"view.results", "Results", icon::kTable, "View", "Opens or closes the table of results below the views.",
        [](Editor& e) { e.arrangement().results = !e.arrangement().results; }, nullptr, [](const Editor& e) { return e.arrangement().results; }},
   };

@@ -3,6 +3,7 @@
 
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
+#include "editor/results.h"
 #include "editor/tissues.h"
 
 namespace limber::editor {
@@ -37,7 +38,8 @@ std::vector<Label> tissues_below(const Editor& editor) {
   const Hover& hover = editor.views->hover;
   std::vector<Label> found;
   if (!hover.inside) return found;
-  const LabelVolume& volume = *editor.document().volume;
+  const auto shown = shown_volume(editor);
+  const LabelVolume& volume = *shown;
   const AffineTransform voxel = voxel_from_world(volume.grid);
   const auto add = [&](Label label) {
     if (label != 0 && look_of(editor.document(), label).visible && std::find(found.begin(), found.end(), label) == found.end()) found.push_back(label);

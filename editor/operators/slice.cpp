@@ -5,6 +5,7 @@
 #include "editor/dispatch.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
+#include "editor/results.h"
 
 namespace limber::editor {
 
@@ -27,7 +28,8 @@ std::string needs_slice(const Editor& editor) {
 void step(Editor& editor, double slices) {
   const auto view = slice_here(editor);
   if (!view) return;
-  const Grid& grid = editor.document().volume->grid;
+  const auto volume = shown_volume(editor);
+  const Grid& grid = volume->grid;
   const glm::dvec3 normal = render::frame_of(axis_of(*view)).normal;
   // Up is towards the head, the front, the left: along the axis nearest to the normal.
   const AffineTransform world = world_from_voxel(grid);
@@ -76,7 +78,7 @@ void put_cross_hair(Editor& editor) {
     if (editor.views->hover.inside) editor.views->cross_hair = editor.views->hover.point;
     return;
   }
-  const Box box = world_box(editor.document());
+  const Box box = world_box(shown_document(editor));
   const glm::dvec3 point = world_of(slice_of(*editor.views, place->id).camera, editor.input.pointer - place->rect.low, place->rect.size());
   editor.views->cross_hair = glm::clamp(point, box.low, box.high);
 }

@@ -6,6 +6,7 @@
 
 #include "editor/clip_handles.h"
 #include "editor/panels/panels.h"
+#include "editor/results.h"
 
 namespace limber::editor {
 
@@ -69,6 +70,7 @@ std::string state_of(const Editor& editor) {
   if (editor.modal && !editor.modal->title().empty()) return editor.modal->title();
   if (!editor.document().volume) return "";
   std::string state = editor.views->display == render::Display::Solid ? "Solid" : editor.views->display == render::Display::XRay ? "X-ray" : "Tissue";
+  if (const auto posed = shown_result(editor); posed && !wiping(editor)) state += " \u00b7 " + posed->name;
   if (editor.document().armature) state += " \u00b7 " + std::to_string(editor.document().armature->bones.size()) + " bones";
   if (!editor.views->renderer.note().empty()) state += " \u00b7 " + editor.views->renderer.note();
   return state;

@@ -136,7 +136,7 @@ void toggle_eye(Editor& editor, const Row& row, bool alone) {
       return alone ? solo_tissues(editor, {label}) : show_tissues(editor, {label}, !*row.visible);
     }
     case Row::Kind::Armature: editor.views->bones = !editor.views->bones; return editor.touch();
-    case Row::Kind::Result: editor.shown_result = *row.visible ? "" : row.name; return editor.touch();
+    case Row::Kind::Result: show_result(editor, *row.visible ? "" : row.name); return editor.touch();
     default: return;
   }
 }
@@ -169,7 +169,7 @@ void open_menu(Editor& editor, const Row& row) {
     case Row::Kind::Bone: editor.open_popup = "Armature"; return;
     case Row::Kind::Tissue: editor.open_popup = "Tissue"; return;
     case Row::Kind::Results: return;
-    case Row::Kind::Result: editor.shown_result = row.name; editor.open_popup = "Result"; return;
+    case Row::Kind::Result: show_result(editor, row.name); editor.open_popup = "Result"; return;
   }
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Below the views: every result in a row, and beside them what the chosen one did to each tissue.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
+#include "editor/fields.h"
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
 #include "editor/prepare.h"
@@ -44,13 +47,59 @@ void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 6>
   put_text(editor, first, colours[0], Rect{{row.low.x + look.px(34), row.low.y}, {right - method - look.px(8), row.high.y}}, words[0]);
 }
 
+std::string side_of(const Editor& editor, const std::shared_ptr<const Result>& result) {
+  const Comparison& comparison = editor.comparison;
+  const bool a = result_named(editor.document(), comparison.a) == result, b = result_named(editor.document(), comparison.b) == result;
+  if (a && b) return "";
+  return a ? "A" : b ? "B" : "";
+}
+
+// A click makes it side B, Shift and a click side A.
+void choose_side(Editor& editor, const std::string& name) {
+  Comparison& comparison = editor.comparison;
+  if (editor.input.modifiers().shift) {
+    comparison.a = name;
+  } else {
+    comparison.b = comparison.b == name && !comparison.shows_a ? "" : name;
+    comparison.shows_a = false;
+  }
+}
+
+// The name as a text field: Enter or a click elsewhere takes it, Escape leaves it.
+void draw_renaming(Editor& editor, const Rect& row, const std::shared_ptr<const Result>& result) {
+  const Look& look = editor.look;
+  auto& renaming = editor.renaming_result;
+  const Rect field{{row.low.x + look.px(28), row.low.y + look.px(1)}, {row.low.x + std::min(look.px(320), row.width() * 0.6f), row.high.y - look.px(1)}};
+  const bool entered = text_field(editor, "name", field, renaming.text, "", !std::exchange(renaming.focused, true));
+  if (!ImGui::IsItemDeactivated()) return;
+  const std::string name = std::exchange(renaming, {}).text;
+  if (entered) rename_result(editor, result, name);
+}
+
+void draw_rest_row(Editor& editor, Column& column, int index) {
+  const Look& look = editor.look;
+  const bool shown = !shown_result(editor);
+  Rect row;
+  if (!column.list_row(row, index, shown)) return;
+  const PathScope path(editor, "At rest");
+  const Pressed pressed = press_area(editor, "row", row);
+  const std::string side = side_of(editor, nullptr);
+  put_icon(look.fonts.regular, shown ? look.theme.accent_text : look.theme.text2, Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}}, icon::kVolume);
+  const Colour plain = look.theme.text, second = look.theme.text2;
+  put_cells(editor, row, {"At rest", "", "", "", "", side}, {plain, second, second, second, second, plain}, shown ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
+  if (pressed.hovered) tooltip(editor, row, "At rest", "The volume that was opened. A click shows it; Shift and a click makes it side A of the comparison.");
+  if (pressed.clicked) choose_side(editor, "");
+}
+
 void draw_result_row(Editor& editor, Column& column, int index, const std::shared_ptr<const Result>& result, bool& open_menu) {
   const Look& look = editor.look;
   const Theme& theme = look.theme;
   const bool shown = shown_result(editor) == result;
+  const std::string side = side_of(editor, result);
   Rect row;
-  if (!column.list_row(row, index, shown)) return;
+  if (!column.list_row(row, index, shown || !side.empty())) return;
   const PathScope path(editor, result->name);
+  if (editor.renaming_result.result == result->name) return draw_renaming(editor, row, result);
   const Pressed pressed = press_area(editor, "row", row);
   const std::string reason = stale_reason(editor.document(), *result);
   const auto facts = facts_of(editor, result);
@@ -59,14 +108,23 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
   char seconds[24];
   std::snprintf(seconds, sizeof seconds, "%.1f s", facts->seconds);
   const Colour plain = theme.text, second = theme.text2;
-  put_cells(editor, row,
-            {result->name, method_name(result->method), seconds, percent(facts->change_percent), grouped(facts->overlap_voxels), reason.empty() ? (shown ? "shown" : "") : "stale: " + reason},
+  const std::string state = reason.empty() ? side + (shown ? std::string(side.empty() ? "" : ", ") + "shown" : "") : "stale: " + reason;
+  put_cells(editor, row, {result->name, method_name(result->method), seconds, percent(facts->change_percent), grouped(facts->overlap_voxels), state},
             {plain, second, plain, colour_of_change(theme, facts->change_percent), facts->overlap_voxels ? theme.warn : theme.ok, reason.empty() ? second : theme.warn},
-            shown ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
-  if (pressed.hovered) tooltip(editor, row, result->name, (shown ? "Shown. A click shows the volume at rest." : "A click shows it in the views.") + (reason.empty() ? "" : "\nStale: " + reason));
-  if (pressed.clicked) editor.shown_result = shown ? "" : result->name;
+            shown || !side.empty() ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
+  if (pressed.hovered)
+    tooltip(editor, row, result->name,
+            std::string(shown ? "Shown. A click shows the volume at rest." : "A click shows it in the views.") + " Shift and a click makes it side A of the comparison; a double click renames it." +
+                (reason.empty() ? "" : "\nStale: " + reason));
+  if (pressed.double_clicked) {
+    editor.comparison.b = result->name;
+    editor.renaming_result = {result->name, result->name};
+  } else if (pressed.clicked) {
+    choose_side(editor, result->name);
+  }
   if (pressed.right_clicked) {
-    editor.shown_result = result->name;
+    editor.comparison.b = result->name;
+    editor.comparison.shows_a = false;
     open_menu = true;
   }
 }
@@ -103,7 +161,7 @@ void draw_tissue_changes(Editor& editor, const Rect& rect) {
 
 void draw_results(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
-  const auto& results = editor.document().results;
+  const auto results = editor.document().results;  // kept, since a new name commits
   const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kHead)}};
   fill(head, look.theme.head);
   fill({head.low, {head.high.x, head.low.y + look.line()}}, look.theme.void_);
@@ -111,7 +169,7 @@ void draw_results(Editor& editor, const Rect& rect) {
   put_text(editor, look.fonts.regular, look.theme.text2, Rect{{x + look.px(8), head.low.y}, {x + look.px(60), head.high.y}}, std::to_string(results.size()));
   const float top = head.low.y + look.px(4), bottom = head.high.y - look.px(3);
   float right = head.high.x - look.px(8);
-  for (const char* id : {"view.results", "result.delete", "result.copy_report"}) {
+  for (const char* id : {"view.results", "result.delete", "result.rename", "result.copy_report", "compare.swap"}) {
     const bool closes = std::string_view(id) == "view.results";
     const Rect place{{right - look.px(26), top}, {right, bottom}};
     if (closes) {
@@ -122,8 +180,13 @@ void draw_results(Editor& editor, const Rect& rect) {
     }
     right = place.low.x - look.px(4);
   }
-  const Rect toggle{{right - look.px(130), top}, {right, bottom}};
-  operator_button(editor, "result.toggle", toggle, "Posed volume", shown_result(editor) ? ButtonStyle::Soft : ButtonStyle::Plain);
+  right -= look.px(6);
+  for (const char* id : {"compare.wipe", "compare.show_b", "compare.show_a"}) {
+    const Operator* op = find_operator(editor, id);
+    const float width = std::round(text_size(look.fonts.regular, op->label).x + look.px(20));
+    operator_button(editor, id, {{right - width, top}, {right, bottom}}, op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
+    right -= width + look.px(1);
+  }
 
   const Rect body{{rect.low.x, head.high.y}, rect.high};
   if (results.empty()) {
@@ -144,6 +207,7 @@ void draw_results(Editor& editor, const Rect& rect) {
   {
     Column column(editor, "results", {{body.low.x, table_head.high.y}, {middle, body.high.y}});
     int index = 0;
+    draw_rest_row(editor, column, index++);
     for (auto result = results.rbegin(); result != results.rend(); ++result) draw_result_row(editor, column, index++, *result, open_menu);
   }
   if (open_menu) ImGui::OpenPopup("result menu");
@@ -153,7 +217,7 @@ void draw_results(Editor& editor, const Rect& rect) {
     put_text(editor, look.fonts.semibold, look.theme.text2, from_im(ImGui::GetCursorScreenPos()) + glm::vec2(look.px(8), look.px(2)), chosen_result(editor) ? chosen_result(editor)->name : "Result");
     ImGui::Dummy({look.px(190), look.px(22)});
     ImGui::Separator();
-    for (const char* id : {"result.toggle", "result.copy_report", "result.delete", "result.delete_stale"}) operator_menu_item(editor, id);
+    for (const char* id : {"result.toggle", "compare.wipe", "result.rename", "result.copy_report", "result.delete", "result.delete_stale"}) operator_menu_item(editor, id);
     pop_path(editor);
     editor.place.region = Region::Bottom;
     ImGui::EndPopup();

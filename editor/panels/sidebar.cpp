@@ -39,6 +39,7 @@ void draw_sidebar(Editor& editor) {
     draw_outliner(editor, column);
     draw_tissues(editor, column);
     draw_tissue(editor, column);
+    draw_clipping(editor, column);
     draw_under_cursor(editor, column);
     draw_history(editor, column);
   }

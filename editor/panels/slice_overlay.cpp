@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "editor/panels/panels.h"
+#include "editor/results.h"
 
 namespace limber::editor {
 
@@ -54,7 +55,8 @@ int grid_axis_of(const Grid& grid, const glm::dvec3& normal) {
 
 void draw_slice_bar(Editor& editor, int axis, const Rect& rect) {
   const Look& look = editor.look;
-  const Grid& grid = editor.document().volume->grid;
+  const auto volume = shown_volume(editor);
+  const Grid& grid = volume->grid;
   const float height = std::min(look.px(280), rect.height() - look.px(120));
   if (height < look.px(60)) return;
   const float x = rect.high.x - look.px(20), top = std::round(rect.centre().y - height / 2);
@@ -82,12 +84,12 @@ void draw_slice_overlay(Editor& editor, ViewId id, const Rect& rect) {
   const render::SliceCamera& camera = slice_of(*editor.views, id).camera;
   const render::SliceFrame frame = render::frame_of(camera.axis);
   if (!editor.document().volume) return draw_view_title(editor, rect, name_of(id), "");
-  const auto volume = editor.document().volume;
+  const auto volume = shown_volume(editor);
   const Grid& grid = volume->grid;
   const int axis = grid_axis_of(grid, frame.normal);
   const int slice = static_cast<int>(std::lround((voxel_from_world(grid) * editor.views->cross_hair)[axis]));
   draw_cross_hair(editor, camera, frame, rect);
-  draw_view_title(editor, rect, name_of(id), std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]));
+  draw_view_title(editor, rect, name_of(id), std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]) + (shown_result(editor) ? " \u00b7 posed" : ""));
   draw_letters(editor, frame, rect);
   draw_slice_bar(editor, axis, rect);
   draw_scale_bar(editor, rect, camera.millimetres_per_pixel);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The pictures of the body, what is drawn over them, and what the pointer is over.
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -7,21 +8,65 @@
 #include "editor/icons.h"
 #include "editor/menus.h"
 #include "editor/panels/panels.h"
+#include "editor/results.h"
 #include "editor/tissues.h"
 
 namespace limber::editor {
 
 namespace {
 
+void put_picture(unsigned texture, const Rect& rect) {
+  ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), im(rect.low), im(rect.high), {0, 1}, {1, 0});
+}
+
+float wipe_line(const Editor& editor, const Rect& rect) { return std::round(glm::mix(rect.low.x, rect.high.x, editor.comparison.share)); }
+
+bool over_other(const Editor& editor, const ViewPlace& place) { return editor.views->other_scene && editor.input.pointer.x < wipe_line(editor, place.rect); }
+
 void draw_picture(Editor& editor, const ViewPlace& place) {
   Views& views = *editor.views;
-  const unsigned texture = place.id == ViewId::Body ? views.body.picture->texture() : slice_of(views, place.id).picture->texture();
-  ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), im(place.rect.low), im(place.rect.high), {0, 1}, {1, 0});
+  const bool body = place.id == ViewId::Body;
+  put_picture(body ? views.body.picture->texture() : slice_of(views, place.id).picture->texture(), place.rect);
+  const bool both = body ? views.body.other != nullptr : slice_of(views, place.id).other != nullptr;
+  if (!both) return;
+  ImGui::PushClipRect(im(place.rect.low), {wipe_line(editor, place.rect), place.rect.high.y}, true);
+  put_picture(body ? views.body.other->texture() : slice_of(views, place.id).other->texture(), place.rect);
+  ImGui::PopClipRect();
+}
+
+// The line between a and b, with their names at its sides.
+void draw_wipe(Editor& editor, const Rect& rect) {
+  if (!editor.views->other_scene) return;
+  const Look& look = editor.look;
+  Comparison& comparison = editor.comparison;
+  const float x = wipe_line(editor, rect), y = std::round(rect.high.y - look.px(72)), half = look.px(4);
+  const Pressed pressed = press_area(editor, "wipe", {{x - half, rect.low.y}, {x + half, rect.high.y}});
+  if (pressed.hovered || pressed.held) editor.cursor = Cursor::ResizeX;
+  if (pressed.held && !pressed.activated) comparison.share = std::clamp((editor.input.pointer.x - rect.low.x) / std::max(1.0f, rect.width()), 0.02f, 0.98f);
+  if (pressed.double_clicked) comparison.share = 0.5f;
+  const Colour colour = pressed.hovered || pressed.held ? look.theme.accent : look.theme.view_text;
+  fill({{x - look.line(), rect.low.y}, {x + look.line(), rect.high.y}}, colour);
+  const Rect grip{{x - look.px(9), y - look.px(16)}, {x + look.px(9), y + look.px(16)}};
+  fill(grip, look.theme.view_plate, look.px(4));
+  outline(grip, colour, look.px(4), look.line());
+  put_icon(look.fonts.small, look.theme.view_text, grip, icon::kMeasure);
+  const auto chip = [&](const std::string& letter, const std::string& name, bool left) {
+    const std::string text = letter + "  " + name;
+    const float width = std::min(text_size(look.fonts.regular, text).x + look.px(20), (left ? x - rect.low.x : rect.high.x - x) - look.px(32));
+    if (width < look.px(40)) return;
+    const Rect place = left ? Rect{{x - look.px(16) - width, y - look.px(13)}, {x - look.px(16), y + look.px(13)}} : Rect{{x + look.px(16), y - look.px(13)}, {x + look.px(16) + width, y + look.px(13)}};
+    fill(place, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
+    put_text(editor, look.fonts.regular, look.theme.view_text, Rect{{place.low.x + look.px(10), place.low.y}, {place.high.x - look.px(9), place.high.y}}, text);
+  };
+  chip("A", name_of_side(editor, comparison.a), true);
+  chip("B", name_of_side(editor, comparison.b), false);
 }
 
 void hover_body(Editor& editor, const ViewPlace& place) {
   Hover& hover = editor.views->hover;
-  const auto hit = editor.views->body.picture->pick(glm::ivec2(editor.input.pointer - place.rect.low));
+  const BodyView& body = editor.views->body;
+  const auto& picture = over_other(editor, place) && body.other ? body.other : body.picture;
+  const auto hit = picture->pick(glm::ivec2(editor.input.pointer - place.rect.low));
   if (!hit) return;
   hover.inside = true;
   hover.label = hit->label;
@@ -29,10 +74,14 @@ void hover_body(Editor& editor, const ViewPlace& place) {
   hover.point = hit->point;
 }
 
+const render::Scene& seen_scene(const Editor& editor, const ViewPlace& place) {
+  return over_other(editor, place) ? *editor.views->other_scene : editor.views->scene;
+}
+
 void hover_slice(Editor& editor, const ViewPlace& place) {
   Hover& hover = editor.views->hover;
   hover.point = world_of(slice_of(*editor.views, place.id).camera, editor.input.pointer - place.rect.low, place.rect.size());
-  const LabelVolume& volume = *editor.views->scene.volume;  // at rest or posed, as it is seen
+  const LabelVolume& volume = *seen_scene(editor, place).volume;  // at rest or posed
   hover.voxel = glm::ivec3(glm::round(voxel_from_world(volume.grid) * hover.point));
   hover.label = volume.at_or_air(hover.voxel);
   hover.inside = hover.label != 0;
@@ -102,7 +151,7 @@ void hover_views(Editor& editor) {
   if (!editor.document().volume || editor.drag) return;
   if (place->id == ViewId::Body) hover_body(editor, *place);
   else hover_slice(editor, *place);
-  if (hover.inside && editor.views->scene.volume == editor.document().volume) hover.weights = weights_at(*editor.views, editor.document(), hover.voxel);
+  if (hover.inside && seen_scene(editor, *place).volume == editor.document().volume) hover.weights = weights_at(*editor.views, editor.document(), hover.voxel);
 }
 
 void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state) {
@@ -157,6 +206,7 @@ void draw_views_region(Editor& editor) {
     ImGui::PushClipRect(im(place.rect.low), im(place.rect.high), true);
     if (place.id == ViewId::Body) draw_body_overlay(editor, place.rect);
     else draw_slice_overlay(editor, place.id, place.rect);
+    draw_wipe(editor, place.rect);
     if (editor.layout.view_places.size() > 1 && place.id == editor.views->active) outline(place.rect, look.theme.accent, 0, 2 * look.line());
     ImGui::PopClipRect();
   }

@@ -62,7 +62,7 @@ TEST_CASE("outliner: rows fold, eyes hide and show, Ctrl with a click leaves one
     click "Outliner/result First/eye"
   )");
   CHECK_FALSE(test.editor->views->bones);
-  CHECK(test.editor->shown_result == "First");
+  CHECK(test.editor->comparison.b == "First");
 }
 
 TEST_CASE("outliner: a tissue and a result are renamed by double click, by F2 and from their menus; Escape keeps the name") {

@@ -108,7 +108,7 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   // Shown in place of the volume, and no longer.
   test.play("click \"Fore 30\u00b0, DQ/row\"");
   CHECK(test.editor->views->scene.volume == result.volume);
-  test.play("click result.toggle");
+  test.play("click \"At rest/row\"");
   CHECK(test.editor->views->scene.volume == document.volume);
 
   run(*test.editor, "resample.lbs");
