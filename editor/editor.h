@@ -170,6 +170,10 @@ struct Editor {
     bool fit_joints = false;
   } resampling;
   struct {
+    bool keep_limits = true;                    // joints stop where their limits end
+    std::map<std::string, glm::dquat> copied;  // rotations by bone
+  } posing;
+  struct {
     std::string search;
     std::array<bool, 4> hidden{};  // by severity
     std::size_t lines_seen = 0;

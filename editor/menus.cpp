@@ -67,7 +67,7 @@ std::vector<Menu> menus() {
         "view.screenshot", "view.turntable", "<", "-", "file.quit"}},
       {"Edit",
        {"edit.undo", "edit.redo", "edit.history", "-", "edit.repeat_last", "-", "select.all", "select.none", "-", "edit.rename", "-", "> Prepare volume", "prepare.regrid",
-        "prepare.flip_x", "prepare.flip_y", "prepare.flip_z", "prepare.orient", "prepare.crop", "prepare.crop_to_clip_box", "prepare.pad", "prepare.merge", "prepare.specks", "prepare.statistics", "<", "> Weights", "skin.heat", "skin.geodesic", "skin.rigid", "skin.drop_weights", "<", "> Pose", "pose.flex", "pose.clear", "<",
+        "prepare.flip_x", "prepare.flip_y", "prepare.flip_z", "prepare.orient", "prepare.crop", "prepare.crop_to_clip_box", "prepare.pad", "prepare.merge", "prepare.specks", "prepare.statistics", "<", "> Weights", "skin.heat", "skin.geodesic", "skin.rigid", "skin.drop_weights", "<", "> Pose", "pose.rotate", "pose.move", "-", "pose.clear_rotation", "pose.clear_translation", "pose.clear", "-", "pose.copy", "pose.paste", "pose.paste_flipped", "pose.flip", "-", "pose.flex", "pose.limits", "<",
         "> Resample", "resample.run", "resample.lbs", "resample.dqs", "result.toggle", "compare.show_a", "compare.show_b", "compare.wipe", "compare.swap", "result.rename", "result.copy_report", "result.delete", "result.delete_stale", "<", "-", "edit.keymap",
         "edit.preferences"}},
       {"View",

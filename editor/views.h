@@ -83,6 +83,7 @@ struct Views {
   // What is shown instead of the document's while the user drags; dropped or committed at the end.
   std::shared_ptr<const Visibility> preview_visibility;
   std::shared_ptr<const TissueTable> preview_tissues;
+  std::shared_ptr<const Pose> preview_pose;
   glm::vec2 handle_from{0};  // where the pointer pressed the handle that is dragged
   render::Scene scene;  // of the last frame
   std::optional<render::Scene> other_scene;  // what it is compared with; nothing: no comparison
@@ -96,7 +97,8 @@ SliceState& slice_of(Views& views, ViewId id);
 std::string name_of(ViewId id);
 
 // The scene that shows this document.
-void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme);
+//   posed  whether the bones are shown as they are posed, or at rest
+void update_scene(Views& views, const Document& document, const Selection& selection, bool posed, bool dark_theme);
 
 // World box of the volume's grid, or of 300 mm without one.
 struct Box {

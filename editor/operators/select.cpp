@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 
+#include "core/rig/mirror.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
 #include "editor/results.h"
@@ -30,6 +31,17 @@ void pick(Editor& editor) {
 }
 
 void extend(Editor& editor) {
+  if (const auto bone = bone_here(editor)) {
+    // The active one pressed again is given up.
+    if (editor.selection.bone == bone) {
+      editor.selection.bones.erase(*bone);
+      editor.selection.bone = editor.selection.bones.empty() ? std::nullopt : std::optional(*editor.selection.bones.begin());
+    } else {
+      editor.selection.bone = bone;
+      editor.selection.bones.insert(*bone);
+    }
+    return;
+  }
   if (editor.views->hover.inside) select_tissue(editor, editor.views->hover.label, true);
 }
 
@@ -61,6 +73,53 @@ void pick_list(Editor& editor) {
   editor.open_pick_list = editor.pick_list.size() > 1;
 }
 
+std::string needs_bone(const Editor& editor) {
+  if (!editor.document().armature) return "Import a rig first";
+  return editor.selection.bone && *editor.selection.bone < std::ssize(editor.document().armature->bones) ? "" : "Choose a bone first";
+}
+
+void choose_bone(Editor& editor, int bone, bool extend) {
+  if (!extend) editor.selection = {};
+  editor.selection.bone = bone;
+  editor.selection.bones.insert(bone);
+}
+
+void go_to_parent(Editor& editor, bool extend) {
+  const int parent = editor.document().armature->bones[*editor.selection.bone].parent;
+  if (parent >= 0) choose_bone(editor, parent, extend);
+}
+
+void go_to_child(Editor& editor, bool extend) {
+  const std::vector<Bone>& bones = editor.document().armature->bones;
+  for (int b = 0; b < std::ssize(bones); ++b)
+    if (bones[b].parent == *editor.selection.bone) return choose_bone(editor, b, extend);
+}
+
+// The bone and all that hangs on it.
+void choose_chain(Editor& editor) {
+  const std::vector<Bone>& bones = editor.document().armature->bones;
+  for (int b = *editor.selection.bone; b < std::ssize(bones); ++b)
+    if (bones[b].parent >= 0 && editor.selection.bones.contains(bones[b].parent)) editor.selection.bones.insert(b);
+}
+
+void choose_mirrored(Editor& editor) {
+  const std::vector<int> pairs = mirror_pairs(*editor.document().armature);
+  std::set<int> bones;
+  for (int bone : editor.selection.bones) bones.insert(pairs[bone]);
+  editor.selection.bones = bones;
+  editor.selection.bone = pairs[*editor.selection.bone];
+}
+
+void choose_all(Editor& editor) {
+  const Document& document = editor.document();
+  if (editor.workspace == Workspace::Pose && document.armature) {
+    for (int b = 0; b < std::ssize(document.armature->bones); ++b) editor.selection.bones.insert(b);
+    if (!editor.selection.bone) editor.selection.bone = 0;
+    return;
+  }
+  for (const Tissue& tissue : document.tissues->tissues) editor.selection.tissues.insert(tissue.label);
+}
+
 Operator tool_operator(const char* id, const char* label, const char* icon, const char* sentence, Tool tool) {
   return {id, label, icon, "Tool", sentence, [tool](Editor& e) { e.tool = tool; }, nullptr, [tool](const Editor& e) { return e.tool == tool; }};
 }
@@ -73,11 +132,13 @@ std::vector<Operator> select_operators() {
       {"select.extend", "Extend selection", "", "Select", "Adds the tissue under the pointer to the chosen ones, or takes it out.", extend, needs_volume},
       {"select.pick_list", "Select from list", icon::kPick, "Select", "Chooses the tissue under the pointer and lists what lies behind it.", pick_list, needs_volume},
       {"select.none", "Select nothing", "", "Select", "Chooses nothing.", [](Editor& e) { e.selection = {}; }},
-      {"select.all", "Select all", "", "Select", "Chooses every tissue.",
-       [](Editor& e) {
-         for (const Tissue& tissue : e.document().tissues->tissues) e.selection.tissues.insert(tissue.label);
-       },
-       needs_volume},
+      {"select.all", "Select all", "", "Select", "Chooses every tissue; every bone in the Pose workspace.", choose_all, needs_volume},
+      {"select.parent", "Select parent", "", "Select", "Chooses the bone that the active one hangs on.", [](Editor& e) { go_to_parent(e, false); }, needs_bone},
+      {"select.child", "Select child", "", "Select", "Chooses the first bone that hangs on the active one.", [](Editor& e) { go_to_child(e, false); }, needs_bone},
+      {"select.extend_parent", "Extend to parent", "", "Select", "Adds the bone that the active one hangs on.", [](Editor& e) { go_to_parent(e, true); }, needs_bone},
+      {"select.extend_child", "Extend to child", "", "Select", "Adds the first bone that hangs on the active one.", [](Editor& e) { go_to_child(e, true); }, needs_bone},
+      {"select.chain", "Select chain", "", "Select", "Adds everything that hangs on the chosen bones.", choose_chain, needs_bone},
+      {"select.mirror", "Select mirrored", "", "Select", "Chooses the bones of the other side instead.", choose_mirrored, needs_bone},
       tool_operator("tool.select", "Select", icon::kSelect, "A click chooses the tissue under the pointer.", Tool::Select),
       tool_operator("tool.cross_hair", "Cross-hair", icon::kCrossHair, "A click moves the cross-hair, and the slices with it.", Tool::CrossHair),
   };

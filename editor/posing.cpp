@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/posing.h"
+
+#include <numeric>
+
+#include "core/rig/joint_limits.h"
+#include "editor/project.h"
+
+namespace limber::editor {
+
+Pose pose_of(const Document& document) { return document.pose ? *document.pose : rest_pose(*document.armature); }
+
+Pose shown_pose(const Editor& editor) { return editor.views->preview_pose ? *editor.views->preview_pose : pose_of(editor.document()); }
+
+std::vector<int> chosen_bones(const Editor& editor) {
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  if (!armature) return {};
+  std::vector<int> bones(editor.selection.bones.begin(), editor.selection.bones.end());
+  std::erase_if(bones, [&](int bone) { return bone >= std::ssize(armature->bones); });
+  if (bones.empty()) {
+    bones.resize(armature->bones.size());
+    std::iota(bones.begin(), bones.end(), 0);
+  }
+  return bones;
+}
+
+std::vector<int> topmost(const Armature& armature, const std::vector<int>& bones) {
+  std::vector<bool> chosen(armature.bones.size(), false), below(armature.bones.size(), false);
+  for (int bone : bones) chosen[bone] = true;
+  std::vector<int> top;
+  for (int bone = 0; bone < std::ssize(armature.bones); ++bone) {
+    const int parent = armature.bones[bone].parent;
+    below[bone] = parent >= 0 && (below[parent] || chosen[parent]);
+    if (chosen[bone] && !below[bone]) top.push_back(bone);
+  }
+  return top;
+}
+
+Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones) {
+  if (!editor.posing.keep_limits) return pose;
+  const Armature& armature = *editor.document().armature;
+  for (int bone : bones) pose.rotation[bone] = within_limits(armature.bones[bone], pose.rotation[bone]);
+  return pose;
+}
+
+void show_pose(Editor& editor, Pose pose) {
+  editor.views->preview_pose = std::make_shared<const Pose>(std::move(pose));
+  editor.touch();
+}
+
+void drop_shown_pose(Editor& editor) {
+  editor.views->preview_pose.reset();
+  editor.touch();
+}
+
+void commit_pose(Editor& editor, const std::string& label, Pose pose) {
+  drop_shown_pose(editor);
+  if (pose == pose_of(editor.document())) return;
+  Document next = editor.document();
+  next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
+  commit(editor, label, std::move(next));
+}
+
+glm::dmat3 posed_axes(const Armature& armature, const Pose& pose, int bone) {
+  return glm::mat3_cast(posed_from_rest(armature, pose)[bone].rotation) * rest_axes(armature.bones[bone]);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The pose that is worked on: the document's, or what is shown in its place while a tool changes it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "editor/editor.h"
+
+namespace limber::editor {
+
+// At rest where the document has none. Needs a rig.
+Pose pose_of(const Document& document);
+Pose shown_pose(const Editor& editor);
+
+// The chosen bones that hang on no other chosen one, all bones where none is chosen.
+std::vector<int> chosen_bones(const Editor& editor);
+std::vector<int> topmost(const Armature& armature, const std::vector<int>& bones);
+
+// What a change of a pose may do at a joint's limits.
+Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones);
+
+// Shows a pose until it is committed or dropped.
+void show_pose(Editor& editor, Pose pose);
+void drop_shown_pose(Editor& editor);
+// One edit; none where nothing changed.
+void commit_pose(Editor& editor, const std::string& label, Pose pose);
+
+// Where the bone's own axes point in that pose: columns x, y (along the bone), z.
+glm::dmat3 posed_axes(const Armature& armature, const Pose& pose, int bone);
+
+}  // namespace limber::editor

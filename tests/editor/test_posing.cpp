@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cmath>
+#include <numbers>
+
+#include "core/rig/joint_limits.h"
+#include "editor/posing.h"
+#include "tests/editor/small_limb.h"
+
+using namespace limber;
+using namespace limber::editor;
+using limber::test::LimbEditor;
+
+namespace {
+
+struct PosingEditor : LimbEditor {
+  explicit PosingEditor(const glm::ivec2& size = {1280, 720}, const Preferences& preferences = {}) : LimbEditor(size, preferences) {
+    play("key Ctrl+3\nkey Num1\nwait-idle");
+    choose(1);
+  }
+
+  void choose(int bone) {
+    editor->selection = {};
+    editor->selection.bone = bone;
+    editor->selection.bones = {bone};
+  }
+  std::string last_edit() const { return editor->history.steps()[editor->history.position()].label; }
+  Pose pose() const { return pose_of(editor->document()); }
+  // Of one rotation, about an axis; NaN when it turns about another.
+  double degrees(int bone, const glm::dvec3& axis) const {
+    const SwingTwist parts = swing_twist(pose().rotation[bone], axis);
+    return glm::length(parts.swing) < 1e-6 ? parts.twist * 180 / std::numbers::pi : NAN;
+  }
+  glm::dvec2 seen(const glm::dvec3& world) const {
+    glm::dvec2 pixel;
+    const Rect* place = editor->layout.place_of(ViewId::Body);
+    REQUIRE(render::project(editor->views->body.camera, world, glm::ivec2(place->size()), pixel));
+    return pixel + glm::dvec2(place->low);
+  }
+  // A pixel of the window; scripts speak of pixels at scale 1.
+  void pointer_to(const glm::dvec2& pixel) {
+    const glm::dvec2 at = pixel / double(editor->look.scale);
+    play("move " + std::to_string(at.x) + " " + std::to_string(at.y));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("posing: R turns the chosen bone as far as the pointer goes round its head, in both projections and at twice the size") {
+  for (const float scale : {1.0f, 2.0f})
+    for (const bool parallel : {false, true}) {
+      Preferences preferences;
+      preferences.scale = scale;
+      PosingEditor test({1600, 1000}, preferences);
+      test.editor->posing.keep_limits = false;
+      if (parallel) test.play("key Num5\nwait-idle");
+      const glm::dvec2 head = test.seen({0, 0, 0});
+      const auto at = [&](double degrees) {
+        const double a = degrees * std::numbers::pi / 180;
+        return head + 150.0 * glm::dvec2(std::cos(a), -std::sin(a));
+      };
+      test.pointer_to(at(10));
+      test.play("key R");
+      for (double degrees = 15; degrees <= 50; degrees += 5) test.pointer_to(at(degrees));
+      CHECK(test.editor->modal);
+      test.play("key Return");
+      CHECK(!test.editor->modal);
+      INFO("scale ", scale, ", parallel ", parallel);
+      // Seen from the front, the eye is at -y: counter-clockwise turns about -y.
+      CHECK(test.degrees(1, {0, -1, 0}) == doctest::Approx(40).epsilon(0.0005));
+    }
+}
+
+TEST_CASE("posing: an axis lock, a typed number, Escape and undo") {
+  PosingEditor test;
+  test.play("key R\nkey X\nkey 4\nkey 5\nkey Return");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(45));
+  CHECK(test.last_edit() == "Rotate Fore");
+
+  test.play("key R\nkey X\nkey 2\nkey 0\nkey Escape");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(45));
+  test.play("key Ctrl+Z");
+  CHECK(test.pose() == rest_pose(*test.editor->document().armature));
+  test.play("key Ctrl+Shift+Z");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(45));
+
+  // The bone's own axis after the world's, a minus sign and a corrected digit.
+  test.play("key Alt+R\nkey R\nkey X\nkey X\nkey 3\nkey 9\nkey Backspace\nkey 5\nkey Return");
+  const glm::dvec3 own = rest_axes(test.editor->document().armature->bones[1])[0];
+  CHECK(std::abs(test.degrees(1, own)) == doctest::Approx(35));
+}
+
+TEST_CASE("posing: joints stop at their limits, unless they are told not to") {
+  PosingEditor test;
+  test.play("key R\nkey X\nkey 1\nkey 7\nkey 0\nkey Return");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(2.5 * 180 / std::numbers::pi));
+  test.play("key Ctrl+Z\nkey R\nkey X\nkey -\nkey 3\nkey 0\nkey Return");
+  CHECK(test.pose() == rest_pose(*test.editor->document().armature));
+  test.play("click \"Edit/Pose/Keep to joint limits\"\nkey R\nkey X\nkey 1\nkey 7\nkey 0\nkey Return");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(170));
+}
+
+TEST_CASE("posing: with Ctrl the angle snaps, and R again turns like a trackball") {
+  PosingEditor test;
+  test.editor->posing.keep_limits = false;
+  const glm::dvec2 head = test.seen({0, 0, 0});
+  test.pointer_to(head + glm::dvec2(100, 0));
+  test.play("key R\nkey-down Ctrl");
+  test.pointer_to(head + glm::dvec2(100, -42));
+  test.play("key Return\nkey-up Ctrl");
+  CHECK(test.degrees(1, {0, -1, 0}) == doctest::Approx(25));
+
+  test.play("key Alt+R\nkey R\nkey R");
+  test.pointer_to(head + glm::dvec2(150, -42));
+  test.play("key Return");
+  CHECK(test.pose() != rest_pose(*test.editor->document().armature));
+  CHECK(std::isnan(test.degrees(1, {0, -1, 0})));
+}
+
+TEST_CASE("posing: G lets the end of the bone follow the pointer, and the limb with it") {
+  PosingEditor test;
+  test.editor->posing.keep_limits = false;
+  const glm::dvec2 from = test.seen({0, 0, -36}), to = test.seen({20, 0, 10});
+  test.pointer_to(from);
+  test.play("key G");
+  for (int i = 1; i <= 8; ++i) test.pointer_to(from + (to - from) * (i / 8.0));
+  test.play("key Return");
+  const auto posed = posed_from_rest(*test.editor->document().armature, test.pose());
+  CHECK(glm::distance(posed[1] * glm::dvec3(0, 0, -36), glm::dvec3(20, 0, 10)) < 0.5);
+  CHECK(test.last_edit() == "Reach with Fore");
+
+  test.play("key Alt+G");
+  test.choose(0);
+  test.play("key G\nkey Z\nkey 1\nkey 2\nkey Return");
+  CHECK(glm::distance(test.pose().root_translation, glm::dvec3(0, 0, 12)) < 1e-9);
+  test.play("key Alt+G");
+  CHECK(test.pose().root_translation == glm::dvec3(0));
+}
+
+TEST_CASE("posing: a pose is copied, pasted and cleared bone by bone") {
+  PosingEditor test;
+  test.play("key R\nkey X\nkey 4\nkey 0\nkey Return\nkey Ctrl+C\nkey Alt+R");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(0));
+  test.play("key Ctrl+V");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(40));
+  // In the mirror a turn about x stays, since no bone has a side.
+  test.play("key Ctrl+M");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(40));
+}
+
+TEST_CASE("posing: bones are chosen along the rig") {
+  PosingEditor test;
+  test.play("key [");
+  CHECK(test.editor->selection.bone == 0);
+  test.play("key ]");
+  CHECK(test.editor->selection.bone == 1);
+  test.play("key Shift+[");
+  CHECK(test.editor->selection.bones == std::set<int>{0, 1});
+  test.choose(0);
+  test.play("key L");
+  CHECK(test.editor->selection.bones == std::set<int>{0, 1});
+  test.play("key Alt+A\nkey A");
+  CHECK(test.editor->selection.bones.size() == 2);
+}
