@@ -14,4 +14,9 @@ inline std::string needs_tissue(const Editor& editor) {
   return editor.selection.tissue ? "" : "Choose a tissue first";
 }
 
+inline std::string needs_bone(const Editor& editor) {
+  if (!editor.document().armature) return "Import a rig first";
+  return editor.selection.bone && *editor.selection.bone < std::ssize(editor.document().armature->bones) ? "" : "Choose a bone first";
+}
+
 }  // namespace limber::editor

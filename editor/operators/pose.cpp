@@ -61,11 +61,6 @@ void ask_flex(Editor& editor) {
                                 outcome, act}));
 }
 
-std::string needs_bone(const Editor& editor) {
-  if (!editor.document().armature) return "Import a rig first";
-  return editor.selection.bone && *editor.selection.bone < std::ssize(editor.document().armature->bones) ? "" : "Choose a bone first";
-}
-
 std::string needs_copy(const Editor& editor) {
   if (const std::string why = needs_rig(editor); !why.empty()) return why;
   return editor.posing.copied.empty() ? "Copy a pose first" : "";

@@ -73,11 +73,6 @@ void pick_list(Editor& editor) {
   editor.open_pick_list = editor.pick_list.size() > 1;
 }
 
-std::string needs_bone(const Editor& editor) {
-  if (!editor.document().armature) return "Import a rig first";
-  return editor.selection.bone && *editor.selection.bone < std::ssize(editor.document().armature->bones) ? "" : "Choose a bone first";
-}
-
 void choose_bone(Editor& editor, int bone, bool extend) {
   if (!extend) editor.selection = {};
   editor.selection.bone = bone;
