@@ -137,7 +137,7 @@ void Editor::take_input() {
 }
 
 void Editor::draw_views() {
-  update_scene(*views, document(), selection, workspace == Workspace::Pose || workspace == Workspace::Resample, preferences.theme == "dark");
+  update_scene(*views, document(), selection, preferences.theme == "dark");
   show_posed(*this);
   move_camera(views->body, now, preferences.reduce_motion);
   const Document shown = shown_document(*this);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/editor.h"
+#include "editor/posing.h"
 
 namespace limber::editor {
 
@@ -178,8 +179,8 @@ void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<
     }
     if (document.armature && result->from_pose && result->from_pose->rotation.size() == document.armature->bones.size())
       scene.posed_from_rest = posed_from_rest(*document.armature, *result->from_pose);
-  } else if (editor.workspace == Workspace::Pose && document.armature && document.pose) {
-    scene.posed_from_rest = posed_from_rest(*document.armature, *document.pose);
+  } else if (editor.workspace == Workspace::Pose && document.armature) {
+    scene.posed_from_rest = posed_from_rest(*document.armature, shown_pose(editor));
   }
 }
 

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 std::string thumbnail_png(Editor& editor) {
   Views& views = *editor.views;
   if (!editor.document().volume) return "";
-  update_scene(views, editor.document(), editor.selection, true, true);
+  update_scene(views, editor.document(), editor.selection, true);
   render::Scene scene = views.scene;
   scene.grid = false;
   scene.outlined.reset();

@@ -56,7 +56,7 @@ std::string name_of(ViewId id) {
   return kNames[static_cast<int>(id)];
 }
 
-void update_scene(Views& views, const Document& document, const Selection& selection, bool posed, bool dark_theme) {
+void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme) {
   render::Scene& scene = views.scene;
   const auto tissues = views.preview_tissues ? views.preview_tissues : document.tissues;
   const auto visibility = views.preview_visibility ? views.preview_visibility : document.visibility;
@@ -72,10 +72,6 @@ void update_scene(Views& views, const Document& document, const Selection& selec
   if (visibility && visibility->clip_plane.enabled) scene.clip.plane = {visibility->clip_plane.point, visibility->clip_plane.normal};
   scene.outlined = selection.tissue;
   scene.armature = views.bones ? document.armature : nullptr;
-  const auto pose = views.preview_pose ? views.preview_pose : document.pose;
-  scene.posed_from_rest.clear();
-  if (posed && pose && scene.armature && pose->rotation.size() == document.armature->bones.size())
-    scene.posed_from_rest = posed_from_rest(*document.armature, *pose);
   scene.bones_in_front = views.display == render::Display::XRay;
   scene.bones.assign(scene.armature ? scene.armature->bones.size() : 0, {});
   for (const int bone : selection.bones)

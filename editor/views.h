@@ -97,8 +97,7 @@ SliceState& slice_of(Views& views, ViewId id);
 std::string name_of(ViewId id);
 
 // The scene that shows this document.
-//   posed  whether the bones are shown as they are posed, or at rest
-void update_scene(Views& views, const Document& document, const Selection& selection, bool posed, bool dark_theme);
+void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme);
 
 // World box of the volume's grid, or of 300 mm without one.
 struct Box {

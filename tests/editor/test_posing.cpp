@@ -70,6 +70,16 @@ TEST_CASE("posing: R turns the chosen bone as far as the pointer goes round its 
     }
 }
 
+TEST_CASE("posing: the bones follow while they are turned, and go back with Escape") {
+  PosingEditor test;
+  const auto shown = [&] { return test.editor->views->scene.posed_from_rest.at(1).rotation; };
+  test.play("key R\nkey X\nkey 4\nkey 5\nwait-idle");
+  CHECK(glm::angle(shown()) == doctest::Approx(std::numbers::pi / 4));
+  CHECK(test.pose() == rest_pose(*test.editor->document().armature));
+  test.play("key Escape\nwait-idle");
+  CHECK(shown() == glm::dquat(1, 0, 0, 0));
+}
+
 TEST_CASE("posing: an axis lock, a typed number, Escape and undo") {
   PosingEditor test;
   test.play("key R\nkey X\nkey 4\nkey 5\nkey Return");
