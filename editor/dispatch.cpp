@@ -44,12 +44,14 @@ void on_key(Editor& editor, const KeyChanged& event) {
       editor.drag.reset();
     } else if (!editor.messages.errors.empty()) {
       editor.messages.errors.erase(editor.messages.errors.begin());
-    } else if (!editor.dialog && !editor.list_focus.list.empty()) {
-      editor.list_focus = {};
-    } else if (!editor.dialog && editor.start_screen && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) {
-      editor.start_screen = false;
-    } else if (editor.dialog && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) {
+    } else if (ImGui::GetCurrentContext()->OpenPopupStack.Size > 0) {
+      ImGui::ClosePopupToLevel(0, true);
+    } else if (editor.dialog) {
       editor.dialog->escape(editor);
+    } else if (!editor.list_focus.list.empty()) {
+      editor.list_focus = {};
+    } else {
+      editor.start_screen = false;
     }
     return;
   }

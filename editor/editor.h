@@ -180,6 +180,7 @@ struct Editor {
   } console;
   std::map<int, double> stopping_since;  // jobs that were cancelled, by id
   std::map<std::string, bool> open_sections;  // of the sidebar, by title
+  std::string wanted_section;  // comes into sight in the next frame; empty: none
   InputState input;
   std::optional<Drag> drag;
   std::optional<PendingPress> pending_press;

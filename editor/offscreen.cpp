@@ -39,7 +39,8 @@ class Picture final : public Offscreen {
   void set_clipboard(const std::string& text) override { clipboard_ = text; }
   void set_cursor(Cursor) override {}
   void set_title(const std::string&) override {}
-  void toggle_full_screen() override {}
+  void toggle_full_screen() override { full_screen_ = !full_screen_; }
+  bool full_screen() const override { return full_screen_; }
 
   void resize(const glm::ivec2& size) override {
     size_ = size;
@@ -68,6 +69,7 @@ class Picture final : public Offscreen {
   glm::ivec2 size_{0};
   glm::vec2 shifted_{0};
   std::string clipboard_;
+  bool full_screen_ = false;
 };
 
 }  // namespace

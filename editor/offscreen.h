@@ -14,6 +14,7 @@ class Offscreen : public Host {
   virtual void resize(const glm::ivec2& size) = 0;
   virtual render::Image picture() const = 0;  // as last presented
   virtual glm::vec2 shifted() const = 0;      // by how much shift_pointer() has moved the pointer, in all
+  virtual bool full_screen() const = 0;       // as it would be on a desktop
 };
 
 // Throws Error where EGL gives no OpenGL 3.3 context.

@@ -40,6 +40,7 @@ std::vector<Operator> edit_operators() {
        [](Editor& e) {
          e.arrangement().sidebar = true;
          e.open_sections["History"] = true;
+         e.wanted_section = "History";
        }},
   };
 }

@@ -66,6 +66,14 @@ class Flicker final : public Modal {
   Key key_;
 };
 
+bool results_seen(const Editor& editor) { return editor.arrangement().results && !editor.arrangement().console; }
+
+// The console gives way.
+void toggle_results(Editor& editor) {
+  editor.arrangement().results = !results_seen(editor);
+  if (editor.arrangement().results) editor.arrangement().console = false;
+}
+
 void delete_result(Editor& editor) {
   const auto gone = chosen_result(editor);
   Document next = editor.document();
@@ -114,7 +122,7 @@ std::vector<Operator> resample_operators() {
       {"compare.flicker", "Flicker", "", "Result", "Shows the other side while the key is held.", [](Editor& e) { e.modal = std::make_unique<Flicker>(e); }, needs_result},
       {"compare.swap", "Swap A and B", icon::kMirror, "Result", "Makes A B, and B A.", [](Editor& e) { std::swap(e.comparison.a, e.comparison.b); }, needs_result},
       {"view.results", "Results", icon::kTable, "View", "Opens or closes the table of results below the views.",
-       [](Editor& e) { e.arrangement().results = !e.arrangement().results; }, nullptr, [](const Editor& e) { return e.arrangement().results; }},
+       toggle_results, nullptr, results_seen},
   };
 }
 

@@ -34,6 +34,11 @@ bool Column::begin_section(const std::string& title, const std::string& right, b
   const Look& look = editor_.look;
   bool& open = editor_.open_sections.try_emplace(title, open_at_first).first->second;
   const Rect rect = head_ = row(28);
+  if (editor_.wanted_section == title) {
+    ImGui::SetScrollY(ImGui::GetScrollY() + rect.low.y - area_.low.y);
+    editor_.wanted_section.clear();
+    editor_.touch();
+  }
   push_path(editor_, title);
   // The end of the head is left to buttons that a panel puts there.
   const Pressed pressed = press_area(editor_, "fold", {rect.low, {rect.high.x - look.px(90), rect.high.y}});

@@ -397,6 +397,22 @@ TEST_CASE("replay: menus at the pointer list views, displays and workspaces") {
   )");
 }
 
+TEST_CASE("replay: Escape closes menus") {
+  SmallEditor test({1024, 640});
+  test.play(R"(
+    click View/Overlays
+    expect widget:Overlays/Grid
+    key Escape
+    expect widget:Overlays/Grid absent
+    expect widget:View/Solid absent
+    move "3D view/view"
+    key Z
+    expect widget:Display/Solid
+    key Escape
+    expect widget:Display/Solid absent
+  )");
+}
+
 TEST_CASE("replay: tissues without a name are listed by their label") {
   TemporaryFolder folder;
   LabelVolume volume = *small_body().volume;

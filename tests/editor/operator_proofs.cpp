@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "tests/editor/operator_proofs.h"
+
+#include <algorithm>
+
+namespace limber::test {
+
+namespace {
+
+constexpr glm::ivec2 kWindow{1120, 560}, kSmall{160, 120};
+
+}  // namespace
+
+Stage::Stage() : sitting(home.folder.path(), {}, kWindow) {
+  editor().worker_program = LIMBER_PROGRAM;
+  editor().preferences.reduce_motion = true;  // cameras arrive at once
+  open_limb();
+}
+
+void Stage::open_limb() {
+  auto opened = std::make_shared<editor::Opened>();
+  opened->document = small_limb();
+  opened->name = "limb";
+  opened->label = "Open limb";
+  opened->agreed = editor().history.revision();
+  replace_project(editor(), opened);
+  sitting.test.player.settle();
+}
+
+void Stage::put_away() {
+  for (int i = 0; i < 3; ++i)
+    for (const bool down : {true, false}) sitting.test.host->events.push(editor::KeyChanged{editor::Key::Escape, down});
+  sitting.test.player.settle();
+  REQUIRE(is("dialog", "no"));
+  REQUIRE(is("error", "none"));
+}
+
+void Stage::watch() {
+  ran_.clear();
+  // Operators can be replaced by the editor itself, so each time they are asked anew.
+  for (editor::Operator& op : editor().operators)
+    op.run = [this, id = op.id, act = op.run](editor::Editor& e) {
+      ran_.insert(id);
+      act(e);
+    };
+}
+
+Seen Stage::look() {
+  editor::Editor& e = editor();
+  Seen seen{e.document(), static_cast<int>(e.history.steps().size()), static_cast<int>(e.history.position()), e.views->body.camera, {}, e.views->cross_hair, e.selection, sitting.test.host->clipboard(), {}, {}};
+  for (int i = 0; i < 3; ++i) seen.slices[i] = e.views->slices[i].camera;
+  render::View3D body(e.views->renderer);
+  body.draw(e.views->scene, seen.camera, kSmall, 0, 1);
+  seen.body = body.read().rgba;
+  render::SliceView slice(e.views->renderer);
+  slice.draw(e.views->scene, seen.slices[1], e.views->slice_display, kSmall);
+  seen.slice = slice.read().rgba;
+  return seen;
+}
+
+void prove(Stage& stage, const std::vector<Proof>& proofs) {
+  for (const Proof& proof : proofs) {
+    INFO(proof.id, ": ", proof.deeds);
+    stage.put_away();
+    if (proof.ready) proof.ready(stage);
+    stage.play(proof.first);
+    stage.watch();
+    const Seen before = stage.look();
+    CHECK_FALSE(proof.effect(stage, before));
+    stage.play(proof.deeds);
+    INFO("then: dialog ", stage.fact("dialog"), ", error ", stage.fact("error"), ", last message ", stage.fact("toast"), ", edit ", stage.fact("edit"));
+    CHECK(stage.ran(proof.id));
+    CHECK(proof.effect(stage, before));
+    if (proof.shows == Shows::InBody) CHECK(stage.look().body != before.body);
+    if (proof.shows == Shows::InSlice) CHECK(stage.look().slice != before.slice);
+  }
+}
+
+TEST_CASE("operators: each one that exists is proved to do what it says") {
+  std::set<std::string> proved;
+  for (const auto& proofs : {proofs_of_views(), proofs_of_navigation(), proofs_of_tissues(), proofs_of_work(), proofs_of_files(), proofs_of_pages()})
+    for (const Proof& proof : proofs) {
+      INFO(proof.id);
+      CHECK(proved.insert(proof.id).second);
+    }
+  for (const editor::Operator& op : editor::gather_operators()) {
+    INFO(op.id, ", ", op.label);
+    CHECK(proved.contains(op.id));
+  }
+}
+
+}  // namespace limber::test
