@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Pictures of the whole window, compared with those that were looked at and found good: tests/editor/golden/NAME.png.
+//
+// They are kept at half size and with colours in steps of four, which is finer than what is compared: both pictures are
+// blurred by 3 x 3 pixels, then the mean difference and the share of pixels that clearly differ are held. Drivers round
+// differently at edges, so single pixels prove nothing.
+//
+// A failure writes NAME.png and NAME-difference.png into the folder that $LIMBER_GOLDEN_FAILURES names (else
+// golden-failures, in the folder the test runs in). After a wanted change:
+//   LIMBER_GOLDEN_REFRESH=1 build/tests/limber_editor_tests -tc="golden:*"     and look at each picture that changed.
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <thread>
+
+#include "core/volume/phantom.h"
+#include "editor/task.h"
+#include "tests/editor/sitting.h"
+
+namespace limber::test {
+
+using namespace editor;
+using render::Image;
+
+namespace {
+
+constexpr glm::ivec2 kWindow{1280, 720};
+constexpr double kMostMean = 1.2;      // of 255
+constexpr double kClearly = 20;        // of 255, in any channel
+constexpr double kMostClear = 0.004;   // share of the pixels
+
+int channel(const Image& image, int x, int y, int c) { return image.rgba[(static_cast<std::size_t>(y) * image.size.x + x) * 4 + c]; }
+
+Image halved(const Image& image) {
+  Image half{image.size / 2, {}};
+  half.rgba.reserve(static_cast<std::size_t>(half.size.x) * half.size.y * 4);
+  for (int y = 0; y < half.size.y; ++y)
+    for (int x = 0; x < half.size.x; ++x)
+      for (int c = 0; c < 4; ++c) {
+        const int sum = channel(image, 2 * x, 2 * y, c) + channel(image, 2 * x + 1, 2 * y, c) + channel(image, 2 * x, 2 * y + 1, c) + channel(image, 2 * x + 1, 2 * y + 1, c);
+        half.rgba.push_back(static_cast<std::uint8_t>(c == 3 ? 255 : std::min(255, (sum / 4 + 2) / 4 * 4)));
+      }
+  return half;
+}
+
+double blurred(const Image& image, int x, int y, int c) {
+  int sum = 0, count = 0;
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, image.size.y - 1); ++v)
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, image.size.x - 1); ++u, ++count) sum += channel(image, u, v, c);
+  return static_cast<double>(sum) / count;
+}
+
+struct Comparison {
+  double mean = 255, clear = 1;  // clear: share of the pixels that clearly differ
+  Image difference;
+
+  bool same() const { return mean <= kMostMean && clear <= kMostClear; }
+};
+
+Comparison compare(const Image& a, const Image& b) {
+  if (a.size != b.size) return {};
+  Comparison result{0, 0, {a.size, std::vector<std::uint8_t>(a.rgba.size(), 255)}};
+  const double pixels = static_cast<double>(a.size.x) * a.size.y;
+  for (int y = 0; y < a.size.y; ++y)
+    for (int x = 0; x < a.size.x; ++x) {
+      double most = 0;
+      for (int c = 0; c < 3; ++c) {
+        const double difference = std::abs(blurred(a, x, y, c) - blurred(b, x, y, c));
+        result.mean += difference / 3 / pixels;
+        most = std::max(most, difference);
+        result.difference.rgba[(static_cast<std::size_t>(y) * a.size.x + x) * 4 + c] = static_cast<std::uint8_t>(std::min(255.0, 4 * difference));
+      }
+      result.clear += most > kClearly ? 1 / pixels : 0;
+    }
+  return result;
+}
+
+std::filesystem::path golden(const std::string& name) { return std::filesystem::path(LIMBER_SOURCE_DIR "/tests/editor/golden") / (name + ".png"); }
+
+void check_golden(const std::string& name, const Image& window) {
+  const Image picture = halved(window);
+  if (std::getenv("LIMBER_GOLDEN_REFRESH")) render::write_png(picture, golden(name));
+  const Comparison found = compare(picture, render::read_png(golden(name)));
+  INFO(name, ": mean difference ", found.mean, " of 255, ", 100 * found.clear, " % of the pixels clearly differ");
+  CHECK(found.same());
+  if (found.same()) return;
+  const char* named = std::getenv("LIMBER_GOLDEN_FAILURES");
+  const std::filesystem::path folder = std::filesystem::absolute(named ? named : "golden-failures");
+  std::filesystem::create_directories(folder);
+  render::write_png(picture, folder / (name + ".png"));
+  if (!found.difference.rgba.empty()) render::write_png(found.difference, folder / (name + "-difference.png"));
+  MESSAGE("see ", folder.string());
+}
+
+// A sitting in which nothing moves by itself.
+struct Scene {
+  Scene() : sitting(home.folder.path(), {}, kWindow) { editor().preferences.reduce_motion = true; }
+
+  Editor& editor() { return sitting.editor(); }
+  void play(const std::string& script) { sitting.play(script); }
+  Image picture() {
+    play("wait-idle");
+    return sitting.test.host->picture();
+  }
+  void open(Phantom phantom, const std::string& name, const Visibility& visibility = {}) {
+    auto opened = std::make_shared<Opened>();
+    opened->document.volume = std::make_shared<const LabelVolume>(std::move(phantom.volume));
+    opened->document.tissues = std::make_shared<const TissueTable>(std::move(phantom.tissues));
+    opened->document.visibility = std::make_shared<const Visibility>(visibility);
+    opened->document.volume_type = std::make_shared<const FileType>();
+    opened->document.armature = std::make_shared<const Armature>(std::move(phantom.armature));
+    opened->name = name;
+    opened->label = "Open " + name;
+    opened->agreed = editor().history.revision();
+    replace_project(editor(), opened);
+    sitting.test.player.settle();
+  }
+  void open_arm() { open(make_arm_phantom(3), "arm"); }
+
+  Home home;
+  Sitting sitting;
+};
+
+struct Arm : Scene {
+  Arm() { open_arm(); }
+};
+
+}  // namespace
+
+TEST_CASE("golden: start screen") {
+  Scene scene;
+  check_golden("start", scene.picture());
+}
+
+TEST_CASE("golden: arm, solid") {
+  Arm scene;
+  check_golden("arm_solid", scene.picture());
+}
+
+TEST_CASE("golden: arm, X-ray with bones, one chosen") {
+  Arm scene;
+  scene.play("move \"3D view/view\"\n key Alt+Z");
+  scene.editor().selection.bone = 1;
+  scene.editor().selection.bones = {1};
+  check_golden("arm_xray", scene.picture());
+}
+
+TEST_CASE("golden: arm, a clip box through the elbow") {
+  Arm scene;
+  scene.play("move \"3D view/view\"\n key Num1\n key Alt+B");
+  Document cut = scene.editor().document();
+  const glm::dvec3 elbow = cut.armature->bones[1].head;
+  Visibility visibility = *cut.visibility;
+  visibility.clip_box.low.y = std::round((voxel_from_world(cut.volume->grid) * elbow).y) - 0.5;
+  cut.visibility = std::make_shared<const Visibility>(visibility);
+  scene.editor().history.commit("Move clip box", cut);
+  render::Camera& camera = scene.editor().views->body.camera;
+  camera.centre = elbow;
+  camera.distance *= 0.45;
+  scene.editor().touch();
+  check_golden("clip_box", scene.picture());
+}
+
+TEST_CASE("golden: arm, four views") {
+  Arm scene;
+  scene.play("click view.four\n click tool.cross_hair\n drag Coronal/view 0 40\n move \"Axial/view\"");
+  check_golden("four_views", scene.picture());
+}
+
+TEST_CASE("golden: body with organs") {
+  Scene scene;
+  Phantom phantom = make_body_phantom(6);
+  Visibility visibility;
+  for (const Tissue& tissue : phantom.tissues.tissues)
+    if (tissue.kind == TissueKind::Skin || tissue.kind == TissueKind::Fat || tissue.kind == TissueKind::Muscle) visibility.looks[tissue.label].visible = false;
+  scene.open(std::move(phantom), "body", visibility);
+  check_golden("body_organs", scene.picture());
+}
+
+TEST_CASE("golden: preferences") {
+  Arm scene;
+  scene.play("key Ctrl+,");
+  check_golden("preferences", scene.picture());
+}
+
+TEST_CASE("golden: search") {
+  Arm scene;
+  scene.play("key F3\n type \"clip\"");
+  check_golden("search", scene.picture());
+}
+
+TEST_CASE("golden: a job at work") {
+  Arm scene;
+  scene.play("key Ctrl+4\n wait-idle");
+  auto end = std::make_shared<std::atomic<bool>>(false);
+  start_task(scene.editor(), "Resample Forearm 90\u00b0", [end](Progress& progress) -> Finish {
+    progress.update("deform", 0.42);
+    while (!*end) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    return {};
+  });
+  for (int i = 0; i < 200 && scene.sitting.test.fact("text:deform") != "shown"; ++i) {
+    scene.sitting.test.player.step();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  scene.play("click status/Running\n move \"3D view/view\"");
+  check_golden("job", scene.sitting.test.host->picture());
+  *end = true;
+  scene.play("wait-job");
+}
+
+TEST_CASE("golden: an error message") {
+  Arm scene;
+  scene.editor().messages.show_error("the rig lies outside the volume: /data/limbs/far.json: choose the rig of this volume, or check its units (mm) and axes (LPS). Nothing was changed in this project.");
+  scene.editor().touch();
+  check_golden("error", scene.picture());
+}
+
+TEST_CASE("golden: a hidden tissue, another display, a hidden tool strip and another theme are noticed") {
+  Arm scene;
+  for (const char* change : {"move \"3D view/view\"\n key H", "move \"3D view/view\"\n key Alt+Z", "key T", "key F3\n type \"other theme\"\n key Return"}) {
+    INFO(std::string(change));
+    const Image before = halved(scene.picture());
+    CHECK(compare(before, halved(scene.picture())).same());
+    scene.play(change);
+    CHECK_FALSE(compare(before, halved(scene.picture())).same());
+  }
+}
+
+}  // namespace limber::test
