@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// render_views VOLUME [OUT-PNG-PREFIX]
+// render_views VOLUME [OUT-PNG-PREFIX | --turning]
 // Draws the volume from far and close, at two sizes, solid and in X-ray, turning the camera before each picture, and
 // prints as JSON what each picture cost (CPU seconds of the whole process, median of five) with the cameras used, so that
-// another program can be measured on the same ones. Then how fast it turns at 1280x720 when the resolution is its own choice.
+// another program can be measured on the same ones. Then how fast it turns at 1280x720: at fixed resolutions (frames a second
+// of two cores, from CPU seconds, whatever else runs), and when the resolution is its own choice. --turning: that alone.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -102,6 +103,21 @@ void measure_turning(Renderer& renderer, const Scene& scene, const Camera& first
   std::printf("{\"view\": \"turning 1280x720\", \"scale\": %d, \"frames_per_second\": %.1f, \"cpu_seconds\": %.6f}", view.scale(), 1 / median(wall), median(cpu));
 }
 
+// At every `scale`-th pixel each way.
+void measure_turning_at(Renderer& renderer, const Scene& scene, const Camera& first, int scale) {
+  View3D view(renderer);
+  Camera camera = first;
+  std::vector<double> cpu;
+  for (int i = 0; i < 25; ++i) {
+    camera = turned(camera, 3);
+    const double begin = cpu_seconds();
+    view.draw(scene, camera, {1280, 720}, 0, scale);
+    renderer.finish();
+    if (i >= 5) cpu.push_back(cpu_seconds() - begin);
+  }
+  std::printf("{\"scale\": %d, \"cpu_seconds\": %.6f, \"frames_per_second\": %.1f}", scale, median(cpu), 2 / median(cpu));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -126,7 +142,9 @@ int main(int argc, char** argv) {
     renderer.finish();
     std::printf("{\"upload_cpu_seconds\": %.6f,\n \"views\": [\n", cpu_seconds() - begin);
     bool is_first = true;
-    for (const Display display : {Display::Solid, Display::XRay})
+    const bool turning_alone = argc > 2 && std::string(argv[2]) == "--turning";
+    for (const Display display : {Display::Solid, Display::XRay}) {
+      if (turning_alone) break;
       for (const bool near : {false, true})
         for (const glm::ivec2 size : {glm::ivec2(640, 480), glm::ivec2(1280, 720)}) {
           if (!std::exchange(is_first, false)) std::printf(",\n");
@@ -136,8 +154,14 @@ int main(int argc, char** argv) {
           if (argc > 2) png = std::string(argv[2]) + "-" + distance + "-" + std::to_string(size.x) + (display == Display::XRay ? "-xray" : "-solid") + ".png";
           measure_view(renderer, scene, distance, near ? close : far, size, png);
         }
-    std::printf("],\n \"turning\": ");
+    }
     scene.display = Display::Solid;
+    std::printf("],\n \"turning_at_scale\": [");
+    for (const int scale : {1, 2, 3}) {
+      if (scale > 1) std::printf(", ");
+      measure_turning_at(renderer, scene, far, scale);
+    }
+    std::printf("],\n \"turning\": ");
     measure_turning(renderer, scene, far);
     std::printf("}\n");
   } catch (const std::exception& error) {

@@ -134,7 +134,7 @@ def main():
         rows.append(row)
     mean = lambda display: round(math.exp(sum(math.log(r["ahead"]) for r in rows if r["view"].endswith(display)) /
                                           sum(r["view"].endswith(display) for r in rows)), 1)
-    print(json.dumps({"upload_cpu_seconds": ours["upload_cpu_seconds"], "turning": ours["turning"], "views": rows,
+    print(json.dumps({"upload_cpu_seconds": ours["upload_cpu_seconds"], "turning": ours["turning"], "turning_at_scale": ours["turning_at_scale"], "views": rows,
                       "geometric_mean": {"solid": mean("solid"), "xray": mean("xray")}, "vtk": vtk.vtkVersion().GetVTKVersion()}, indent=1))
 
 

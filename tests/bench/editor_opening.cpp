@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// editor_opening VOLUME...
+// How long the editor takes to show a volume that it is started with: the real editor, in a window of 1280x720 that is a
+// picture in memory, five times for each volume, each in a process of its own. Prints as JSON the medians of
+//   window_cpu_seconds         CPU seconds (user and system, all threads) before the first frame: libraries, fonts, shaders
+//   first_picture_cpu_seconds  from the first frame, which is the window, to the first frame that shows the volume
+//   first_picture_seconds      the same divided by two: how long it takes on two cores that are otherwise idle
+//   longest_frame_cpu_seconds  CPU seconds of the interface's own thread in its longest frame until then
+//   complete_cpu_seconds       from the first frame until the picture is at full resolution
+//   frames_with_progress       how many frames in between showed the job's progress
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <thread>
+
+#include "core/base/error.h"
+#include "editor/editor.h"
+#include "editor/offscreen.h"
+#include "editor/sitting.h"
+
+namespace {
+
+using namespace limber;
+using namespace limber::editor;
+
+constexpr double kFrame = 1.0 / 60;     // s
+constexpr double kWhileJobsRun = 0.1;  // s between frames
+constexpr double kLongestWait = 300;   // s
+
+double seconds(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+// Whether the last frame's picture holds the volume.
+bool shows_volume(const Editor& editor) { return editor.document().volume && editor.views->body.picture->scale() > 0; }
+
+constexpr int kRuns = 5;
+constexpr std::array<const char*, 6> kNames = {"window_cpu_seconds", "first_picture_cpu_seconds", "first_picture_seconds", "longest_frame_cpu_seconds", "complete_cpu_seconds", "frames_with_progress"};
+using Figures = std::array<double, kNames.size()>;
+
+Figures open_once(const Path& volume) {
+  const auto host = open_offscreen({1280, 720});
+  Editor editor(*host);
+  begin_sitting(editor, {}, {volume});
+  double longest = 0, first_picture = 0, progress = 0;
+  const double begin = seconds(CLOCK_MONOTONIC);
+  editor.frame(0);
+  const double window = seconds(CLOCK_PROCESS_CPUTIME_ID);
+  while (!shows_volume(editor) || editor.rest() == 0) {
+    if (!editor.messages.errors.empty()) throw Error(editor.messages.errors.front().what, volume.string(), "choose another file");
+    if (seconds(CLOCK_MONOTONIC) - begin > kLongestWait) throw Error("no picture comes", volume.string(), "open it in the editor and look");
+    const double before = seconds(CLOCK_THREAD_CPUTIME_ID);
+    editor.frame(seconds(CLOCK_MONOTONIC) - begin);
+    editor.views->renderer.finish();  // a frame has ended when its picture is there
+    if (first_picture == 0) {
+      longest = std::max(longest, seconds(CLOCK_THREAD_CPUTIME_ID) - before);
+      if (shows_volume(editor)) first_picture = seconds(CLOCK_PROCESS_CPUTIME_ID) - window;
+      else progress += editor.jobs.busy();
+    }
+    std::this_thread::sleep_for(std::chrono::duration<double>(editor.rest() == 0 ? kFrame : std::min(editor.rest(), kWhileJobsRun)));
+  }
+  return {window, first_picture, first_picture / 2, longest, seconds(CLOCK_PROCESS_CPUTIME_ID) - window, progress};
+}
+
+// In a process that has done nothing yet.
+Figures open_in_new_process(const Path& volume) {
+  int ends[2];
+  if (::pipe(ends) != 0) throw Error("no pipe", volume.string(), "close some programs");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    int code = 0;
+    try {
+      const Figures figures = open_once(volume);
+      code = ::write(ends[1], &figures, sizeof figures) == sizeof figures ? 0 : 1;
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      code = 1;
+    }
+    std::_Exit(code);
+  }
+  ::close(ends[1]);
+  Figures figures{};
+  const bool read = ::read(ends[0], &figures, sizeof figures) == sizeof figures;
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  if (!read || status != 0) throw Error("the editor could not show it", volume.string(), "open it in the editor and look");
+  return figures;
+}
+
+double median(std::array<double, kRuns> values) {
+  std::nth_element(values.begin(), values.begin() + kRuns / 2, values.end());
+  return values[kRuns / 2];
+}
+
+void measure(const Path& volume) {
+  std::array<Figures, kRuns> runs;
+  for (Figures& run : runs) run = open_in_new_process(volume);
+  std::printf("{\"open\": \"%s\"", volume.filename().c_str());
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    std::array<double, kRuns> values;
+    for (int run = 0; run < kRuns; ++run) values[run] = runs[run][i];
+    std::printf(", \"%s\": %.4f", kNames[i], median(values));
+  }
+  std::printf("}");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) return 2;
+  try {
+    std::printf("[");
+    for (int i = 1; i < argc; ++i) {
+      if (i > 1) std::printf(",\n ");
+      measure(argv[i]);
+      std::fflush(stdout);
+    }
+    std::printf("]\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
