@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
+#include <cassert>
 
 #include <epoxy/gl.h>
 
@@ -55,9 +56,31 @@ const VisibleField& Renderer::Parts::layer(Body& body, const LooksTexture& looks
   return *field;
 }
 
-VolumePass& Renderer::Parts::volume_pass(const VolumeTexture& volume) {
-  auto& pass = volume_passes_[volume.layout().atlases];
-  if (!pass) pass = std::make_unique<VolumePass>(volume.layout().atlases);
+const PosedTexture* Renderer::Parts::pose(Body& body, const std::shared_ptr<const PreviewMap>& map) {
+  if (!map) return nullptr;
+  assert(map->grid == body.volume->original().lock()->grid);
+  if (!body.pose) body.pose = std::make_unique<PosedTexture>();
+  if (body.pose->map() != map) body.pose->upload(map, largest_texture);
+  return body.pose.get();
+}
+
+const Hull& Renderer::Parts::hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map) {
+  const VisibleField& field = *body.layers[layer];
+  if (!map) return field.hull();
+  if (body.posed_hulls.size() <= layer) body.posed_hulls.resize(layer + 1);
+  auto& posed = body.posed_hulls[layer];
+  if (!posed) posed = std::make_unique<Body::PosedHull>();
+  if (posed->map != map || posed->revision != field.revision()) {
+    build_posed_hull(posed->hull, *map, *body.volume, field);
+    posed->map = map;
+    posed->revision = field.revision();
+  }
+  return posed->hull;
+}
+
+VolumePass& Renderer::Parts::volume_pass(const VolumeTexture& volume, VolumePass::Space space) {
+  auto& pass = volume_passes_[{volume.layout().atlases, space}];
+  if (!pass) pass = std::make_unique<VolumePass>(volume.layout().atlases, space);
   return *pass;
 }
 

@@ -6,11 +6,13 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/armature_pass.h"
 #include "render/compose_pass.h"
 #include "render/looks_texture.h"
+#include "render/posed_texture.h"
 #include "render/scene.h"
 #include "render/shade_pass.h"
 #include "render/slice_pass.h"
@@ -29,12 +31,23 @@ struct Renderer::Parts {
     std::weak_ptr<const LabelVolume> key;
     std::unique_ptr<VolumeTexture> volume;
     std::vector<std::unique_ptr<VisibleField>> layers;
+    std::unique_ptr<PosedTexture> pose;  // the last one drawn, with the hull of each layer in it
+    struct PosedHull {
+      Hull hull;
+      std::shared_ptr<const PreviewMap> map;
+      int revision = 0;  // of the layer's field
+    };
+    std::vector<std::unique_ptr<PosedHull>> posed_hulls;
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
   const LooksTexture& looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks, Display display);
   // The field of that layer, computed where it is not yet or no longer right.
   const VisibleField& layer(Body& body, const LooksTexture& looks, size_t layer);
-  VolumePass& volume_pass(const VolumeTexture& volume);
+  // The map on the card; null without one.
+  const PosedTexture* pose(Body& body, const std::shared_ptr<const PreviewMap>& map);
+  // Where rays start that look for a layer.
+  const Hull& hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map);
+  VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
 
   int largest_texture;
   ShadePass shade;
@@ -52,7 +65,7 @@ struct Renderer::Parts {
   };
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<Looks> looks_;
-  std::map<int, std::unique_ptr<VolumePass>> volume_passes_;  // by number of atlases
+  std::map<std::pair<int, VolumePass::Space>, std::unique_ptr<VolumePass>> volume_passes_;  // by number of atlases
 };
 
 }  // namespace limber::render

@@ -14,6 +14,10 @@
 #include "core/rig/armature.h"
 #include "core/volume/label_volume.h"
 
+namespace limber {
+struct PreviewMap;
+}
+
 namespace limber::render {
 
 enum class Display {
@@ -46,6 +50,7 @@ struct Clip {
 
 struct Scene {
   std::shared_ptr<const LabelVolume> volume;
+  std::shared_ptr<const PreviewMap> pose;  // of this volume: its body is drawn as the map leads; null: as the volume is
   std::shared_ptr<const LabelLooks> looks;
   Display display = Display::Solid;
   Clip clip;

@@ -26,6 +26,13 @@ const vec3 kKey = vec3(-0.428, 0.556, 0.713);
 float openness(float depth, vec3 normal) {
   vec3 p = u_base + ndc.x * u_base_x + ndc.y * u_base_y + depth * (u_toward + ndc.x * u_toward_x + ndc.y * u_toward_y);
   vec3 out_of = u_padded_from_view * normal;
+#ifdef POSED
+  // Both at rest; the direction as the map turns it, from what lies just inside.
+  vec3 rest = rest_of(p);
+  vec3 turned = (rest - rest_of(p - 0.35 * out_of)) / 0.35;
+  out_of = turned * min(1.0, 1.5 * length(out_of) / max(length(turned), 1e-3));
+  p = rest;
+#endif
   float near = textureLod(u_occupancy, (p + out_of * 1.25) * u_occupancy_texel, 0.0).r;
   float far = textureLod(u_occupancy, (p + out_of * 3.0) * u_occupancy_texel, 0.0).r;
   return 1.0 - clamp(1.5 * (near - 0.14) + 0.8 * far, 0.0, 0.75);
@@ -71,13 +78,14 @@ void main() {
 
 ShadePass::ShadePass()
     : solid_("shade", gl::kWholePicture, std::string(kRayUniforms) + kShade),
+      posed_("shade posed", gl::kWholePicture, std::string("#define POSED\n") + kRayUniforms + kPosedFunctions + kShade),
       ghost_("shade ghost", gl::kWholePicture, std::string(kRayUniforms) + kShade, "#define GHOST"),
       nothing_(gl::VertexArray::create()) {}
 
-void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, const GBuffer& buffer, const gl::Texture& looks,
-                     const ViewRays& rays, const PixelRect& rect, int layer, bool ghost) {
-  if (field.empty()) return;
-  gl::Program& program = ghost ? ghost_ : solid_;
+void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed, const GBuffer& buffer,
+                     const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect, int layer, bool ghost) {
+  if (field.hull().empty()) return;
+  gl::Program& program = ghost ? ghost_ : posed ? posed_ : solid_;
   glViewport(0, 0, buffer.size().x, buffer.size().y);
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
@@ -96,6 +104,7 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
   program.set_texture("u_looks", 3, GL_TEXTURE_2D, looks.name());
   program.set_texture("u_occupancy", 4, GL_TEXTURE_3D, field.occupancy().name());
   program.set("u_occupancy_texel", 1.0f / glm::vec3(volume.layout().bricks() * kBrick));
+  if (posed && !ghost) posed->bind(volume, program, 5);
   // A normal of the view, in padded coordinates: one brick long whatever the spacing.
   const glm::dmat3 to_view = glm::transpose(rays.view_from_gradient);
   const double scale = kBrick / std::max({glm::length(to_view[0]), glm::length(to_view[1]), glm::length(to_view[2])});

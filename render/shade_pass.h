@@ -17,11 +17,12 @@ class ShadePass {
   // premultiplied colours. Layers are drawn from the innermost outward.
   //   ghost  as the outer layer of X-ray
   //   layer  labels that belong to a deeper layer too are left to it
-  void draw(const VolumeTexture& volume, const VisibleField& field, const GBuffer& buffer, const gl::Texture& looks, const ViewRays& rays,
+  //   posed  of a posed body, or null
+  void draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed, const GBuffer& buffer, const gl::Texture& looks, const ViewRays& rays,
             const PixelRect& rect, int layer, bool ghost);
 
  private:
-  gl::Program solid_, ghost_;
+  gl::Program solid_, posed_, ghost_;
   gl::VertexArray nothing_;
 };
 

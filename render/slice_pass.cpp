@@ -25,6 +25,9 @@ layout(location = 0) out vec4 colour;
 
 uint label_of(vec2 pixel) {
   vec3 p = u_middle + pixel.x * u_right + pixel.y * u_down;
+#ifdef POSED
+  p = rest_of(p);
+#endif
   if (any(lessThan(p, vec3(0.0))) || any(greaterThanEqual(p, u_high))) return 0u;
   uvec4 entry = texelFetch(u_index, ivec3(p) / BLOCK, 0);
   if (entry.w == 0u) return 0u;
@@ -56,14 +59,15 @@ void main() {
 
 SlicePass::SlicePass() : nothing_(gl::VertexArray::create()) {}
 
-void SlicePass::draw(const VolumeTexture& volume, const LooksTexture& looks, const SliceCamera& camera, SliceDisplay display,
+void SlicePass::draw(const VolumeTexture& volume, const PosedTexture* posed, const LooksTexture& looks, const SliceCamera& camera, SliceDisplay display,
                      std::optional<Label> outlined, const glm::ivec2& size) {
-  auto& program = programs_[volume.layout().atlases];
+  auto& program = programs_[{volume.layout().atlases, posed != nullptr}];
   if (!program) {
     const auto define = [](const char* name, int value) { return "#define " + std::string(name) + " " + std::to_string(value) + "\n"; };
     program = std::make_unique<gl::Program>("slice", gl::kWholePicture,
                                             define("SLOT", kSlot) + define("APRON", kApron) + define("BLOCK", kBlock) +
-                                                atlas_functions(volume.layout().atlases) + kSlice);
+                                                atlas_functions(volume.layout().atlases) +
+                                                (posed ? std::string("#define POSED\n") + kPosedFunctions : "") + kSlice);
   }
   const AffineTransform to_padded = padded_from_world(volume.grid());
   const SliceFrame frame = frame_of(camera.axis);
@@ -71,6 +75,7 @@ void SlicePass::draw(const VolumeTexture& volume, const LooksTexture& looks, con
   int unit = volume.bind(*program, 0);
   program->set_texture("u_index", unit++, GL_TEXTURE_3D, volume.index().name());
   program->set_texture("u_looks", unit++, GL_TEXTURE_2D, looks.texture().name());
+  if (posed) posed->bind(volume, *program, unit);
   program->set("u_middle", glm::vec3(to_padded * camera.centre));
   program->set("u_right", glm::vec3(to_padded.linear * frame.right * camera.millimetres_per_pixel));
   program->set("u_down", glm::vec3(to_padded.linear * frame.down * camera.millimetres_per_pixel));

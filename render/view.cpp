@@ -8,6 +8,7 @@
 
 #include <epoxy/gl.h>
 
+#include "core/deform/preview_map.h"
 #include "render/renderer_parts.h"
 
 namespace limber::render {
@@ -105,6 +106,7 @@ Image read_back(const Target& target, bool premultiplied) {
 // What the body's picture depends on. Equal pointers are equal contents.
 struct BodyKey {
   std::shared_ptr<const LabelVolume> volume;
+  std::shared_ptr<const PreviewMap> pose;
   std::shared_ptr<const LabelLooks> looks;
   Display display{};
   std::optional<std::array<glm::dvec3, 2>> box, plane;
@@ -114,7 +116,7 @@ struct BodyKey {
   bool operator==(const BodyKey&) const = default;
 };
 BodyKey key_of(const Scene& scene, const Camera& camera, const glm::ivec2& size) {
-  return {scene.volume, scene.looks, scene.display, scene.clip.box, scene.clip.plane, camera, size};
+  return {scene.volume, scene.pose, scene.looks, scene.display, scene.clip.box, scene.clip.plane, camera, size};
 }
 
 // What lies on top of it.
@@ -190,42 +192,52 @@ struct View3D::Impl {
     Renderer::Parts::Body* body = nullptr;
     const LooksTexture* looks = nullptr;
     std::vector<const VisibleField*> layers;
+    const PosedTexture* pose = nullptr;
+    std::vector<const Hull*> hulls;  // of each layer
   };
   std::optional<Source> source(const Scene& scene) {
     if (!scene.volume || !scene.looks) return std::nullopt;
     Source result;
     result.body = &parts.body(scene.volume);
     result.looks = &parts.looks(*result.body, scene.looks, scene.display);
-    for (size_t layer = 0; layer < result.looks->layers().size(); ++layer) result.layers.push_back(&parts.layer(*result.body, *result.looks, layer));
+    result.pose = parts.pose(*result.body, scene.pose);
+    for (size_t layer = 0; layer < result.looks->layers().size(); ++layer) {
+      result.layers.push_back(&parts.layer(*result.body, *result.looks, layer));
+      result.hulls.push_back(&parts.hull(*result.body, layer, scene.pose));
+    }
     return result;
   }
 
   ViewRays rays_of(const Source& source, const glm::ivec2& size, int sample) const {
-    const VisibleField& outer = *source.layers[0];
+    const Hull& outer = *source.hulls[0];
     ViewRays rays = view_rays(key.camera, source.body->volume->grid(), size, jitter_of(sample), outer.low(), outer.high());
     rays.label_shift = label_shift_of(sample);
     rays.mirrored_taps = sample % 2 != 0;
     return rays;
   }
 
+  VolumePass& volume_pass(const Source& source) {
+    return parts.volume_pass(*source.body->volume, source.pose ? VolumePass::Space::Posed : VolumePass::Space::Rest);
+  }
+
   void start(const Source& source, const ViewRays& rays, Layers& buffers, const glm::ivec2& size, const PixelRect& part) {
-    VolumePass& pass = parts.volume_pass(*source.body->volume);
+    VolumePass& pass = volume_pass(source);
     for (size_t layer = 0; layer < source.layers.size(); ++layer) {
       buffers[layer].resize(size);
-      pass.draw_hull(*source.layers[layer], rays, buffers[layer], part);
+      pass.draw_hull(*source.hulls[layer], rays, buffers[layer], part);
     }
   }
   void march(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
-    VolumePass& pass = parts.volume_pass(*source.body->volume);
+    VolumePass& pass = volume_pass(source);
     for (size_t layer = 0; layer < source.layers.size(); ++layer)
-      pass.march(*source.body->volume, *source.layers[layer], source.looks->texture(), static_cast<int>(layer), scene.clip, rays, buffers[layer], part);
+      pass.march(*source.body->volume, *source.layers[layer], *source.hulls[layer], source.pose, source.looks->texture(), static_cast<int>(layer), scene.clip, rays, buffers[layer], part);
   }
   void shade(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
     body.resize(buffers[0].size(), GL_RGBA8);
     body.share_depth(buffers[0].hull_depth);
     body.clear();
     for (size_t layer = source.layers.size(); layer-- > 0;)
-      parts.shade.draw(*source.body->volume, *source.layers[layer], buffers[layer], source.looks->texture(), rays, part, static_cast<int>(layer),
+      parts.shade.draw(*source.body->volume, *source.layers[layer], source.pose, buffers[layer], source.looks->texture(), rays, part, static_cast<int>(layer),
                        layer == 0 && scene.display == Display::XRay);
   }
 
@@ -233,7 +245,7 @@ struct View3D::Impl {
   void draw_at_once(const Source& source, int scale) {
     const glm::ivec2 size = glm::max((key.size + scale - 1) / scale, glm::ivec2(1));
     const ViewRays rays = rays_of(source, size, 0);
-    rect = VolumePass::covered(*source.layers[0], rays, size);
+    rect = VolumePass::covered(*source.hulls[0], rays, size);
     start(source, rays, shown, size, rect);
     march(source, rays, shown, rect);
     shade(source, rays, shown, rect);
@@ -244,7 +256,7 @@ struct View3D::Impl {
   bool refine(const Source& source) {
     const double begin = seconds();
     const ViewRays rays = rays_of(source, key.size, sample);
-    const PixelRect part = VolumePass::covered(*source.layers[0], rays, key.size);
+    const PixelRect part = VolumePass::covered(*source.hulls[0], rays, key.size);
     if (next_tile == 0) start(source, rays, jittered, key.size, part);
     const glm::ivec2 tiles = (part.high - part.low + kTile - 1) / kTile;
     const int count = part.empty() ? 0 : tiles.x * tiles.y;
@@ -373,14 +385,18 @@ std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
     const glm::dvec3 view_normal = glm::dvec3(normal & 1023, normal >> 10 & 1023, normal >> 20 & 1023) / 1023.0 * 2.0 - 1.0;
     if (!cap) hit.normal = my.key.camera.world_from_view * glm::normalize(view_normal);
 
-    // The voxel of that label where the surface lies, walking inward as the shader did.
+    // The voxel of that label where the surface lies, walking inward as the shader did; at rest.
     const AffineTransform to_voxel = voxel_from_world(my.scene.volume->grid);
     const glm::dvec3 inward = to_voxel.linear * (cap ? ray.direction : -hit.normal);
     const glm::dvec3 step = inward / std::max({std::abs(inward.x), std::abs(inward.y), std::abs(inward.z)}) * 0.25;
     glm::dvec3 p = to_voxel * hit.point;
-    hit.voxel = glm::ivec3(glm::floor(p + 0.5));
+    const auto voxel_at = [&](const glm::dvec3& place) {
+      const glm::dvec3 rest = my.scene.pose ? my.scene.pose->rest_at(place).value_or(place) : place;
+      return glm::ivec3(glm::floor(rest + 0.5));
+    };
+    hit.voxel = voxel_at(p);
     for (int i = 0; i < 16; ++i, p += step) {
-      const glm::ivec3 voxel(glm::floor(p + 0.5));
+      const glm::ivec3 voxel = voxel_at(p);
       if (my.scene.volume->at_or_air(voxel) != label) continue;
       hit.voxel = voxel;
       break;
@@ -423,8 +439,10 @@ void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay
   my.output.resize(size, GL_RGBA8);
   my.output.bind();
   my.parts.compose.background(scene.dark_background ? Background::Dark : Background::Light, size);
-  if (scene.volume && scene.looks)
-    my.parts.slice.draw(*my.parts.body(scene.volume).volume, my.parts.looks(my.parts.body(scene.volume), scene.looks, Display::Solid), camera, display, scene.outlined, size);
+  if (scene.volume && scene.looks) {
+    auto& body = my.parts.body(scene.volume);
+    my.parts.slice.draw(*body.volume, my.parts.pose(body, scene.pose), my.parts.looks(body, scene.looks, Display::Solid), camera, display, scene.outlined, size);
+  }
   gl::check_gl("drawing a slice");
 }
 

@@ -42,7 +42,7 @@ class Renderer {
 // What lies under a pixel.
 struct Hit {
   Label label = 0;
-  glm::ivec3 voxel{0};
+  glm::ivec3 voxel{0};   // of the volume, at rest where the body is posed
   glm::dvec3 point{0};   // world, mm
   glm::dvec3 normal{0};  // world, unit; zero on a cut face or slice
 };

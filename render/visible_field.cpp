@@ -197,9 +197,6 @@ VisibleField::VisibleField(const VolumeTexture& volume, LabelSet set) : set_(std
   }
   index_ = gl::Texture::create();
   occupancy_texture_ = gl::Texture::create();
-  vertices_ = gl::Buffer::create();
-  indices_ = gl::Buffer::create();
-  array_ = gl::VertexArray::create();
   const LabelSet wanted = std::exchange(set_, LabelSet{});
   update(volume, wanted);
 }
@@ -215,7 +212,7 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
     labels_of_slot_.resize(slots);
     slot_present_.assign(slots, 0);
     distance_.assign(brick_count, 1);
-    hull_.assign(brick_count, 0);
+    in_hull_.assign(brick_count, 0);
     occupancy_.assign(brick_count, 0);
   }
 
@@ -239,7 +236,7 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
       const BrickFacts facts_here = facts_of(fields[s], brick);
       const auto at = static_cast<size_t>(layout.brick_index(block * kBricksPerBlock + brick));
       touched[at] = facts_here.touched;
-      hull_[at] = facts_here.hull;
+      in_hull_[at] = facts_here.hull;
       occupancy_[at] = facts_here.mean;
     }
   };
@@ -281,6 +278,8 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
   }
 
   upload_index(index_, layout, slot_present_);
+  bricks_ = bricks;
+  ++revision_;
   build_hull(layout);
   build_occupancy(volume);
   gl::check_gl("the upload of a visible set");
@@ -288,35 +287,31 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
 
 void VisibleField::build_hull(const BlockLayout& layout) {
   const glm::ivec3 size = layout.bricks();
-  const std::vector<std::uint8_t> outside = outside_of(hull_, size);
+  const std::vector<std::uint8_t> outside = outside_of(in_hull_, size);
   const auto is_outside = [&](const glm::ivec3& b) {
     if (glm::any(glm::lessThan(b, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(b, size))) return true;
     return outside[static_cast<size_t>(layout.brick_index(b))] != 0;
   };
 
   // Lattice corners are shared between faces, so that no gap opens between them; two layers of the lattice are at hand.
-  std::vector<glm::u16vec4> vertices;
-  std::vector<std::uint32_t> indices;
+  Hull::Faces faces;
   const auto lattice_layer = static_cast<size_t>(size.x + 1) * (size.y + 1);
   constexpr std::uint32_t kNone = ~0u;
   std::vector<std::uint32_t> below(lattice_layer, kNone), above(lattice_layer, kNone);
-  glm::ivec3 low = size, high(0);
 
   for (int z = 0; z < size.z; ++z) {
     const auto corner = [&](const glm::ivec3& c) {
       std::uint32_t& vertex = (c.z == z ? below : above)[static_cast<size_t>(c.x + c.y * (size.x + 1))];
       if (vertex == kNone) {
-        vertex = static_cast<std::uint32_t>(vertices.size());
-        vertices.push_back(glm::u16vec4(c * kBrick, 1));
+        vertex = static_cast<std::uint32_t>(faces.corners.size());
+        faces.corners.push_back(glm::u16vec4(c, 1));
       }
       return vertex;
     };
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x) {
         const glm::ivec3 brick(x, y, z);
-        if (!hull_[static_cast<size_t>(layout.brick_index(brick))]) continue;
-        low = glm::min(low, brick);
-        high = glm::max(high, brick + 1);
+        if (!in_hull_[static_cast<size_t>(layout.brick_index(brick))]) continue;
         for (int side = 0; side < 6; ++side) {
           const int axis = side / 2, up = side % 2;
           glm::ivec3 neighbour = brick;
@@ -328,25 +323,14 @@ void VisibleField::build_hull(const BlockLayout& layout) {
           // Counter-clockwise from outside.
           c[up ? 1 : 3][u] += 1, c[2][u] += 1, c[2][v] += 1, c[up ? 3 : 1][v] += 1;
           const std::uint32_t ids[4] = {corner(c[0]), corner(c[1]), corner(c[2]), corner(c[3])};
-          for (const int i : {0, 1, 2, 0, 2, 3}) indices.push_back(ids[i]);
+          for (const int i : {0, 1, 2, 0, 2, 3}) faces.indices.push_back(ids[i]);
         }
       }
     std::swap(below, above);
     std::fill(above.begin(), above.end(), kNone);
   }
 
-  faces_ = static_cast<std::int64_t>(indices.size()) / 6;
-  low_ = glm::vec3(low * kBrick);
-  high_ = glm::vec3(high * kBrick);
-
-  glBindVertexArray(array_.name());
-  glBindBuffer(GL_ARRAY_BUFFER, vertices_.name());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(glm::u16vec4)), vertices.data(), GL_STATIC_DRAW);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.name());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)), indices.data(), GL_STATIC_DRAW);
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(glm::u16vec4), nullptr);
-  glBindVertexArray(0);
+  hull_.upload(faces, kBrick, glm::dvec3(0));
 }
 
 // The share of each brick that belongs to the set, once more blurred: how closed in a place is, for soft shadows in creases.
@@ -382,10 +366,15 @@ int VisibleField::bind(const VolumeTexture& volume, gl::Program& program, int fi
   return first;
 }
 
-void VisibleField::draw_hull() const {
-  glBindVertexArray(array_.name());
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(faces_ * 6), GL_UNSIGNED_INT, nullptr);
-  glBindVertexArray(0);
+bool VisibleField::is_near(const glm::vec3& padded, float reach) const {
+  const glm::ivec3 brick(glm::floor(padded / float(kBrick)));
+  if (glm::any(glm::lessThan(brick, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(brick, bricks_))) {
+    const glm::vec3 inside = glm::clamp(padded, glm::vec3(0), glm::vec3(bricks_ * kBrick) - 1.0f), away = glm::abs(padded - inside);
+    return is_near(inside, reach + std::max({away.x, away.y, away.z}));
+  }
+  // A filtered read reaches half a voxel further.
+  const int bricks_away = distance_[static_cast<size_t>(brick.x + std::int64_t{bricks_.x} * (brick.y + std::int64_t{bricks_.y} * brick.z))];
+  return bricks_away == kFarthest ? reach > kBrick * (kFarthest - 1) : float(bricks_away) <= std::ceil((reach + 0.5f) / kBrick);
 }
 
 }  // namespace limber::render

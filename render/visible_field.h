@@ -6,8 +6,7 @@
 // A texel under kFirstFieldValue is far from the set, and tells how far: v bricks away in the largest of the three axes,
 // 0 for next to it. So a ray reads one texel for both, and skips 4 (v - 1) + 1 voxels.
 //
-// The bricks in which a ray can meet the body make a hull. Its outer faces are drawn first: they give each pixel the
-// place to start from, and pixels beside the body no work at all.
+// The bricks in which a ray can meet the body make its hull.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +14,7 @@
 
 #include "render/gl/object.h"
 #include "render/gl/program.h"
+#include "render/hull.h"
 #include "render/volume_texture.h"
 
 namespace limber::render {
@@ -34,16 +34,14 @@ class VisibleField {
   const LabelSet& set() const { return set_; }
   const gl::Texture& occupancy() const { return occupancy_texture_; }  // 3D, a texel a brick: how much of it belongs to the set
 
-  bool empty() const { return faces_ == 0; }
-  // Corners of the hull, padded coordinates.
-  const glm::vec3& low() const { return low_; }
-  const glm::vec3& high() const { return high_; }
+  const Hull& hull() const { return hull_; }
+  // False where no part of the blurred set lies in the box of half-width `reach` about a place in padded coordinates.
+  bool is_near(const glm::vec3& padded, float reach) const;
+  int revision() const { return revision_; }  // rises with every update
 
   // Samplers u_field0 .., u_index, and u_texel; returns the next free unit.
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
-  void draw_hull() const;  // its faces, counter-clockwise from outside in padded coordinates
 
-  std::int64_t face_count() const { return faces_; }
   std::int64_t blocks_computed() const { return blocks_computed_; }  // by the last update
 
  private:
@@ -52,13 +50,13 @@ class VisibleField {
 
   LabelSet set_;
   std::vector<std::uint8_t> distance_;   // by brick, bricks to the nearest one with a part of the blurred set, at most 7
-  std::vector<std::uint8_t> hull_, occupancy_;
+  std::vector<std::uint8_t> in_hull_, occupancy_;
+  glm::ivec3 bricks_{0};
   std::vector<gl::Texture> atlases_;
   gl::Texture index_, occupancy_texture_;
-  gl::Buffer vertices_, indices_;
-  gl::VertexArray array_;
-  std::int64_t faces_ = 0, blocks_computed_ = 0;
-  glm::vec3 low_{0}, high_{0};
+  Hull hull_;
+  int revision_ = 0;
+  std::int64_t blocks_computed_ = 0;
   std::vector<std::vector<Label>> labels_of_slot_;  // that its blurred voxels depend on
   std::vector<std::uint8_t> slot_present_;          // whether any texel of it is not empty
 };

@@ -62,6 +62,18 @@ Slot slot_of(ivec3 block) {
 // In the slot of its own block, since p may have left the block in which the march found it.
 Slot slot_at(vec3 p) { return slot_of(ivec3(p) >> BLOCK_SHIFT); }
 
+#ifdef POSED
+uniform vec3 u_rest_high;  // end of the blocks
+bool has_blocks(vec3 rest) { return all(greaterThanEqual(rest, vec3(0.0))) && all(lessThan(rest, u_rest_high)); }
+
+float field_of(vec3 posed) {
+  vec3 rest = rest_of(posed);
+  if (!has_blocks(rest)) return 0.0;
+  Slot slot = slot_at(rest);
+  return slot.atlas == 0u ? 0.0 : field_at(slot.atlas, rest + vec3(slot.offset));
+}
+#endif
+
 void main() {
   vec3 base = u_base + ndc.x * u_base_x + ndc.y * u_base_y;
   vec3 toward = u_toward + ndc.x * u_toward_x + ndc.y * u_toward_y;
@@ -89,9 +101,45 @@ void main() {
   float s_start = s;
 
   float found = -1e30, before = 0.0, after = 0.0, s_before = 0.0;
+  bool cap = false;
+#ifdef POSED
+  vec3 cube_exit = vec3(greaterThan(safe, vec3(0.0)));
+  vec3 ahead = sign(safe) * 1e-3;
+  for (int cubes = 0; cubes < 1024 && s < s_end && found < -1e29; ++cubes) {
+    float value = 0.0, rate = 1.0;
+    for (int steps = 0; steps < 1024 && s < s_end; ++steps) {
+      vec3 node = node_of(base + d * s);
+      uint cube = cube_at(node + ahead);
+      vec3 leave = ((floor(node + ahead) + cube_exit - u_node_offset) / u_node_scale - base) * inverse_d;
+      float s_leave = max(min(min(leave.x, leave.y), leave.z), s) + 1e-3;
+      vec3 rest = cube == 0u ? kNowhere : rest_in(node, cube);
+      bool here = has_blocks(rest);
+      Slot slot = slot_at(here ? rest : vec3(0.0));
+      value = here && slot.atlas != 0u ? field_texel(slot.atlas, ivec3(rest) + slot.offset) : 0.0;
+      rate = max(float(cube & 127u) / 16.0, 0.1);
+      if (value >= kBand) break;
+      // What has no slot is further away than the block's nearest face.
+      vec3 in_block = mod(rest, float(BLOCK)), wall = min(in_block, float(BLOCK) - in_block);
+      float room = value < kFirstFieldValue ? max(1.0, value * (255.0 * BRICK) - float(BRICK - 1)) : 1.0;
+      if (slot.atlas == 0u) room = min(min(wall.x, wall.y), wall.z) + 1.0;
+      s = here ? min(s + room / rate, s_leave) : s_leave;
+    }
+    // As above, in voxels at rest.
+    float s_near = max(s - 0.5 / rate, s_start), s_far = value >= kBand ? s + 1.5 / rate : -1e30;
+    before = 0.0;
+    s_before = s_near - 0.5 / rate;
+    while (s_near < s_far) {
+      after = field_of(base + d * s_near);
+      if (after >= kSurface) { found = s_near; break; }
+      before = after;
+      s_before = s_near;
+      s_near += clamp((kSurface - after) * 3.0, 0.4, 0.7) / rate;
+    }
+    s = max(s, s_far);
+  }
+#else
   vec3 block_exit = vec3(greaterThan(safe, vec3(0.0))) * float(BLOCK);
   vec3 ahead = sign(safe) * 0.02;  // a block is left for good even where the ray runs along its face
-  bool cap = false;
   for (int blocks = 0; blocks < 1024 && s < s_end && found < -1e29; ++blocks) {
     vec3 p = base + d * s;
     ivec3 block = ivec3(p + ahead) >> BLOCK_SHIFT;
@@ -121,6 +169,8 @@ void main() {
     s = value >= kBand ? s_march + 1.5 : max(s_march, s_leave);
   }
 
+#endif
+
   if (found < -1e29 || found > s_end) {
     out_depth = 1e30;
     out_normal = vec4(0.0);
@@ -131,16 +181,29 @@ void main() {
   // The secant.
   if (!cap) found = mix(max(s_before, s_start), found, clamp((kSurface - before) / max(after - before, 1e-3), 0.0, 1.0));
   vec3 p = base + d * found;
+  vec3 a = vec3(1, -1, -1) * u_tap, b = vec3(-1, -1, 1) * u_tap, c = vec3(-1, 1, -1) * u_tap, e = vec3(u_tap);
+#ifdef POSED
+  // From here on at rest; how the map turns directions, from its differences along the four corners of a tetrahedron.
+  vec3 at_a = rest_of(p + a), at_b = rest_of(p + b), at_c = rest_of(p + c), at_e = rest_of(p + e);
+  mat3 rest_from_posed = mat3(at_a - at_b - at_c + at_e, at_c + at_e - at_a - at_b, at_b + at_e - at_a - at_c) / (4.0 * u_tap);
+  bool torn = any(greaterThan(abs(rest_from_posed[0]) + abs(rest_from_posed[1]) + abs(rest_from_posed[2]), vec3(8.0)));
+  if (torn) rest_from_posed = mat3(1.0);
+  p = clamp(rest_of(p), vec3(0.0), u_rest_high - 1e-3);
+  d = rest_from_posed * d;
+#endif
   Slot slot = slot_at(p);
 
   // Differences along the four corners of a tetrahedron.
   vec3 at = p + vec3(slot.offset);
-  vec3 a = vec3(1, -1, -1) * u_tap, b = vec3(-1, -1, 1) * u_tap, c = vec3(-1, 1, -1) * u_tap, e = vec3(u_tap);
   vec3 gradient = a * field_at(slot.atlas, at + a) + b * field_at(slot.atlas, at + b) + c * field_at(slot.atlas, at + c) + e * field_at(slot.atlas, at + e);
   vec3 steepness = abs(gradient);
   float steepest = max(max(steepness.x, steepness.y), steepness.z);
   vec3 inward = steepest < 1e-4 || cap ? d : gradient / steepest;
+#ifdef POSED
+  vec3 normal = normalize(-(u_view_from_gradient * (inward * rest_from_posed)));
+#else
   vec3 normal = normalize(-(u_view_from_gradient * inward));
+#endif
 
   // The first label of the set, from a little outside the surface inward: first through air, then through hidden tissue.
   vec3 step = (cap ? d : inward) * 0.5;
@@ -166,10 +229,10 @@ void main() {
 
 constexpr float kTap = 1.4f;  // voxels: smooths the steps of voxels without leaving the apron
 
-std::string march_source(int atlases) {
+std::string march_source(int atlases, VolumePass::Space space) {
   const auto define = [](const char* name, int value) { return "#define " + std::string(name) + " " + std::to_string(value) + "\n"; };
   return define("SURFACE", kSurface) + define("SLOT", kSlot) + define("APRON", kApron) + define("BLOCK", kBlock) + define("BLOCK_SHIFT", 5) + define("BRICK", kBrick) +
-         kRayUniforms + atlas_functions(atlases) + kMarch;
+         kRayUniforms + atlas_functions(atlases) + (space == VolumePass::Space::Posed ? std::string("#define POSED\n") + kPosedFunctions : "") + kMarch;
 }
 static_assert(kBlock == 1 << 5);
 
@@ -193,10 +256,10 @@ bool inside(const glm::dvec3& point, const glm::vec3& low, const glm::vec3& high
 }
 
 // The eye within the hull's box sees no front faces of what surrounds it: rays then start at the near plane.
-bool eye_inside(const VisibleField& field, const ViewRays& rays) {
+bool eye_inside(const Hull& hull, const ViewRays& rays) {
   if (!rays.perspective) return false;  // the orthographic depth range begins before the body
   const double voxels_per_depth = glm::length(rays.toward) + glm::length(rays.toward_x) + glm::length(rays.toward_y);
-  return inside(rays.eye, field.low(), field.high(), rays.nearest * voxels_per_depth);
+  return inside(rays.eye, hull.low(), hull.high(), rays.nearest * voxels_per_depth);
 }
 
 }  // namespace
@@ -224,16 +287,16 @@ void GBuffer::resize(const glm::ivec2& size) {
   gl::check_gl("the buffers of a picture");
 }
 
-VolumePass::VolumePass(int atlases)
-    : hull_("hull", kHullVertex, kHullFragment), march_("march", gl::kWholePicture, march_source(atlases)), nothing_(gl::VertexArray::create()) {}
+VolumePass::VolumePass(int atlases, Space space)
+    : hull_("hull", kHullVertex, kHullFragment), march_("march", gl::kWholePicture, march_source(atlases, space)), nothing_(gl::VertexArray::create()) {}
 
-PixelRect VolumePass::covered(const VisibleField& field, const ViewRays& rays, const glm::ivec2& size) {
-  if (field.empty()) return {};
+PixelRect VolumePass::covered(const Hull& hull, const ViewRays& rays, const glm::ivec2& size) {
+  if (hull.empty()) return {};
   const PixelRect whole = {{0, 0}, size};
   glm::dvec2 low(1e30), high(-1e30);
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 padded(corner & 1 ? field.high().x : field.low().x, corner & 2 ? field.high().y : field.low().y,
-                            corner & 4 ? field.high().z : field.low().z);
+    const glm::dvec3 padded(corner & 1 ? hull.high().x : hull.low().x, corner & 2 ? hull.high().y : hull.low().y,
+                            corner & 4 ? hull.high().z : hull.low().z);
     const glm::dvec4 clip = rays.clip_from_padded * glm::dvec4(padded, 1);
     if (clip.w < 1e-6) return whole;
     const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
@@ -245,7 +308,7 @@ PixelRect VolumePass::covered(const VisibleField& field, const ViewRays& rays, c
   return intersection(whole, {glm::ivec2(low), glm::ivec2(high)});
 }
 
-void VolumePass::draw_hull(const VisibleField& field, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect) {
+void VolumePass::draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect) {
   glBindFramebuffer(GL_FRAMEBUFFER, buffer.hull_target.name());
   glViewport(0, 0, buffer.size().x, buffer.size().y);
   set_scissor(rect);
@@ -260,16 +323,17 @@ void VolumePass::draw_hull(const VisibleField& field, const ViewRays& rays, cons
   glEnable(GL_BLEND);
   glBlendEquation(GL_MAX);
   hull_.use();
-  hull_.set("u_clip", glm::mat4(rays.clip_from_padded));
-  hull_.set("u_depth", glm::vec4(rays.depth_of_padded));
+  hull_.set("u_clip", glm::mat4(rays.clip_from_padded * hull.padded_from_corner()));
+  hull_.set("u_depth", glm::vec4(rays.depth_of_padded * hull.padded_from_corner()));
   hull_.set("u_front_is_clockwise", glm::determinant(glm::dmat3(rays.padded_from_world)) < 0 ? 1 : 0);
-  field.draw_hull();
+  hull.draw();
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);
 }
 
-void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, const gl::Texture& looks, int layer, const Clip& clip,
-                       const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect) {
+void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, const Hull& hull, const PosedTexture* posed,
+                       const gl::Texture& looks, int layer, const Clip& clip, const ViewRays& rays, const GBuffer& buffer,
+                       const PixelRect& rect) {
   glBindFramebuffer(GL_FRAMEBUFFER, buffer.march_target.name());
   glViewport(0, 0, buffer.size().x, buffer.size().y);
   set_scissor(rect);
@@ -279,7 +343,7 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   glClearBufferfv(GL_COLOR, 0, depth);
   glClearBufferfv(GL_COLOR, 1, normal);
   glClearBufferuiv(GL_COLOR, 2, label);
-  if (field.empty()) return;
+  if (hull.empty()) return;
 
   // Drawn at the far plane: only where the hull lies in front.
   glEnable(GL_DEPTH_TEST);
@@ -288,15 +352,19 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   march_.use();
   int unit = volume.bind(march_, 0);
   unit = field.bind(volume, march_, unit);
+  if (posed) {
+    unit = posed->bind(volume, march_, unit);
+    march_.set("u_rest_high", glm::vec3(volume.layout().blocks * kBlock));
+  }
   march_.set_texture("u_range", unit++, GL_TEXTURE_2D, buffer.range.name());
-  march_.set("u_nearest", eye_inside(field, rays) ? static_cast<float>(rays.nearest) : -kNothingDepth);
+  march_.set("u_nearest", eye_inside(hull, rays) ? static_cast<float>(rays.nearest) : -kNothingDepth);
   march_.set("u_label_shift", rays.label_shift);
   march_.set("u_tap", rays.mirrored_taps ? -kTap : kTap);
   march_.set_texture("u_looks", unit++, GL_TEXTURE_2D, looks.name());
   march_.set("u_layer", static_cast<unsigned>(layer));
   set_rays(march_, rays);
   march_.set("u_view_from_gradient", glm::mat3(rays.view_from_gradient));
-  glm::vec3 low = field.low(), high = field.high();
+  glm::vec3 low = hull.low(), high = hull.high();
   if (clip.box) {
     // A coarser volume's voxels are larger: by the padded coordinates' own scale.
     const double scale = 1.0 / (1 << volume.halvings());

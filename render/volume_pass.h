@@ -5,6 +5,9 @@
 // The hull of the set is drawn first, giving each ray its start; rays of pixels beside it never run. From there a ray reads
 // one texel a step, skipping as far as the texel allows; near the surface it reads filtered values, and the crossing is
 // found by the secant. A ray that the clip box or plane lets into the middle of the body ends at once, on a cap.
+//
+// The rays of a posed body go from cube to cube of its map and read at the rest points; what the map moves faster than a
+// voxel for a voxel shortens their steps.
 #pragma once
 
 #include <optional>
@@ -13,6 +16,7 @@
 
 #include "render/gl/object.h"
 #include "render/gl/program.h"
+#include "render/posed_texture.h"
 #include "render/scene.h"
 #include "render/view_rays.h"
 #include "render/visible_field.h"
@@ -48,15 +52,17 @@ class GBuffer {
 
 class VolumePass {
  public:
-  explicit VolumePass(int atlases);
+  enum class Space { Rest, Posed };
+  VolumePass(int atlases, Space space);
 
   // The part of the picture that the hull covers.
-  static PixelRect covered(const VisibleField& field, const ViewRays& rays, const glm::ivec2& size);
+  static PixelRect covered(const Hull& hull, const ViewRays& rays, const glm::ivec2& size);
 
   // The start of every ray inside `rect`.
-  void draw_hull(const VisibleField& field, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);
+  void draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);
   // What the rays of `rect` meet: labels of that layer (looks_texture.h), which are the field's.
-  void march(const VolumeTexture& volume, const VisibleField& field, const gl::Texture& looks, int layer, const Clip& clip, const ViewRays& rays,
+  //   posed  given exactly when this pass is for posed space; the hull is then the posed one
+  void march(const VolumeTexture& volume, const VisibleField& field, const Hull& hull, const PosedTexture* posed, const gl::Texture& looks, int layer, const Clip& clip, const ViewRays& rays,
              const GBuffer& buffer, const PixelRect& rect);
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber render VOLUME|PROJECT -o PNG [--size WxH] [--view front|back|left|right|top|bottom] [--turn DEG] [--tilt DEG] [--orthographic]
 //        [--display solid|xray|tissue] [--hide L,L] [--opacity L=A] [--clip-box X,Y,Z,X,Y,Z] [--clip-plane X,Y,Z,NX,NY,NZ]
-//        [--rig RIG] [--armature octahedron|stick|none] [--weights W] [POSE-OPTIONS]
+//        [--rig RIG] [--armature octahedron|stick|none] [--weights W] [POSE-OPTIONS] [--method lbs|dqs] [--preview]
 //        [--slice axial|coronal|sagittal [--at MM] [--outline]] [--turntable N] [--transparent] [--light]
 // A picture without a window or a display. A project brings its own skeleton, pose and visibility.
 #include <algorithm>
@@ -12,12 +12,15 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/pose_options.h"
+#include "core/deform/preview_map.h"
 #include "core/project/project_io.h"
 #include "core/resample/resample.h"
 #include "core/rig/armature_io.h"
@@ -40,7 +43,7 @@ struct Options {
   cmd::BodyOptions body;
   cmd::PoseOptions pose;
   cmd::RunOptions run;
-  std::string weights, output, size = "1280x720", slice, armature = "octahedron";
+  std::string weights, output, size = "1280x720", slice, armature = "octahedron", method = "dqs";
   StandardView view = StandardView::Front;
   Display display = Display::Solid;
   double turn = 0, tilt = 0, zoom = 1;
@@ -48,7 +51,7 @@ struct Options {
   std::vector<std::string> opacity;
   std::optional<double> at;
   std::optional<int> turntable;
-  bool orthographic = false, outline = false, transparent = false, light = false, grid = false;
+  bool orthographic = false, outline = false, transparent = false, light = false, grid = false, preview = false;
 };
 
 glm::ivec2 size_of(const std::string& text) {
@@ -150,14 +153,38 @@ Scene posed_scene(const Options& options, const Document& document, Progress& pr
   if (cmd::wants_pose(options.pose)) pose = cmd::read_pose_options(options.pose, *document.armature);
   if (pose == rest_pose(*document.armature)) return scene;
   const SkinWeights weights = weights_of(options, document, progress);
-  Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose, DualQuaternion{}, {}, progress);
-  scene.volume = std::make_shared<const LabelVolume>(std::move(posed.volume));
+  const bool linear = options.method == "lbs";
   scene.posed_from_rest = posed_from_rest(*document.armature, pose);
+  if (options.preview) {
+    const TissueVoxels tissue(*document.volume);
+    LivePreview preview(document.volume, *document.tissues, tissue, weights, preview_step(tissue));
+    scene.pose = preview.update(scene.posed_from_rest, linear ? Blend::Linear : Blend::DualQuaternion);
+    return scene;
+  }
+  Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose,
+                         linear ? Method(LinearBlend{}) : Method(DualQuaternion{}), {}, progress);
+  scene.volume = std::make_shared<const LabelVolume>(std::move(posed.volume));
   return scene;
 }
 
+// The nodes of a pose's map that come from tissue, in voxel coordinates.
+std::pair<glm::dvec3, glm::dvec3> box_of_tissue(const LabelVolume& volume, const PreviewMap& map) {
+  glm::dvec3 low(1e300), high(-1e300);
+  for (int z = 0; z < map.size.z; ++z)
+    for (int y = 0; y < map.size.y; ++y)
+      for (int x = 0; x < map.size.x; ++x) {
+        const glm::ivec3 node(x, y, z);
+        if (!map.covers(node) || volume.at_or_air(glm::ivec3(glm::floor(map.rest_of_node(node) + 0.5))) == 0) continue;
+        const glm::dvec3 voxel = (glm::dvec3(map.first + node) + 0.5) * double(map.step) - 0.5;
+        low = glm::min(low, voxel - map.step / 2.0);
+        high = glm::max(high, voxel + map.step / 2.0);
+      }
+  return {low, high};
+}
+
 // The world box of the tissue (and the clip box), which the picture is to show.
-std::array<glm::dvec3, 2> box_of_tissue(const LabelVolume& volume, const Clip& clip) {
+std::array<glm::dvec3, 2> box_of_tissue(const Scene& scene, const Clip& clip) {
+  const LabelVolume& volume = *scene.volume;
   glm::ivec3 low = volume.grid.size, high(-1);
   size_t i = 0;
   for (int z = 0; z < volume.grid.size.z; ++z)
@@ -166,6 +193,7 @@ std::array<glm::dvec3, 2> box_of_tissue(const LabelVolume& volume, const Clip& c
         if (volume.voxels[i] != 0) low = glm::min(low, glm::ivec3(x, y, z)), high = glm::max(high, glm::ivec3(x, y, z));
   if (high.x < 0) low = glm::ivec3(0), high = volume.grid.size - 1;
   glm::dvec3 from = glm::dvec3(low) - 0.5, to = glm::dvec3(high) + 0.5;
+  if (scene.pose) std::tie(from, to) = box_of_tissue(volume, *scene.pose);
   if (clip.box) {
     from = glm::max(from, (*clip.box)[0]);
     to = glm::max(glm::min(to, (*clip.box)[1]), from);
@@ -197,7 +225,7 @@ Image picture_3d(Renderer& renderer, const Scene& scene, const Camera& camera, c
 
 Image picture_slice(Renderer& renderer, const Scene& scene, const Options& options, const glm::ivec2& size) {
   static const std::map<std::string, SliceAxis> axes = {{"axial", SliceAxis::Axial}, {"coronal", SliceAxis::Coronal}, {"sagittal", SliceAxis::Sagittal}};
-  const auto [low, high] = box_of_tissue(*scene.volume, {});
+  const auto [low, high] = box_of_tissue(scene, {});
   SliceCamera camera{.axis = axes.at(options.slice), .centre = (low + high) / 2.0};
   const SliceFrame frame = frame_of(camera.axis);
   if (options.at) camera.centre += frame.normal * (*options.at - glm::dot(camera.centre, frame.normal));
@@ -243,7 +271,7 @@ void run(const Options& options) {
     Camera camera;
     if (options.orthographic) camera.projection = Projection::Orthographic;
     camera = turned(looking_from(options.view, camera), options.turn, options.tilt);
-    const auto [low, high] = box_of_tissue(*scene.volume, scene.clip);
+    const auto [low, high] = box_of_tissue(scene, scene.clip);
     camera = zoomed(framing(camera, low, high, double(size.x) / size.y), 1 / options.zoom);
     const int pictures = options.turntable.value_or(1);
     for (int i = 0; i < pictures; ++i) {
@@ -283,6 +311,8 @@ void add_render(CLI::App& app) {
   command->add_option("--armature", options->armature, "octahedron, stick or none")->check(CLI::IsMember({"octahedron", "stick", "none"}));
   command->add_option("--weights", options->weights, "W.nrrd for the pose (default: heat diffusion)");
   cmd::add_pose_options(*command, options->pose);
+  command->add_option("--method", options->method, "of the pose: lbs (linear) or dqs (dual quaternions)")->check(CLI::IsMember({"lbs", "dqs"}))->capture_default_str();
+  command->add_flag("--preview", options->preview, "the pose as the editor shows it while a bone is dragged: coarser, at once");
   command->add_option("--slice", options->slice, "a slice instead")->check(CLI::IsMember({"axial", "coronal", "sagittal"}));
   command->add_option("--at", options->at, "where the slice lies on its axis, mm (default: the middle)");
   command->add_flag("--outline", options->outline, "only the borders of tissues in the slice");

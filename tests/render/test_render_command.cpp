@@ -70,6 +70,27 @@ TEST_CASE("render command: a project is drawn with what it hides") {
   CHECK(run_limber({"render", folder / "body.limber", "-o", folder / "none.png", "--rig", "x.json"}).exit_code == 1);
 }
 
+TEST_CASE("render command: a pose is drawn by either method, as a preview much like the resampled volume") {
+  const TemporaryFolder folder;
+  const std::string arm = (folder / "arm").string();
+  REQUIRE(run_limber({"phantom", "arm", "--spacing", "5", "-o", arm}).exit_code == 0);
+  const auto picture = [&](const char* name, const std::vector<std::string>& more) {
+    const std::string png = (folder / name).string();
+    std::vector<std::string> arguments = {"render", arm + "/volume.nrrd", "--tissues", arm + "/tissues.json", "--rig", arm + "/rig.json", "--flex", "Forearm=50",
+                                          "--size", "200x200", "--view", "left", "--armature", "none", "--transparent", "-o", png};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto run = run_limber(arguments);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return render::read_png(png);
+  };
+  for (const char* method : {"lbs", "dqs"}) {
+    const int whole = covered(picture("whole.png", {"--method", method})), preview = covered(picture("preview.png", {"--method", method, "--preview"}));
+    CHECK(whole > 1000);
+    CHECK(std::abs(preview - whole) < whole / 10);
+  }
+}
+
 TEST_CASE("render command: what cannot be drawn is refused in one line, and leaves no picture") {
   const Folder folder;
   const std::vector<std::vector<std::string>> requests = {

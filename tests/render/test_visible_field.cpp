@@ -32,7 +32,7 @@ TEST_CASE("visible field: a change of the set computes only the blocks that it t
   CHECK(field.blocks_computed() > 0);
   CHECK(field.blocks_computed() < all / 2);
   field.update(texture, set_of({}));
-  CHECK(field.empty());
+  CHECK(field.hull().empty());
 }
 
 TEST_CASE("visible field: the hull is closed tightly about the body") {
@@ -42,13 +42,13 @@ TEST_CASE("visible field: the hull is closed tightly about the body") {
   const VolumeTexture texture(volume, 2048);
   const VisibleField field(texture, set_of({1}));
   for (int axis = 0; axis < 3; ++axis) {
-    CHECK(field.low()[axis] <= 12 + kPad);
-    CHECK(field.low()[axis] >= 12 + kPad - 2 * kBrick);
-    CHECK(field.high()[axis] >= 52 + kPad);
-    CHECK(field.high()[axis] <= 52 + kPad + 2 * kBrick);
+    CHECK(field.hull().low()[axis] <= 12 + kPad);
+    CHECK(field.hull().low()[axis] >= 12 + kPad - 2 * kBrick);
+    CHECK(field.hull().high()[axis] >= 52 + kPad);
+    CHECK(field.hull().high()[axis] <= 52 + kPad + 2 * kBrick);
   }
-  CHECK(field.face_count() > 300);
-  CHECK(field.face_count() < 1500);
+  CHECK(field.hull().face_count() > 300);
+  CHECK(field.hull().face_count() < 1500);
 }
 
 TEST_CASE("block layout: every tissue voxel lies in a block that is kept, far empty blocks are not") {

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The coarse lattice that a live preview is posed by: cells of `step` voxels an axis, those that hold tissue and one ring
+// around them, so that the body's surface lies well inside what the cells cover. Its vertices follow the bones with the
+// mean of the influences of the tissue voxels in the cells around, each counted by its trilinear share of the vertex;
+// vertices without tissue around follow what their neighbours do.
+//
+// Coordinates. Cell c covers the voxels c step .. c step + step - 1. In *cell coordinates* its middle is the whole number
+// c and vertex v, its lowest corner, lies at v - 1/2; so a cell stands to this lattice as a voxel to lattice.h.
+#pragma once
+
+#include <vector>
+
+#include "core/deform/skinning.h"
+#include "core/skin/skin_weights.h"
+#include "core/volume/tissue_voxels.h"
+
+namespace limber {
+
+// Voxels an edge: 4 for a limb, 8 where there is so much tissue that a pose would take too long.
+int preview_step(const TissueVoxels& tissue);
+
+struct PreviewLattice {
+  int step = 4;                      // 2, 4 or 8
+  Grid grid;                         // of the volume
+  glm::ivec3 first{0}, size{0};      // lowest cell and cells an axis of the box that holds them all
+  std::vector<glm::ivec3> cells;     // x fastest
+  std::vector<glm::ivec3> vertices;  // x fastest
+  std::vector<std::int64_t> offsets; // #vertices + 1
+  std::vector<BoneWeight> influences;  // of vertex i: offsets[i] .. offsets[i + 1], bones rising; they sum to one
+  std::vector<float> depth;          // by place: mm below air inside tissue, minus mm to the nearest tissue outside
+
+  // Of a vertex in arrays that hold a value for every corner of the box.
+  std::int64_t place(const glm::ivec3& vertex) const {
+    const glm::ivec3 v = vertex - first;
+    return v.x + row() * (v.y + std::int64_t{size.y + 1} * v.z);
+  }
+  std::int64_t row() const { return size.x + 1; }
+  std::int64_t slice() const { return row() * (size.y + 1); }
+  std::int64_t places() const { return slice() * (size.z + 1); }
+
+  // Trilinear; cell coordinates, inside that cell.
+  double depth_in(const glm::ivec3& cell, const glm::dvec3& rest) const;
+};
+
+PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, const SkinWeights& weights, int step);
+
+}  // namespace limber

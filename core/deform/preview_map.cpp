@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/preview_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/deform/rasterize.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kTile = 8;             // nodes an edge of what is rasterized again as a whole
+constexpr int kMargin = 3;           // cells around the grid that a rest point may lie in
+constexpr double kFurthest = 32000;  // cells; fixed point holds 32 768
+constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
+
+int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+glm::ivec3 tile_of(const glm::ivec3& node) { return {floor_div(node.x, kTile), floor_div(node.y, kTile), floor_div(node.z, kTile)}; }
+
+// What fractions are of. A step is a whole number of them and low lies whole steps from the nodes: at rest every node is exact.
+struct Span {
+  glm::dvec3 low, extent;
+};
+Span span_of(const PreviewLattice& lattice) {
+  const double step = lattice.step;
+  const glm::dvec3 least = glm::dvec3(lattice.grid.size) + (2 * kMargin + 1) * step;
+  return {glm::dvec3(-(kMargin + 0.5) * step - 0.5), PreviewMap::kFullFraction * step / glm::floor(PreviewMap::kFullFraction * step / least)};
+}
+
+// A node as whole numbers in one register.
+Lanes lanes_of(const glm::u16vec4& node) { return Lanes{node.x, node.y, node.z, 0}; }
+Lanes most(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+Lanes least(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
+Lanes apart(const Lanes& a, const Lanes& b) { return most(a - b, b - a); }
+
+bool any_beyond(const Lanes& a, const Lanes& limit) { return a[0] > limit[0] || a[1] > limit[1] || a[2] > limit[2]; }
+
+// Fills PreviewMap::nodes and its cubes from what cells have claimed.
+class Finish {
+ public:
+  Finish(PreviewMap& map, const std::vector<glm::u16vec4>& claimed) : map_(map), claimed_(claimed), strides_{1, map.size.x, map.size.x * map.size.y} {
+    const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / map.extent;
+    for (int axis = 0; axis < 3; ++axis) {
+      jump_[axis] = static_cast<int>(std::min(map.jump() * fractions[axis], double(PreviewMap::kFullFraction)));
+      steepest_[axis] = static_cast<int>(std::min(map.steepest() * fractions[axis], double(PreviewMap::kFullFraction)));
+      per_step_[axis] = static_cast<float>(1.0 / (fractions[axis] * map.step));
+    }
+  }
+
+  void layer(int z) {
+    for (int y = 0; y < map_.size.y; ++y)
+      for (int x = 0; x < map_.size.x; ++x) {
+        const std::int64_t at = map_.index({x, y, z});
+        map_.nodes[at] = claimed_[at].w ? claimed_[at] : carried_on({x, y, z}, at);
+      }
+  }
+
+  // Needs the nodes of layers z and z + 1.
+  void cubes(int z) {
+    if (z + 1 >= map_.size.z) return;
+    for (int y = 0; y + 1 < map_.size.y; ++y)
+      for (int x = 0; x + 1 < map_.size.x; ++x) cube(map_.index({x, y, z}));
+  }
+
+ private:
+  static constexpr std::uint8_t kFastest = 127;
+
+  // The mean of what the claimed nodes next to it lead to, each with the one behind it; nothing where there are none.
+  glm::u16vec4 carried_on(const glm::ivec3& node, std::int64_t at) const {
+    Lanes sum{};
+    int count = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int sign : {-1, 1}) {
+        const int behind = node[axis] + 2 * sign;
+        if (behind < 0 || behind >= map_.size[axis]) continue;
+        const glm::u16vec4& next = claimed_[at + sign * strides_[axis]];
+        const glm::u16vec4& second = claimed_[at + 2 * sign * strides_[axis]];
+        if (!next.w || !second.w) continue;
+        const Lanes a = lanes_of(next), b = lanes_of(second);
+        if (any_beyond(apart(a, b), steepest_)) continue;
+        sum += 2 * a - b;
+        ++count;
+      }
+    if (count == 0) return glm::u16vec4(0);
+    const Lanes none{}, full = none + PreviewMap::kFullFraction;
+    const Lanes mean = least(most(sum / (none + count), none), full);
+    return glm::u16vec4(mean[0], mean[1], mean[2], PreviewMap::kFullFraction);
+  }
+
+  void cube(std::int64_t at) {
+    std::array<Lanes, 8> c{};
+    unsigned covered = 0;
+    const Lanes none{}, full = none + PreviewMap::kFullFraction;
+    Lanes low = full, high = none;
+    for (int i = 0; i < 8; ++i) {
+      const glm::u16vec4& node = map_.nodes[at + (i & 1 ? strides_[0] : 0) + (i & 2 ? strides_[1] : 0) + (i & 4 ? strides_[2] : 0)];
+      if (!node.w) continue;
+      covered |= 1u << i;
+      c[i] = lanes_of(node);
+      low = least(low, c[i]);
+      high = most(high, c[i]);
+    }
+    if (covered == 0) return;
+    map_.reach[at] = {glm::u16vec3(low[0], low[1], low[2]), glm::u16vec3(high[0], high[1], high[2])};
+    glm::vec3 rate(0);
+    bool jumps = false;
+    for (const int bit : {1, 2, 4}) {
+      Lanes edge{};
+      for (int i = 0; i < 8; ++i)
+        if (!(i & bit) && (covered >> i & 1) && (covered >> (i | bit) & 1)) edge = most(edge, apart(c[i], c[i | bit]));
+      jumps = jumps || any_beyond(edge, jump_);
+      rate += glm::vec3(edge[0], edge[1], edge[2]);
+    }
+    rate *= per_step_;
+    if (covered != 0xff) rate = glm::max(rate, glm::vec3(2));  // missing edges may be longer
+    const int whole = static_cast<int>(std::max({rate.x, rate.y, rate.z}) * PreviewMap::kRateUnit) + 1;
+    map_.cubes[at] = static_cast<std::uint8_t>(jumps ? PreviewMap::kBroken | kFastest : std::min<int>(whole, kFastest));
+  }
+
+  PreviewMap& map_;
+  const std::vector<glm::u16vec4>& claimed_;
+  std::array<std::int64_t, 3> strides_;
+  Lanes jump_{}, steepest_{};
+  glm::vec3 per_step_;
+};
+
+}  // namespace
+
+std::optional<glm::dvec3> PreviewMap::rest_at(const glm::dvec3& posed) const {
+  const glm::dvec3 place = node_from_voxel(posed), corner = glm::floor(place);
+  if (!(glm::all(glm::greaterThanEqual(corner, glm::dvec3(0))) && glm::all(glm::lessThan(corner, glm::dvec3(size - 1))))) return std::nullopt;
+  const std::uint8_t cube = cubes[index(glm::ivec3(corner))];
+  if (cube == kNothing) return std::nullopt;
+  const glm::dvec3 nearest = glm::floor(place + 0.5);
+  if (cube < kBroken || !covers(glm::ivec3(nearest))) return between(place);
+  const glm::dvec3 here = rest_of_node(glm::ivec3(nearest));
+  const glm::dvec3 slope = here - between(2.0 * nearest - place).value_or(here);
+  return glm::all(glm::lessThan(glm::abs(slope), glm::dvec3(steepest()))) ? here + slope : here;
+}
+
+// Of the covered nodes around.
+std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
+  const glm::dvec3 corner = glm::floor(place), t = place - corner;
+  glm::dvec3 sum(0);
+  double total = 0;
+  for (int i = 0; i < 8; ++i) {
+    const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2), node = glm::clamp(glm::ivec3(corner) + offset, glm::ivec3(0), size - 1);
+    const double share = (offset.x ? t.x : 1 - t.x) * (offset.y ? t.y : 1 - t.y) * (offset.z ? t.z : 1 - t.z);
+    if (!covers(node)) continue;
+    sum += share * rest_of_node(node);
+    total += share;
+  }
+  if (total < 0.25) return std::nullopt;  // what little is covered tells nothing
+  return sum / total;
+}
+
+// What is rasterized again: whole tiles of nodes.
+struct LivePreview::Tiles {
+  glm::ivec3 first, size;
+  std::vector<std::uint8_t> dirty;
+
+  std::int64_t index(const glm::ivec3& tile) const {
+    const glm::ivec3 t = tile - first;
+    return t.x + std::int64_t{size.x} * (t.y + std::int64_t{size.y} * t.z);
+  }
+  glm::ivec3 at(std::int64_t i) const { return first + glm::ivec3(i % size.x, i / size.x % size.y, i / size.x / size.y); }
+
+  // body(index) for the tiles that a range reaches.
+  template <class Body>
+  void reached(const VoxelRange& range, const Body& body) const {
+    if (range.empty()) return;
+    const glm::ivec3 low = tile_of(range.low), high = tile_of(range.high);
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) body(index({x, y, z}));
+  }
+};
+
+// The claims on the nodes of one tile.
+class LivePreview::Tile {
+ public:
+  Tile(const LivePreview& preview, const glm::ivec3& tile) : preview_(preview), low_(tile * kTile) { cell_.fill(-1); }
+
+  VoxelRange range() const { return {low_, low_ + kTile - 1}; }
+
+  void claim(std::int32_t cell, const CellClaim& claim) {
+    const glm::ivec3 v = claim.voxel - low_;
+    const int at = v.x + kTile * (v.y + kTile * v.z);
+    const bool inverted = claim.posed_per_rest < 0;
+    if (cell_[at] >= 0 && !is_better(cell, claim.rest, inverted, at)) return;
+    cell_[at] = cell;
+    rest_[at] = claim.rest;
+    inverted_[at] = inverted;
+  }
+
+  // Row y of slice z of what was claimed.
+  void write(int y, int z, glm::u16vec4* row, const Span& span) const {
+    const double step = preview_.lattice_.step;
+    const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / span.extent;
+    for (int x = 0; x < kTile; ++x) {
+      const int at = x + kTile * (y + kTile * z);
+      if (cell_[at] < 0) {
+        row[x] = glm::u16vec4(0);
+        continue;
+      }
+      const glm::dvec3 voxel = (rest_[at] + 0.5) * step - 0.5;
+      const glm::dvec3 f = glm::clamp((voxel - span.low) * fractions, 0.0, double(PreviewMap::kFullFraction));
+      row[x] = glm::u16vec4(std::lrint(f.x), std::lrint(f.y), std::lrint(f.z), PreviewMap::kFullFraction);
+    }
+  }
+
+ private:
+  bool is_better(std::int32_t cell, const glm::dvec3& rest, bool inverted, int at) const {
+    if (inverted != inverted_[at]) return !inverted;
+    const int mine = preview_.priority_[label_at(rest)], theirs = preview_.priority_[label_at(rest_[at])];
+    if (mine != theirs) return mine > theirs;
+    const PreviewLattice& lattice = preview_.lattice_;
+    const double my_depth = lattice.depth_in(lattice.cells[cell], rest), their_depth = lattice.depth_in(lattice.cells[cell_[at]], rest_[at]);
+    if (my_depth != their_depth) return my_depth > their_depth;
+    return cell < cell_[at];
+  }
+  Label label_at(const glm::dvec3& rest) const {
+    return preview_.volume_->at_or_air(glm::ivec3(glm::floor((rest + 0.5) * double(preview_.lattice_.step))));
+  }
+
+  static constexpr int kNodes = kTile * kTile * kTile;
+  const LivePreview& preview_;
+  glm::ivec3 low_;
+  std::array<std::int32_t, kNodes> cell_;
+  std::array<glm::dvec3, kNodes> rest_;  // cell coordinates
+  std::array<bool, kNodes> inverted_;
+};
+
+LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const TissueTable& tissues, const TissueVoxels& tissue,
+                         const SkinWeights& weights, int step)
+    : volume_(std::move(volume)), lattice_(preview_lattice(volume_->grid, tissue, weights, step)), priority_(65536, 0),
+      posed_(lattice_.places()), moved_(lattice_.places()), range_(lattice_.cells.size()), before_(range_) {
+  priority_[0] = std::numeric_limits<int>::min();
+  for (const Tissue& each : tissues.tissues)
+    if (each.label != 0) priority_[each.label] = each.priority;
+}
+
+std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTransform>& posed_from_rest, Blend blend) {
+  if (!pose_vertices(posed_from_rest, blend)) return map_;
+  bound_cells();
+  rasterize();
+  map_ = finish();
+  return map_;
+}
+
+// False when nothing moved.
+bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend) {
+  const bool all = !map_ || blend != blend_;
+  if (all) size_ = glm::ivec3(0);
+  std::vector<std::uint8_t> bone_moved(posed_from_rest.size(), all);
+  for (size_t b = 0; b < posed_from_rest.size() && !all; ++b)
+    bone_moved[b] = posed_from_rest[b].rotation != posed_from_rest_[b].rotation || posed_from_rest[b].translation != posed_from_rest_[b].translation;
+  if (std::find(bone_moved.begin(), bone_moved.end(), 1) == bone_moved.end() && map_) return false;
+  map_ = nullptr;  // until this update has ended: what throws half way leaves nothing to build upon
+
+  const std::vector<SkinTransform> bones = skin_transforms(posed_from_rest);
+  const AffineTransform world_from_voxel = limber::world_from_voxel(lattice_.grid), voxel_from_world = limber::voxel_from_world(lattice_.grid);
+  const double step = lattice_.step;
+  parallel_for(std::ssize(lattice_.vertices), 512, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = begin; i < end; ++i) {
+      const std::span<const BoneWeight> influences(lattice_.influences.data() + lattice_.offsets[i], lattice_.offsets[i + 1] - lattice_.offsets[i]);
+      const glm::ivec3& vertex = lattice_.vertices[i];
+      const std::int64_t place = lattice_.place(vertex);
+      moved_[place] = 0;
+      if (std::none_of(influences.begin(), influences.end(), [&](const BoneWeight& each) { return bone_moved[each.bone]; })) continue;
+      const glm::dvec3 world = world_from_voxel * (glm::dvec3(vertex) * step - 0.5);
+      const glm::dvec3 moved = blend_point(blend, bones, influences, world) - world;
+      const glm::dvec3 at = glm::dvec3(vertex) - 0.5 + voxel_from_world.linear * moved / step;
+      for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(at[axis]) < kFurthest))
+          throw Error("the pose carries the tissue too far away", "while the volume follows the pose", "check the pose and the rig");
+      const FixedPoint fixed(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
+      moved_[place] = all || fixed != posed_[place];
+      posed_[place] = fixed;
+    }
+  });
+  posed_from_rest_ = posed_from_rest;
+  blend_ = blend;
+  return true;
+}
+
+// The nodes in the box of each moved cell, and the tiles that hold them all with a margin for nodes that are carried on.
+void LivePreview::bound_cells() {
+  const std::int64_t row = lattice_.row(), slice = lattice_.slice();
+  const std::array<std::int64_t, 8> corner = {0, 1, row, row + 1, slice, slice + 1, slice + row, slice + row + 1};
+  parallel_for(std::ssize(lattice_.cells), 512, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = begin; i < end; ++i) {
+      const std::int64_t place = lattice_.place(lattice_.cells[i]);
+      before_[i] = range_[i];
+      if (std::none_of(corner.begin(), corner.end(), [&](std::int64_t c) { return moved_[place + c]; })) {
+        before_[i] = {};
+        continue;
+      }
+      Lanes low = lanes(posed_[place]), high = low;
+      for (const std::int64_t c : corner) {
+        low = least(low, lanes(posed_[place + c]));
+        high = most(high, lanes(posed_[place + c]));
+      }
+      low = (low + (kFixedOne - 1)) >> 16;  // shifts of negative numbers round down
+      high >>= 16;
+      range_[i] = {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+    }
+  });
+}
+
+void LivePreview::rasterize() {
+  const std::int64_t row = lattice_.row(), slice = lattice_.slice();
+  const std::array<std::int64_t, 8> corner = {0, 1, row, row + 1, slice, slice + 1, slice + row, slice + row + 1};
+  glm::ivec3 low(INT32_MAX), high(INT32_MIN);
+  for (const VoxelRange& range : range_) {
+    if (range.empty()) continue;
+    low = glm::min(low, range.low);
+    high = glm::max(high, range.high);
+  }
+  if (low.x > high.x) low = glm::ivec3(0), high = glm::ivec3(0);
+  Tiles tiles;
+  tiles.first = tile_of(low - 2);
+  tiles.size = tile_of(high + 2) - tiles.first + 1;
+  const glm::ivec3 first = tiles.first * kTile, size = tiles.size * kTile;
+  if (double(size.x) * size.y * size.z > double(kMostNodes))
+    throw Error("the pose tears the tissue too far apart", "while the volume follows the pose", "check the pose and the rig");
+  const std::int64_t count = std::int64_t{tiles.size.x} * tiles.size.y * tiles.size.z;
+  const bool fresh = first != first_ || size != size_;
+  tiles.dirty.assign(count, fresh);
+  if (fresh) {
+    first_ = first;
+    size_ = size;
+    claimed_.assign(std::int64_t{size.x} * size.y * size.z, glm::u16vec4(0));
+  } else {
+    for (size_t i = 0; i < range_.size(); ++i) {
+      const std::int64_t place = lattice_.place(lattice_.cells[i]);
+      if (std::none_of(corner.begin(), corner.end(), [&](std::int64_t c) { return moved_[place + c]; })) continue;
+      for (const VoxelRange& range : {before_[i], range_[i]}) tiles.reached(range, [&](std::int64_t t) { tiles.dirty[t] = 1; });
+    }
+  }
+
+  // The cells of every dirty tile, by rising index.
+  std::vector<std::int64_t> begin(count + 1);
+  for (const VoxelRange& range : range_)
+    tiles.reached(range, [&](std::int64_t t) { begin[t + 1] += tiles.dirty[t]; });
+  std::vector<std::int32_t> work;
+  for (std::int64_t t = 0; t < count; ++t) {
+    if (tiles.dirty[t]) work.push_back(static_cast<std::int32_t>(t));
+    begin[t + 1] += begin[t];
+  }
+  std::vector<std::int32_t> cells(begin[count]);
+  std::vector<std::int64_t> end(begin.begin(), begin.end() - 1);
+  for (size_t i = 0; i < range_.size(); ++i)
+    tiles.reached(range_[i], [&](std::int64_t t) {
+      if (tiles.dirty[t]) cells[end[t]++] = static_cast<std::int32_t>(i);
+    });
+  cells_rasterized_ = begin[count];
+  parallel_for(std::ssize(work), 1, [&](std::int64_t from, std::int64_t to) {
+    for (auto w = from; w < to; ++w) rasterize_tile(tiles.at(work[w]), cells.data() + begin[work[w]], begin[work[w] + 1] - begin[work[w]]);
+  });
+}
+
+void LivePreview::rasterize_tile(const glm::ivec3& tile_at, const std::int32_t* cells, std::int64_t count) {
+  Tile tile(*this, tile_at);
+  for (std::int64_t i = 0; i < count; ++i) {
+    const glm::ivec3& cell = lattice_.cells[cells[i]];
+    PosedCell(&posed_[lattice_.place(cell)], int(lattice_.row()), int(lattice_.slice()), cell)
+        .rasterize(tile.range(), [&](const CellClaim& claim) { tile.claim(cells[i], claim); });
+  }
+  const Span span = span_of(lattice_);
+  const glm::ivec3 from = tile_at * kTile - first_;
+  for (int z = 0; z < kTile; ++z)
+    for (int y = 0; y < kTile; ++y)
+      tile.write(y, z, &claimed_[from.x + std::int64_t{size_.x} * (from.y + y + std::int64_t{size_.y} * (from.z + z))], span);
+}
+
+std::shared_ptr<PreviewMap> LivePreview::finish() const {
+  auto map = std::make_shared<PreviewMap>();
+  const Span span = span_of(lattice_);
+  map->step = lattice_.step;
+  map->grid = lattice_.grid;
+  map->first = first_;
+  map->size = size_;
+  map->low = span.low;
+  map->extent = span.extent;
+  map->nodes.resize(claimed_.size());
+  map->cubes.assign(claimed_.size(), PreviewMap::kNothing);
+  map->reach.resize(claimed_.size());
+  Finish finish(*map, claimed_);
+  parallel_for(size_.z, 1, [&](std::int64_t begin, std::int64_t end) {
+    for (auto z = begin; z < end; ++z) finish.layer(int(z));
+  });
+  parallel_for(size_.z, 1, [&](std::int64_t begin, std::int64_t end) {
+    for (auto z = begin; z < end; ++z) finish.cubes(int(z));
+  });
+  return map;
+}
+
+}  // namespace limber

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The live preview: where each place of the posed body comes from, coarse enough to be made anew for every picture while a
+// bone is dragged. A PreviewMap holds rest points at nodes that lie `step` voxels apart over the posed body; between nodes
+// it is read linearly. The cells of preview_lattice.h, posed, say which rest point a node is the image of, by the rules of
+// inverse_map.h where two cells claim one node.
+//
+// Nodes just outside all cells carry their neighbours' map on, straight; so the eight nodes around any place of the body
+// are there. Where those eight jump, in a fold, two sheets of the body meet between them: a place there reads the nearest
+// node and what lies as far on that node's other side, mirrored through it, and so stays on one sheet.
+//
+// Only the surroundings of cells that moved are rasterized again. What comes out never depends on what was posed before.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/deform/lattice.h"
+#include "core/deform/preview_lattice.h"
+#include "core/volume/label_volume.h"
+#include "core/volume/tissue_table.h"
+
+namespace limber {
+
+struct PreviewMap {
+  static constexpr int kFullFraction = 65535;
+  // Of a cube: nothing known there; nodes that jump; how fast the rest point moves.
+  static constexpr std::uint8_t kNothing = 0, kBroken = 128;
+  static constexpr int kRateUnit = 16;  // the other bits: voxels at rest for a posed voxel of the fastest axis, in sixteenths, rounded up
+
+  // Boxes of rest points, in the nodes' own fractions.
+  struct RestBox {
+    glm::u16vec3 low, high;
+  };
+
+  int step = 4;
+  Grid grid;                        // of the volume; posed points are in its voxels too
+  glm::ivec3 first{0}, size{0};     // node n lies at the voxel coordinates (first + n + 1/2) step - 1/2
+  std::vector<glm::u16vec4> nodes;  // rest point as fractions of [low, low + extent]; the last is kFullFraction where covered, or 0
+  std::vector<std::uint8_t> cubes;  // between node n and n + 1; as many as nodes
+  std::vector<RestBox> reach;       // of each cube's covered nodes; meaningless in cubes without any
+  glm::dvec3 low{0}, extent{1};     // voxel coordinates
+
+  std::int64_t index(const glm::ivec3& n) const { return n.x + std::int64_t{size.x} * (n.y + std::int64_t{size.y} * n.z); }
+  bool contains(const glm::ivec3& n) const {
+    return glm::all(glm::greaterThanEqual(n, glm::ivec3(0))) && glm::all(glm::lessThan(n, size));
+  }
+  bool covers(const glm::ivec3& n) const { return nodes[index(n)].w != 0; }
+  glm::dvec3 node_from_voxel(const glm::dvec3& voxel) const { return (voxel + 0.5) / double(step) - 0.5 - glm::dvec3(first); }
+  glm::dvec3 rest_of(const glm::u16vec3& fraction) const { return low + extent * (glm::dvec3(fraction) / double(kFullFraction)); }
+  glm::dvec3 rest_of_node(const glm::ivec3& n) const { return rest_of(glm::u16vec3(nodes[index(n)])); }
+  // Two nodes next to each other further apart than this at rest, voxels, lie on different sheets.
+  // (A joint twisted by a right angle moves as much as 3 steps without a fold.)
+  double jump() const { return 5.0 * step; }
+  // What is carried on beyond the nodes of a sheet is no steeper, voxels for a step.
+  double steepest() const { return 1.5 * step; }
+
+  // The rest point of a posed point, both in voxel coordinates; none outside the body's surroundings.
+  std::optional<glm::dvec3> rest_at(const glm::dvec3& posed) const;
+
+ private:
+  std::optional<glm::dvec3> between(const glm::dvec3& place) const;
+};
+
+class LivePreview {
+ public:
+  // `weights` are only read here.
+  //   step  as preview_step() tells, or 2, 4, 8
+  LivePreview(std::shared_ptr<const LabelVolume> volume, const TissueTable& tissues, const TissueVoxels& tissue, const SkinWeights& weights,
+              int step);
+
+  // The map of a pose. Another pointer than before only where it differs.
+  //   posed_from_rest  #bones of the weights
+  // throws Error where the pose carries tissue too far
+  std::shared_ptr<const PreviewMap> update(const std::vector<RigidTransform>& posed_from_rest, Blend blend);
+
+  const PreviewLattice& lattice() const { return lattice_; }
+  std::int64_t cells_rasterized() const { return cells_rasterized_; }  // by the last update
+
+ private:
+  struct Tiles;
+  class Tile;
+
+  bool pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend);
+  void bound_cells();
+  void rasterize();
+  void rasterize_tile(const glm::ivec3& tile, const std::int32_t* cells, std::int64_t count);
+  std::shared_ptr<PreviewMap> finish() const;
+
+  std::shared_ptr<const LabelVolume> volume_;
+  PreviewLattice lattice_;
+  std::vector<int> priority_;  // by label; air lowest
+
+  // The last pose.
+  std::vector<RigidTransform> posed_from_rest_;
+  Blend blend_ = Blend::Linear;
+  std::vector<FixedPoint> posed_;         // by place of the lattice
+  std::vector<std::uint8_t> moved_;       // by place: by the update under way
+  std::vector<VoxelRange> range_, before_;  // by cell: absolute nodes that its image can hold, of this update and of the last
+  glm::ivec3 first_{0}, size_{0};         // nodes, whole tiles
+  std::vector<glm::u16vec4> claimed_;     // by node: what a cell says
+  std::shared_ptr<const PreviewMap> map_;
+  std::int64_t cells_rasterized_ = 0;
+};
+
+}  // namespace limber

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "render/posed_texture.h"
+
+#include <algorithm>
+#include <array>
+
+#include <epoxy/gl.h>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace limber::render {
+
+namespace {
+
+constexpr Format3D kNodes = {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, true};
+constexpr Format3D kCubes = {GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, false};
+
+void write(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const void* texels) {
+  glBindTexture(GL_TEXTURE_3D, texture.name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, size.x, size.y, size.z, format.pixels, format.type, texels);
+}
+
+}  // namespace
+
+const char* const kPosedFunctions = R"(
+uniform sampler3D u_map;           // fractions of rest points at nodes
+uniform usampler3D u_cubes;        // between node n and n + 1
+uniform vec3 u_node_offset;
+uniform float u_node_scale;        // nodes a padded voxel
+uniform vec3 u_rest_offset, u_rest_scale;  // padded rest point of a fraction
+uniform vec3 u_map_texel;
+uniform ivec3 u_map_size;
+uniform float u_steepest;          // padded voxels at rest that half a node of one sheet can be
+
+const vec3 kNowhere = vec3(-1e6);
+
+vec3 node_of(vec3 posed) { return posed * u_node_scale + u_node_offset; }
+
+uint cube_at(vec3 node) {
+  ivec3 cube = ivec3(floor(node));
+  if (any(lessThan(cube, ivec3(0))) || any(greaterThanEqual(cube, u_map_size - 1))) return 0u;
+  return texelFetch(u_cubes, cube, 0).r;
+}
+
+// In a cube that is not 0. Beside a fold: the nearest node, and what lies as far on its other side, mirrored through it.
+// Without branches, since a software driver follows both.
+vec3 rest_in(vec3 node, uint cube) {
+  vec3 nearest = floor(node + 0.5);
+  vec4 middle = texelFetch(u_map, ivec3(nearest), 0);
+  bool mirror = cube >= 128u && middle.a > 0.5;
+  vec4 texel = textureLod(u_map, ((mirror ? 2.0 * nearest - node : node) + 0.5) * u_map_texel, 0.0);
+  if (texel.a < 0.25) return kNowhere;
+  texel.rgb /= texel.a;  // nodes that are not covered do not count
+  vec3 slope = (middle.rgb - texel.rgb) * u_rest_scale;
+  bool one_sheet = all(lessThan(abs(slope), vec3(u_steepest)));
+  vec3 rest = (mirror ? middle.rgb : texel.rgb) * u_rest_scale + u_rest_offset;
+  return mirror && one_sheet ? rest + slope : rest;
+}
+
+vec3 rest_of(vec3 posed) {
+  vec3 node = node_of(posed);
+  uint cube = cube_at(node);
+  return cube == 0u ? kNowhere : rest_in(node, cube);
+}
+)";
+static_assert(PreviewMap::kNothing == 0 && PreviewMap::kBroken == 128);
+
+PosedTexture::PosedTexture() : nodes_(gl::Texture::create()), cubes_(gl::Texture::create()) {}
+
+void PosedTexture::upload(const std::shared_ptr<const PreviewMap>& map, int largest_texture) {
+  const bool fits = glm::all(glm::lessThanEqual(map->size, glm::ivec3(largest_texture)));
+  if (!fits || (map->size != size_ && !(allocate(nodes_, map->size, kNodes) && allocate(cubes_, map->size, kCubes)))) {
+    size_ = glm::ivec3(0);
+    throw Error("the pose cannot be shown: the graphics driver has no room for it", "its map", "pose less far, or resample");
+  }
+  size_ = map->size;
+  write(nodes_, size_, kNodes, map->nodes.data());
+  write(cubes_, size_, kCubes, map->cubes.data());
+  map_ = map;
+  gl::check_gl("the upload of a pose");
+}
+
+int PosedTexture::bind(const VolumeTexture& volume, gl::Program& program, int first) const {
+  const double halving = 1 << volume.halvings(), scale = halving / map_->step;
+  program.set_texture("u_map", first++, GL_TEXTURE_3D, nodes_.name());
+  program.set_texture("u_cubes", first++, GL_TEXTURE_3D, cubes_.name());
+  program.set("u_node_scale", static_cast<float>(scale));
+  program.set("u_node_offset", glm::vec3(-glm::dvec3(kPad) * scale - 0.5 - glm::dvec3(map_->first)));
+  program.set("u_rest_scale", glm::vec3(map_->extent / halving));
+  program.set("u_rest_offset", glm::vec3((map_->low + 0.5) / halving + double(kPad)));
+  program.set("u_map_texel", 1.0f / glm::vec3(size_));
+  program.set("u_map_size", size_);
+  program.set("u_steepest", static_cast<float>(map_->steepest() / halving));
+  return first;
+}
+
+void build_posed_hull(Hull& hull, const PreviewMap& map, const VolumeTexture& volume, const VisibleField& field) {
+  const double halving = 1 << volume.halvings();
+  const glm::vec3 scale(map.extent / halving / double(PreviewMap::kFullFraction)), offset((map.low + 0.5) / halving + double(kPad));
+  const std::array<std::int64_t, 3> stride = {1, map.size.x, std::int64_t{map.size.x} * map.size.y};
+  std::vector<std::uint8_t> holds(map.cubes.size());
+  parallel_for(map.size.z, 4, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin * stride[2]; i < end * stride[2]; ++i) {
+      if (map.cubes[i] == PreviewMap::kNothing) continue;
+      const glm::vec3 low(map.reach[i].low), high(map.reach[i].high);
+      const glm::vec3 half = (high - low) * 0.5f * scale;
+      holds[i] = field.is_near((low + high) * 0.5f * scale + offset, std::max({half.x, half.y, half.z}));
+    }
+  });
+
+  Hull::Faces faces;
+  for (int z = 0; z < map.size.z; ++z)
+    for (int y = 0; y < map.size.y; ++y) {
+      const std::int64_t row = map.index({0, y, z});
+      for (int x = 0; x < map.size.x; ++x) {
+        if (!holds[row + x]) continue;
+        const glm::ivec3 cube(x, y, z);
+        for (int side = 0; side < 6; ++side) {
+          const int axis = side / 2, up = side % 2;
+          const int next = cube[axis] + (up ? 1 : -1);
+          if (next >= 0 && next < map.size[axis] && holds[row + x + (up ? stride[axis] : -stride[axis])]) continue;
+          const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+          std::array<glm::u16vec4, 4> c;
+          c.fill(glm::u16vec4(x, y, z, 1));
+          for (glm::u16vec4& each : c) each[axis] = static_cast<std::uint16_t>(each[axis] + up);
+          c[up ? 1 : 3][u] += 1, c[2][u] += 1, c[2][v] += 1, c[up ? 3 : 1][v] += 1;
+          const auto start = static_cast<std::uint32_t>(faces.corners.size());
+          faces.corners.insert(faces.corners.end(), c.begin(), c.end());
+          for (const std::uint32_t i : {0, 1, 2, 0, 2, 3}) faces.indices.push_back(start + i);
+        }
+      }
+    }
+  hull.upload(faces, map.step / halving, (glm::dvec3(map.first) + 0.5) * (map.step / halving) + double(kPad));
+}
+
+}  // namespace limber::render

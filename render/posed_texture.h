@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A live preview's inverse map (core/deform/preview_map.h) on the card. A posed body is drawn in posed space: rays, slices
+// and shading read the map at a posed place and then the volume's own textures at the rest point it tells, so a pose
+// uploads the map alone.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/deform/preview_map.h"
+#include "render/gl/object.h"
+#include "render/gl/program.h"
+#include "render/hull.h"
+#include "render/visible_field.h"
+#include "render/volume_texture.h"
+
+namespace limber::render {
+
+class PosedTexture {
+ public:
+  PosedTexture();
+
+  // Throws Error when the driver has no room for it.
+  void upload(const std::shared_ptr<const PreviewMap>& map, int largest_texture);
+  const std::shared_ptr<const PreviewMap>& map() const { return map_; }
+
+  // What kPosedFunctions read; returns the next free unit.
+  int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
+
+ private:
+  std::shared_ptr<const PreviewMap> map_;
+  gl::Texture nodes_, cubes_;
+  glm::ivec3 size_{0};
+};
+
+// Around the places that the map leads to the field's set.
+void build_posed_hull(Hull& hull, const PreviewMap& map, const VolumeTexture& volume, const VisibleField& field);
+
+// vec3 rest_of(vec3 posed), both in padded coordinates; kNowhere outside the map. uint cube_at(vec3 node), vec3 rest_in(vec3 node,
+// uint cube) and node_of(vec3 posed) for whoever walks from cube to cube.
+extern const char* const kPosedFunctions;
+
+}  // namespace limber::render

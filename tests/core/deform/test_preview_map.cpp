@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/preview_map.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/deform/inverse_map.h"
+#include "core/deform/lattice.h"
+#include "core/skin/heat_diffusion.h"
+#include "core/volume/phantom.h"
+#include "tests/support/bent_tube.h"
+
+using namespace limber;
+
+namespace {
+
+// A body with its weights, and a preview of it.
+struct Sitter {
+  std::shared_ptr<const LabelVolume> volume;
+  TissueTable tissues;
+  Armature rig;
+  TissueVoxels tissue;
+  SkinWeights weights;
+
+  LivePreview preview(int step = 4) const { return LivePreview(volume, tissues, tissue, weights, step); }
+  std::vector<RigidTransform> motions(const Pose& pose) const { return posed_from_rest(rig, pose); }
+};
+
+Sitter tube_sitter(const Grid& grid = {}, int length = 60) {
+  test::BentTube tube = test::bent_tube(grid, length);
+  Sitter sitter{std::make_shared<const LabelVolume>(tube.volume), tube.tissues, tube.rig, TissueVoxels(tube.volume), tube.weights};
+  return sitter;
+}
+
+const Sitter& arm_sitter() {
+  static const Sitter arm = [] {
+    Phantom phantom = make_arm_phantom(2);
+    SkinWeights weights = diffuse_heat(phantom.volume, phantom.tissues, phantom.armature);
+    Sitter sitter{std::make_shared<const LabelVolume>(std::move(phantom.volume)), phantom.tissues, phantom.armature, {}, std::move(weights)};
+    sitter.tissue = TissueVoxels(*sitter.volume);
+    return sitter;
+  }();
+  return arm;
+}
+
+Pose flexed(const Sitter& sitter, const char* bone, double degrees) {
+  Pose pose = rest_pose(sitter.rig);
+  flex(pose, sitter.rig, require_bone(sitter.rig, bone), degrees);
+  return pose;
+}
+
+Pose tube_pose(const Sitter& sitter, double degrees, double twist_degrees = 0) {
+  Pose pose = rest_pose(sitter.rig);
+  const double radians = std::numbers::pi / 180;
+  pose.rotation[1] = glm::angleAxis(degrees * radians, glm::normalize(sitter.volume->grid.direction[0])) *
+                     glm::angleAxis(twist_degrees * radians, glm::normalize(sitter.rig.bones[1].tail - sitter.rig.bones[1].head));
+  return pose;
+}
+
+bool same(const PreviewMap& a, const PreviewMap& b) { return a.first == b.first && a.size == b.size && a.nodes == b.nodes && a.cubes == b.cubes; }
+
+Grid oblique_grid() {
+  Grid grid;
+  grid.spacing = {0.7, 2.1, 1.3};
+  grid.origin = {-31.7, 12.9, 1003.3};
+  grid.direction = glm::mat3_cast(glm::angleAxis(0.61, glm::normalize(glm::dvec3(1, -2, 0.5))));
+  grid.direction[1] = -grid.direction[1];  // mirrored
+  return grid;
+}
+
+}  // namespace
+
+TEST_CASE("preview: at rest every covered node maps to itself, and all tissue is covered") {
+  for (const Grid& grid : {Grid{}, oblique_grid()})
+    for (const int step : {2, 4, 8}) {
+      const Sitter tube = tube_sitter(grid);
+      LivePreview preview = tube.preview(step);
+      const auto map = preview.update(tube.motions(rest_pose(tube.rig)), Blend::DualQuaternion);
+      double furthest = 0;
+      for (int z = 0; z < map->size.z; ++z)
+        for (int y = 0; y < map->size.y; ++y)
+          for (int x = 0; x < map->size.x; ++x) {
+            const glm::ivec3 node(x, y, z);
+            if (!map->covers(node)) continue;
+            const glm::dvec3 voxel = (glm::dvec3(map->first + node) + 0.5) * double(step) - 0.5;
+            const glm::dvec3 off = glm::abs(map->rest_of_node(node) - voxel) / map->extent;
+            furthest = std::max({furthest, off.x, off.y, off.z});
+          }
+      CHECK(furthest <= 1.0 / 65535);
+      std::int64_t missing = 0;
+      tube.tissue.for_each([&](std::int64_t, const glm::ivec3& v) { missing += !map->rest_at(glm::dvec3(v)); });
+      CHECK(missing == 0);
+    }
+}
+
+TEST_CASE("preview: when everything moves rigidly the map is that motion backward, in any direction") {
+  for (const Grid& grid : {Grid{}, oblique_grid()}) {
+    const Sitter tube = tube_sitter(grid);
+    LivePreview preview = tube.preview();
+    const RigidTransform move{glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, -1))), {31, -17, 222}};
+    const auto map = preview.update({move, move}, Blend::Linear);
+    const AffineTransform to_world = world_from_voxel(grid), to_voxel = voxel_from_world(grid);
+    double furthest = 0;
+    std::int64_t missing = 0, broken = 0;
+    tube.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
+      const glm::dvec3 posed = to_voxel * (move * (to_world * glm::dvec3(v)));
+      const auto rest = map->rest_at(posed);
+      missing += !rest;
+      if (rest) furthest = std::max(furthest, glm::length(*rest - glm::dvec3(v)));
+      broken += map->cubes[map->index(glm::ivec3(glm::floor(map->node_from_voxel(posed))))] >= PreviewMap::kBroken;
+    });
+    CHECK(missing == 0);
+    CHECK(broken <= tube.tissue.size() / 100);
+    CHECK(furthest < 0.02);
+  }
+}
+
+TEST_CASE("preview: posing step by step gives the same map, bit for bit, as posing at once, for any number of threads") {
+  const Sitter tube = tube_sitter({}, 200);
+  for (const Blend blend : {Blend::Linear, Blend::DualQuaternion}) {
+    LivePreview stepwise = tube.preview();
+    std::shared_ptr<const PreviewMap> last;
+    for (const double degrees : {0.0, 25.0, 24.0, 24.5, 80.0, 81.0}) last = stepwise.update(tube.motions(tube_pose(tube, degrees, degrees / 2)), blend);
+    const std::int64_t partial = stepwise.cells_rasterized();
+    const ThreadCount one(1);
+    LivePreview whole = tube.preview();
+    const auto at_once = whole.update(tube.motions(tube_pose(tube, 81, 40.5)), blend);
+    CHECK(same(*last, *at_once));
+    CHECK(partial < whole.cells_rasterized() * 3 / 4);
+    CHECK(stepwise.update(tube.motions(tube_pose(tube, 81, 40.5)), blend) == last);
+  }
+}
+
+TEST_CASE("preview: after a pose that cannot be shown the next one is right again") {
+  const Sitter tube = tube_sitter();
+  LivePreview preview = tube.preview(), fresh = tube.preview();
+  preview.update(tube.motions(rest_pose(tube.rig)), Blend::Linear);
+  auto far = tube.motions(rest_pose(tube.rig));
+  far[1].translation.x = 1e7;
+  CHECK_THROWS_AS(preview.update(far, Blend::Linear), Error);
+  far[1].translation.x = 30000;
+  far[1].translation.y = far[1].translation.z = 40000;
+  CHECK_THROWS_AS(preview.update(far, Blend::Linear), Error);
+  const auto motions = tube.motions(tube_pose(tube, 30));
+  CHECK(same(*preview.update(motions, Blend::Linear), *fresh.update(motions, Blend::Linear)));
+}
+
+TEST_CASE("preview: an arm bent by 60 degrees is mapped as by the dense lattice, away from folds to a tenth of a voxel") {
+  const Sitter& arm = arm_sitter();
+  const auto motions = arm.motions(flexed(arm, "Forearm", 60));
+  for (const Blend blend : {Blend::Linear, Blend::DualQuaternion}) {
+    LivePreview preview = arm.preview();
+    const auto map = preview.update(motions, blend);
+    const PosedLattice lattice(*arm.volume, arm.tissue, arm.weights, motions, blend, glm::dvec3(1));
+    VoxelRange all{glm::ivec3(INT32_MAX), glm::ivec3(INT32_MIN)};
+    std::vector<std::int64_t> bricks;
+    for (std::int64_t b = 0; b < std::ssize(arm.tissue.bricks()); ++b) {
+      bricks.push_back(b);
+      all = {glm::min(all.low, lattice.bounds(b).low >> 16), glm::max(all.high, (lattice.bounds(b).high >> 16) + 1)};
+    }
+    InverseMap dense;
+    dense.reset(all);
+    const TissueDepth depth(arm.tissue, arm.volume->grid.spacing);
+    rasterize_cells(dense, lattice, bricks, std::vector<int>(65536, 0), &depth);
+
+    std::vector<double> errors;
+    std::int64_t missing = 0, covered = 0;
+    for (int z = all.low.z; z <= all.high.z; ++z)
+      for (int y = all.low.y; y <= all.high.y; ++y)
+        for (int x = all.low.x; x <= all.high.x; ++x) {
+          const std::int64_t at = dense.index({x, y, z});
+          if (dense.cell[at] == InverseMap::kNoCell) continue;
+          ++covered;
+          const auto rest = map->rest_at(glm::dvec3(glm::ivec3(x, y, z) + lattice.output().base));
+          missing += !rest;
+          if (rest && !(dense.flags[at] & InverseMap::kOverlap)) errors.push_back(glm::length(*rest - glm::dvec3(dense.rest[at])));
+        }
+    std::sort(errors.begin(), errors.end());
+    const double median = errors[errors.size() / 2];
+    const double near = double(std::lower_bound(errors.begin(), errors.end(), 0.5) - errors.begin()) / double(errors.size());
+    CHECK(median < 0.1);
+    CHECK(near > 0.95);  // the others lie around the elbow, where rigid bone touches flesh that bends
+    CHECK(missing < covered / 1000);
+  }
+}
