@@ -91,8 +91,12 @@ Pressed press_area(Editor& editor, const std::string& name, const Rect& rect, bo
   return pressed;
 }
 
+static ImFont* font_of_button(const Editor& editor, ButtonStyle style) {
+  return style == ButtonStyle::Primary || style == ButtonStyle::Chosen ? editor.look.fonts.semibold : editor.look.fonts.regular;
+}
+
 float width_of_button(const Editor& editor, const ButtonLook& look) {
-  const float words = look.label.empty() ? 0 : text_size(editor.look.fonts.regular, look.label).x;
+  const float words = look.label.empty() ? 0 : text_size(font_of_button(editor, look.style), look.label).x;
   const float icon = *look.icon ? editor.look.px(16) : 0;
   const float gap = words > 0 && icon > 0 ? editor.look.px(8) : 0;
   return std::round(words + icon + gap + 2 * editor.look.px(words > 0 ? 11 : 7));
@@ -105,7 +109,7 @@ bool button(Editor& editor, const std::string& name, const Rect& rect, const But
   if (colours.background) fill(rect, colours.background, rounding);
   if (colours.edge) outline(rect, colours.edge, rounding, editor.look.line());
 
-  ImFont* font = look.style == ButtonStyle::Primary || look.style == ButtonStyle::Chosen ? editor.look.fonts.semibold : editor.look.fonts.regular;
+  ImFont* font = font_of_button(editor, look.style);
   const float icon = *look.icon ? editor.look.px(16) : 0, gap = icon > 0 && !look.label.empty() ? editor.look.px(8) : 0;
   const float words = std::min(text_size(font, look.label).x, rect.width() - icon - gap - editor.look.px(8));
   float x = std::round(rect.centre().x - (icon + gap + words) / 2);

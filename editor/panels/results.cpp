@@ -183,7 +183,7 @@ void draw_results(Editor& editor, const Rect& rect) {
   right -= look.px(6);
   for (const char* id : {"compare.wipe", "compare.show_b", "compare.show_a"}) {
     const Operator* op = find_operator(editor, id);
-    const float width = std::round(text_size(look.fonts.regular, op->label).x + look.px(20));
+    const float width = width_of_button(editor, {op->icon, op->label, ButtonStyle::Chosen});  // it does not move when it is
     operator_button(editor, id, {{right - width, top}, {right, bottom}}, op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
     right -= width + look.px(1);
   }
