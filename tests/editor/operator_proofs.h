@@ -68,6 +68,8 @@ std::vector<Proof> proofs_of_tissues();
 std::vector<Proof> proofs_of_work();
 std::vector<Proof> proofs_of_files();
 std::vector<Proof> proofs_of_pages();
+std::vector<Proof> proofs_of_posing();
+std::vector<Proof> proofs_of_comparing();
 
 void prove(Stage& stage, const std::vector<Proof>& proofs);
 

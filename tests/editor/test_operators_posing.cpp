@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Bones are chosen and posed, results compared.
+#include "editor/posing.h"
+#include "editor/results.h"
+#include "tests/editor/operator_proofs.h"
+
+namespace limber::test {
+
+using namespace editor;
+
+namespace {
+
+std::function<void(Stage&)> choose(int bone) {
+  return [bone](Stage& s) {
+    s.editor().selection = {};
+    s.editor().selection.bone = bone;
+    s.editor().selection.bones = {bone};
+    s.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
+  };
+}
+
+std::function<bool(Stage&, const Seen&)> edit_is(const char* label) {
+  return [=](Stage& s, const Seen& b) { return s.is("edit", label) && static_cast<int>(s.editor().history.position()) == b.position + 1; };
+}
+
+std::function<bool(Stage&, const Seen&)> bones_are(const std::set<int>& bones, int active) {
+  return [=](Stage& s, const Seen&) { return s.editor().selection.bones == bones && s.editor().selection.bone == active; };
+}
+
+double turn_about_z(Stage& s, int bone) { return pose_of(s.document()).rotation[bone].z; }
+
+// The two bones as the two sides of one.
+void name_sides(Stage& s) {
+  Document next = s.document();
+  Armature armature = *next.armature;
+  armature.bones[0].name = "LeftHalf";
+  armature.bones[1].name = "RightHalf";
+  next.armature = std::make_shared<const Armature>(armature);
+  s.editor().history.commit("Name sides", next);
+  choose(0)(s);
+}
+
+// A body without skin stands for a posed one.
+void add_result(Stage& s) {
+  Document next = s.document();
+  auto volume = std::make_shared<LabelVolume>(*next.volume);
+  for (Label& label : volume->voxels)
+    if (label == 143) label = 0;
+  auto result = std::make_shared<Result>();
+  result->name = "Bare";
+  result->volume = volume;
+  result->from_volume = next.volume;
+  result->from_pose = std::make_shared<const Pose>(rest_pose(*next.armature));
+  next.results.push_back(result);
+  s.editor().history.commit("Add result", next);
+  show_result(s.editor(), "Bare");
+  s.play("key Ctrl+4\n move \"3D view/view\"\n wait-idle");
+}
+
+std::shared_ptr<const LabelVolume> seen_volume(Stage& s) { return s.editor().views->scene.volume; }
+
+}  // namespace
+
+std::vector<Proof> proofs_of_posing() {
+  return {
+      {"select.parent", "key [", bones_are({0}, 0), Shows::InBody, "", choose(1)},
+      {"select.child", "key ]", bones_are({1}, 1), Shows::InBody, "", choose(0)},
+      {"select.extend_parent", "key Shift+[", bones_are({0, 1}, 0), Shows::InBody, "", choose(1)},
+      {"select.extend_child", "key Shift+]", bones_are({0, 1}, 1), Shows::InBody, "", choose(0)},
+      {"select.chain", "key L", bones_are({0, 1}, 0), Shows::InBody, "", choose(0)},
+
+      {"pose.rotate", "key R\n key X\n key 3\n key 0\n key Return", edit_is("Rotate Fore"), Shows::InBody, "", choose(1)},
+      {"pose.copy", "key Ctrl+C", [](Stage& s, const Seen&) { return s.editor().posing.copied.contains("Fore"); }},
+      {"pose.clear_rotation", "key Alt+R", edit_is("Clear rotation"), Shows::InBody},
+      {"pose.paste", "key Ctrl+V", edit_is("Paste pose"), Shows::InBody},
+      {"pose.limits", "click \"Edit/Pose/Keep to joint limits\"", [](Stage& s, const Seen&) { return !s.editor().posing.keep_limits; }},
+      {"pose.move", "key G\n key Z\n key 9\n key Return", edit_is("Move body"), Shows::InBody, "", choose(0)},
+      {"pose.clear_translation", "key Alt+G", edit_is("Clear translation"), Shows::InBody},
+      {"pose.flip", "key Ctrl+M", [](Stage& s, const Seen& b) { return edit_is("Flip pose")(s, b) && turn_about_z(s, 0) < -0.1; }, Shows::InBody,
+       "key R\n key Z\n key 3\n key 0\n key Return\n key Ctrl+C"},
+      {"pose.paste_flipped", "key Shift+Ctrl+V", [](Stage& s, const Seen& b) { return edit_is("Paste flipped pose")(s, b) && turn_about_z(s, 0) < -0.1; }, Shows::InBody, "key Alt+R"},
+      {"select.mirror", "key Shift+Ctrl+M", bones_are({1}, 1), Shows::InBody, "", name_sides},
+  };
+}
+
+std::vector<Proof> proofs_of_comparing() {
+  return {
+      {"compare.show_a", "key 1", [](Stage& s, const Seen&) { return seen_volume(s) == s.document().volume; }, Shows::InBody, "", add_result},
+      {"compare.show_b", "key 2", [](Stage& s, const Seen&) { return seen_volume(s) == s.document().results.back()->volume; }, Shows::InBody},
+      {"compare.flicker", "key-down F\n wait-idle", [](Stage& s, const Seen&) { return seen_volume(s) == s.document().volume; }, Shows::InBody},
+      {"compare.wipe", "key 4", [](Stage& s, const Seen&) { return wiping(s.editor()) && s.editor().views->other_scene; }, Shows::Nothing, "key-up F\n wait-idle"},
+      {"compare.swap", "click \"Edit/Resample/Swap A and B\"", [](Stage& s, const Seen&) { return s.editor().comparison.a == "Bare"; }},
+      {"result.rename", "click \"Edit/Resample/Rename result...\"\n wait-idle\n key Ctrl+A\n type \"Skinless\"\n key Return",
+       [](Stage& s, const Seen&) { return s.document().results.back()->name == "Skinless"; }},
+  };
+}
+
+TEST_CASE("operators: bones are chosen and posed") {
+  Stage stage;
+  prove(stage, proofs_of_posing());
+}
+
+TEST_CASE("operators: results are compared") {
+  Stage stage;
+  prove(stage, proofs_of_comparing());
+}
+
+}  // namespace limber::test
