@@ -31,8 +31,6 @@ std::optional<Choice> choice(const Json& json, const char* key, int count) {
   return number >= 0 && number < count ? std::optional(static_cast<Choice>(number)) : std::nullopt;
 }
 
-}  // namespace
-
 Json json_of(const Arrangement& arrangement) {
   Json json{{"views", static_cast<int>(arrangement.views)}, {"tool_strip", arrangement.tool_strip}, {"console", arrangement.console},
             {"results", arrangement.results}, {"sidebar_width", arrangement.sidebar_width}, {"bottom_height", arrangement.bottom_height},
@@ -56,13 +54,16 @@ void restore(const Json& json, Arrangement& arrangement) {
   arrangement.maximized = choice<ViewId>(json, "maximized", 4);
 }
 
-Json json_of(const Arrangements& arrangements) {
+}  // namespace
+
+std::string json_text(const Arrangements& arrangements) {
   Json json = Json::array();
   for (const Arrangement& arrangement : arrangements) json.push_back(json_of(arrangement));
-  return json;
+  return json.dump();
 }
 
-void restore(const Json& json, Arrangements& arrangements) {
+void restore(const std::string& text, Arrangements& arrangements) {
+  const Json json = Json::parse(text, nullptr, false);
   if (!json.is_array()) return;
   for (std::size_t i = 0; i < std::min(json.size(), arrangements.size()); ++i) restore(json[i], arrangements[i]);
 }

@@ -78,7 +78,7 @@ std::string editor_state(const Editor& editor) {
   Json json{{"schema", kSchema}, {"workspace", static_cast<int>(editor.workspace)}, {"display", static_cast<int>(views.display)},
             {"slices", static_cast<int>(views.slice_display)}, {"cross_hair", json_of(views.cross_hair)}, {"camera", json_of(views.body.camera)},
             {"grid", views.grid}, {"axes", views.axes}, {"scale_bar", views.scale_bar}, {"letters", views.letters}, {"show_cross_hair", views.show_cross_hair}};
-  json["arrangements"] = json_of(editor.arrangements);
+  json["arrangements"] = Json::parse(json_text(editor.arrangements));
   for (const SliceState& slice : views.slices)
     json["slice_cameras"].push_back({{"centre", json_of(slice.camera.centre)}, {"millimetres_per_pixel", slice.camera.millimetres_per_pixel}});
   if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
@@ -100,7 +100,7 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   take(json, "show_cross_hair", views.show_cross_hair);
   if (const auto camera = json.find("camera"); camera != json.end() && camera->is_object()) restore(*camera, views.body.camera);
   views.body.name.clear();
-  if (json.contains("arrangements")) restore(json["arrangements"], editor.arrangements);
+  if (json.contains("arrangements")) restore(json["arrangements"].dump(), editor.arrangements);
   if (const auto all = json.find("slice_cameras"); all != json.end() && all->is_array())
     for (std::size_t i = 0; i < std::min(all->size(), views.slices.size()); ++i) {
       if (!(*all)[i].is_object()) continue;

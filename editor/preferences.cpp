@@ -104,7 +104,7 @@ Preferences preferences_from_json(const std::string& text, std::string& problem)
   if (json.contains("keys")) preferences.keys = key_changes_from_json(json["keys"].dump());
   if (preferences.keymap != "maya") preferences.keymap = "blender";
   read_use(json, preferences);
-  if (json.contains("arrangements")) restore(nlohmann::json(json["arrangements"]), preferences.arrangements);
+  if (json.contains("arrangements")) restore(json["arrangements"].dump(), preferences.arrangements);
   return preferences;
 }
 
@@ -125,7 +125,7 @@ std::string to_json(const Preferences& preferences) {
   json["keys"] = Json::array();
   for (const auto& [place, keys] : preferences.keys) json["keys"].push_back({{"context", place.first}, {"operator", place.second}, {"keys", keys}});
   json["recent_commands"] = preferences.recent_commands;
-  json["arrangements"] = json_of(preferences.arrangements);
+  json["arrangements"] = nlohmann::json::parse(json_text(preferences.arrangements));
   json["command_counts"] = Json::object();
   for (const auto& [id, count] : preferences.command_counts) json["command_counts"][id] = count;
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
