@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
-#include <cassert>
 
 #include <epoxy/gl.h>
 
+#include "core/base/error.h"
 #include "render/headless.h"
 #include "render/renderer_parts.h"
 
@@ -58,7 +58,8 @@ const VisibleField& Renderer::Parts::layer(Body& body, const LooksTexture& looks
 
 const PosedTexture* Renderer::Parts::pose(Body& body, const std::shared_ptr<const PreviewMap>& map) {
   if (!map) return nullptr;
-  assert(map->grid == body.volume->original().lock()->grid);
+  if (const auto volume = body.volume->original().lock(); !volume || !(map->grid == volume->grid))
+    throw Error("the pose was made for another volume", "preview of a posed body", "pose the volume that is shown");
   if (!body.pose) body.pose = std::make_unique<PosedTexture>();
   if (body.pose->map() != map) body.pose->upload(map, largest_texture);
   return body.pose.get();
