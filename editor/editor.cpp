@@ -8,6 +8,7 @@
 
 #include "editor/assets.h"
 #include "editor/dispatch.h"
+#include "editor/live_pose.h"
 #include "editor/panels/panels.h"
 #include "editor/project.h"
 #include "editor/sitting.h"
@@ -96,6 +97,7 @@ Editor::Editor(Host& host, const Preferences& preferences)
   teach_imgui_keys();
   ImGui_ImplOpenGL3_Init("#version 330 core");
   views.emplace();
+  live = std::make_unique<LivePose>([&host] { host.wake(); });
   show_preferred(*this);
   apply_look(look, preferences.theme, scale_for(preferences, host));
   layout = arrange(host.size(), look.scale, arrangement());
@@ -115,12 +117,14 @@ Editor::~Editor() {
 void Editor::open_dialog(std::unique_ptr<Dialog> dialog) { next_dialog_ = std::move(dialog); }
 void Editor::close_dialog() { next_dialog_ = std::unique_ptr<Dialog>(); }
 
+bool Editor::busy() const { return jobs.busy() || live->busy(); }
+
 double Editor::rest() const {
   if (frames_wanted_ > 0 || !host.events.empty() || views->body.move || (modal && modal->moving())) return 0;
   if (layout.place_of(ViewId::Body) && (!views->body.picture->complete() || (views->body.other && !views->body.other->complete()))) return 0;
   double seconds = kLongestRest;
   seconds = std::min(seconds, wake_at_ - now);
-  if (jobs.busy()) seconds = std::min(seconds, kJobPulse);
+  if (busy()) seconds = std::min(seconds, kJobPulse);
   return std::clamp(seconds, 0.0, kLongestRest);
 }
 
@@ -138,6 +142,7 @@ void Editor::take_input() {
 
 void Editor::draw_views() {
   update_scene(*views, document(), selection, preferences.theme == "dark");
+  live->follow(*this);
   show_posed(*this);
   move_camera(views->body, now, preferences.reduce_motion);
   const Document shown = shown_document(*this);
@@ -148,7 +153,6 @@ void Editor::draw_views() {
 void Editor::draw() {
   widgets.begin_frame();
   cursor = Cursor::Arrow;
-  wake_at_ = 1e300;
   place.windows.clear();
   draw_top_bar(*this);
   draw_tool_header(*this);
@@ -176,6 +180,7 @@ void Editor::frame(double time) {
   ImGuiIO& io = ImGui::GetIO();
   io.DeltaTime = static_cast<float>(glm::clamp(time - now, 1e-4, 0.25));
   now = time;
+  wake_at_ = 1e300;
   if (frames_wanted_ > 0) --frames_wanted_;
 
   const glm::ivec2 size = host.size();

@@ -68,6 +68,8 @@ struct RecentFacts {
   std::shared_ptr<const render::Image> picture;
 };
 
+class LivePose;
+
 // What a click can do to the left button in a view.
 enum class Tool { Select, CrossHair };
 
@@ -79,7 +81,8 @@ struct Editor {
 
   void frame(double now);  // seconds, of any steady clock
   double rest() const;     // seconds that may pass until the next frame when nothing happens; 0: draw on
-  bool at_rest() const { return rest() > 0 && !jobs.busy(); }
+  bool busy() const;       // with something beside the frames
+  bool at_rest() const { return rest() > 0 && !busy(); }
 
   Arrangement& arrangement() { return arrangements[static_cast<std::size_t>(workspace)]; }
   const Arrangement& arrangement() const { return arrangements[static_cast<std::size_t>(workspace)]; }
@@ -158,6 +161,7 @@ struct Editor {
   bool open_pick_list = false;  // likewise
   std::vector<Label> pick_list;  // tissues under the pointer, nearest first
   Comparison comparison;
+  std::unique_ptr<LivePose> live;
   struct {
     std::string result;  // whose name is a text field now; "" for none
     std::string text;

@@ -79,6 +79,7 @@ std::string editor_state(const Editor& editor) {
             {"slices", static_cast<int>(views.slice_display)}, {"cross_hair", json_of(views.cross_hair)}, {"camera", json_of(views.body.camera)},
             {"grid", views.grid}, {"axes", views.axes}, {"scale_bar", views.scale_bar}, {"letters", views.letters}, {"show_cross_hair", views.show_cross_hair}};
   json["arrangements"] = Json::parse(json_text(editor.arrangements));
+  json["method"] = editor.resampling.method;
   for (const SliceState& slice : views.slices)
     json["slice_cameras"].push_back({{"centre", json_of(slice.camera.centre)}, {"millimetres_per_pixel", slice.camera.millimetres_per_pixel}});
   if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
@@ -92,6 +93,7 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   take_choice(json, "workspace", 4, editor.workspace);
   take_choice(json, "display", 3, views.display);
   take_choice(json, "slices", 2, views.slice_display);
+  if (const Json method = json.value("method", Json()); method == "lbs" || method == "dqs") editor.resampling.method = method;
   take_vector(json, "cross_hair", views.cross_hair);
   take(json, "grid", views.grid);
   take(json, "axes", views.axes);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "core/base/error.h"
+#include "core/deform/preview_map.h"
 #include "editor/recording.h"
 
 namespace limber::editor {
@@ -72,6 +73,7 @@ const std::vector<std::pair<std::string, Fact>>& facts() {
       {"unsaved", [](const Editor& e) { return yes(e.history.unsaved()); }},
       {"document", [](const Editor& e) { return document_hash(e.document()); }},
       {"name", [](const Editor& e) { return e.name; }},
+      {"posed", [](const Editor& e) { return e.views->scene.pose ? std::to_string(e.views->scene.pose->step) : std::string("no"); }},
       {"jobs", [](const Editor& e) { return yes(e.jobs.busy()); }},
       {"toast", [](const Editor& e) { return e.messages.toasts.empty() ? std::string("none") : e.messages.toasts.back().line; }},
       {"error", [](const Editor& e) { return e.messages.errors.empty() ? std::string("none") : e.messages.errors.front().what; }},

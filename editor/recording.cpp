@@ -136,20 +136,21 @@ void Player::click(const std::string& name, MouseButton button, int times) {
 void Player::wait_for_jobs() {
   const auto start = std::chrono::steady_clock::now();
   do {
-    while (editor_.jobs.busy()) {
+    while (editor_.busy()) {
       editor_.frame(now_);  // time stands still, so that what follows does not depend on how long the job took
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kLongestJob)) throw Error("the job does not end", "wait-job", "look at what it does");
     }
     settle();  // what has ended may start another
-  } while (editor_.jobs.busy());
+  } while (editor_.busy());
 }
 
 void Player::wait_until_idle() {
   wait_for_jobs();
   for (int i = 0; i < kLongestSettling; ++i) {
-    if (editor_.rest() > 0) return;
-    step();
+    if (editor_.at_rest()) return;
+    if (editor_.rest() > 0) wait_for_jobs();
+    else step();
   }
   throw Error("the editor does not come to rest", "wait-idle", "look at what it draws");
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/editor.h"
+#include "editor/live_pose.h"
 #include "editor/posing.h"
 
 namespace limber::editor {
@@ -118,7 +119,9 @@ std::shared_ptr<const Result> result_named(const Document& document, const std::
 
 std::shared_ptr<const Result> shown_result(const Editor& editor) {
   const Comparison& comparison = editor.comparison;
-  return result_named(editor.document(), comparison.shows_a && !wiping(editor) ? comparison.a : comparison.b);
+  auto result = result_named(editor.document(), comparison.shows_a && !wiping(editor) ? comparison.a : comparison.b);
+  if (result && editor.workspace == Workspace::Pose && !(result->from_pose && *result->from_pose == shown_pose(editor))) return nullptr;
+  return result;
 }
 
 std::shared_ptr<const Result> chosen_result(const Editor& editor) {
@@ -171,6 +174,7 @@ namespace {
 void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<const Result>& result) {
   const Document& document = editor.document();
   scene.posed_from_rest.clear();
+  scene.pose = nullptr;
   if (result && document.volume) {
     scene.volume = result->volume;
     if (scene.clip.box) {
@@ -181,6 +185,7 @@ void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<
       scene.posed_from_rest = posed_from_rest(*document.armature, *result->from_pose);
   } else if (editor.workspace == Workspace::Pose && document.armature) {
     scene.posed_from_rest = posed_from_rest(*document.armature, shown_pose(editor));
+    scene.pose = editor.live->map();
   }
 }
 

@@ -61,7 +61,8 @@ bool wiping(const Editor& editor);
 // Name of a side as the views show it: "Fore 30°, DQ", "At rest".
 std::string name_of_side(const Editor& editor, const std::string& result);
 
-// The result that is seen in the views in place of the volume; null: the volume at rest.
+// The result that is seen in the views in place of the volume; null: the volume at rest, or as it follows the pose. Where
+// poses are made a result stands back as soon as the pose is another than its own.
 std::shared_ptr<const Result> shown_result(const Editor& editor);
 // The one the tables are about: the shown one, else the last.
 std::shared_ptr<const Result> chosen_result(const Editor& editor);

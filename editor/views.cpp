@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/deform/preview_map.h"
 #include "render/looks.h"
 
 namespace limber::editor {
@@ -113,6 +114,13 @@ std::vector<BoneWeight> weights_at(Views& views, const Document& document, const
   for (int i = 0; i < 4; ++i)
     if (influence.weight[i]) weights.push_back({document.weights->bones()[influence.bone[i]], influence.weight[i] / double(kFullWeight)});
   return weights;
+}
+
+std::optional<glm::ivec3> voxel_shown_at(const render::Scene& scene, const glm::dvec3& world) {
+  const glm::dvec3 place = voxel_from_world(scene.volume->grid) * world;
+  const auto rest = scene.pose ? scene.pose->rest_at(place) : std::optional(place);
+  if (!rest) return std::nullopt;
+  return glm::ivec3(glm::floor(*rest + 0.5));
 }
 
 void shift(SliceState& slice, const glm::dvec2& pixels) {

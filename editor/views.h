@@ -57,8 +57,8 @@ struct Hover {
   std::optional<ViewId> view;
   bool inside = false;  // of the body
   Label label = 0;
-  glm::ivec3 voxel{0};
-  glm::dvec3 point{0};
+  glm::ivec3 voxel{0};   // at rest where the body is posed
+  glm::dvec3 point{0};   // where the pointer is
   std::vector<BoneWeight> weights;  // of that voxel, largest first; empty where there are none
 };
 
@@ -106,6 +106,9 @@ struct Box {
 Box world_box(const Document& document);
 // The same around one tissue, or around all that are visible.
 Box tissue_box(Views& views, const Document& document, std::optional<Label> tissue);
+
+// The voxel that a scene shows at a point of the world; none where that is nothing of a posed body.
+std::optional<glm::ivec3> voxel_shown_at(const render::Scene& scene, const glm::dvec3& world);
 
 // Shifts what a slice shows by so many pixels.
 void shift(SliceState& slice, const glm::dvec2& pixels);

@@ -50,9 +50,8 @@ std::vector<Label> tissues_below(const Editor& editor) {
   const Hover& hover = editor.views->hover;
   std::vector<Label> found;
   if (!hover.inside) return found;
-  const auto shown = shown_volume(editor);
-  const LabelVolume& volume = *shown;
-  const AffineTransform voxel = voxel_from_world(volume.grid);
+  const render::Scene& scene = editor.views->scene;
+  const LabelVolume& volume = *scene.volume;
   const auto add = [&](Label label) {
     if (label != 0 && look_of(editor.document(), label).visible && std::find(found.begin(), found.end(), label) == found.end()) found.push_back(label);
   };
@@ -62,7 +61,8 @@ std::vector<Label> tissues_below(const Editor& editor) {
   const render::Ray ray = render::ray_through(editor.views->body.camera, editor.input.pointer - place->low, glm::ivec2(place->size()));
   const double step = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z}) / 2;
   const double reach = glm::length(volume.grid.spacing * glm::dvec3(volume.grid.size));
-  for (double t = 0; t < reach; t += step) add(volume.at_or_air(glm::ivec3(glm::round(voxel * (hover.point + ray.direction * t)))));
+  for (double t = 0; t < reach; t += step)
+    if (const auto voxel = voxel_shown_at(scene, hover.point + ray.direction * t)) add(volume.at_or_air(*voxel));
   return found;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "editor/clip_handles.h"
+#include "editor/live_pose.h"
 #include "editor/panels/panels.h"
 #include "editor/results.h"
 
@@ -71,6 +72,8 @@ std::string state_of(const Editor& editor) {
   if (!editor.document().volume) return "";
   std::string state = editor.views->display == render::Display::Solid ? "Solid" : editor.views->display == render::Display::XRay ? "X-ray" : "Tissue";
   if (const auto posed = shown_result(editor); posed && !wiping(editor)) state += " \u00b7 " + posed->name;
+  if (const PreviewMap* map = editor.views->scene.pose.get())
+    state += std::string(preview_blend(editor) == Blend::Linear ? " \u00b7 LBS" : " \u00b7 DQ") + " preview, " + std::to_string(map->step) + "-voxel lattice";
   if (editor.document().armature) state += " \u00b7 " + std::to_string(editor.document().armature->bones.size()) + " bones";
   if (!editor.views->renderer.note().empty()) state += " \u00b7 " + editor.views->renderer.note();
   return state;

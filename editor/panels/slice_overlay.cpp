@@ -89,7 +89,7 @@ void draw_slice_overlay(Editor& editor, ViewId id, const Rect& rect) {
   const int axis = grid_axis_of(grid, frame.normal);
   const int slice = static_cast<int>(std::lround((voxel_from_world(grid) * editor.views->cross_hair)[axis]));
   draw_cross_hair(editor, camera, frame, rect);
-  draw_view_title(editor, rect, name_of(id), std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]) + (shown_result(editor) ? " \u00b7 posed" : ""));
+  draw_view_title(editor, rect, name_of(id), std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]) + (shown_result(editor) || editor.views->scene.pose ? " \u00b7 posed" : ""));
   draw_letters(editor, frame, rect);
   draw_slice_bar(editor, axis, rect);
   draw_scale_bar(editor, rect, camera.millimetres_per_pixel);

@@ -101,6 +101,11 @@ void draw_tool_header(Editor& editor) {
   header.to_left();
   header.segments({"view.solid", "view.xray_display", "view.tissue"});
   header.line();
+  if (editor.workspace == Workspace::Pose && header.fits(170, {"resample.lbs", "resample.dqs"})) {
+    header.label("Preview");
+    header.segments({"resample.lbs", "resample.dqs"});
+    header.line();
+  }
   if (editor.layout.view_places.size() > 1) {
     if (header.fits(210, {"slice.show_labels", "slice.show_outlines"})) {
       header.label("Slices");

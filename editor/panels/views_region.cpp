@@ -81,9 +81,11 @@ const render::Scene& seen_scene(const Editor& editor, const ViewPlace& place) {
 void hover_slice(Editor& editor, const ViewPlace& place) {
   Hover& hover = editor.views->hover;
   hover.point = world_of(slice_of(*editor.views, place.id).camera, editor.input.pointer - place.rect.low, place.rect.size());
-  const LabelVolume& volume = *seen_scene(editor, place).volume;  // at rest or posed
-  hover.voxel = glm::ivec3(glm::round(voxel_from_world(volume.grid) * hover.point));
-  hover.label = volume.at_or_air(hover.voxel);
+  const render::Scene& scene = seen_scene(editor, place);  // at rest or posed
+  const auto voxel = voxel_shown_at(scene, hover.point);
+  if (!voxel) return;
+  hover.voxel = *voxel;
+  hover.label = scene.volume->at_or_air(hover.voxel);
   hover.inside = hover.label != 0;
 }
 

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/live_pose.h"
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+#include <utility>
+
+#include "core/base/error.h"
+#include "editor/editor.h"
+#include "editor/posing.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kRest = 0.3;  // s that a pose rests before a finer map is worth its time
+
+bool same_motion(const RigidTransform& a, const RigidTransform& b) { return a.rotation == b.rotation && a.translation == b.translation; }
+
+// Weights may hold their bones in another order than the rig. False when one is not in the rig.
+bool motions_of_weights(const SkinWeights& weights, const Armature& armature, const Pose& pose, std::vector<RigidTransform>& motions) {
+  const std::vector<RigidTransform> posed = posed_from_rest(armature, pose);
+  for (const std::string& name : weights.bones()) {
+    const auto found = std::find_if(armature.bones.begin(), armature.bones.end(), [&](const Bone& bone) { return bone.name == name; });
+    if (found == armature.bones.end()) return false;
+    motions.push_back(posed[found - armature.bones.begin()]);
+  }
+  return true;
+}
+
+// A body made ready, at some step.
+struct ReadyBody {
+  PosedBody body;
+  std::unique_ptr<LivePreview> preview;
+};
+
+ReadyBody make_ready(const PosedBody& body, int divisor) {
+  const TissueVoxels tissue(*body.volume);
+  const SkinWeights& weights = *body.weights;
+  bool fits = weights.chunk_count() == std::ssize(tissue.bricks());
+  for (std::int64_t brick = 0; fits && brick < weights.chunk_count(); ++brick) fits = std::ssize(weights.chunk(brick)) == tissue.bricks()[brick].count();
+  if (!fits) throw Error("the weights belong to another volume", "while the volume follows the pose", "compute them again");
+  return {body, std::make_unique<LivePreview>(body.volume, *body.tissues, tissue, weights, preview_step(tissue) / divisor)};
+}
+
+}  // namespace
+
+bool PoseWish::operator==(const PoseWish& other) const {
+  return body == other.body && blend == other.blend && std::equal(motions.begin(), motions.end(), other.motions.begin(), other.motions.end(), same_motion);
+}
+
+MapMaker::MapMaker(int divisor, std::function<void()> wake) : divisor_(divisor), wake_(std::move(wake)), thread_([this] { work(); }) {}
+
+MapMaker::~MapMaker() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  asked_.notify_one();
+  thread_.join();
+}
+
+void MapMaker::ask(const PoseWish& wish) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (asked_last_ == wish) return;
+    asked_last_ = waiting_ = wish;
+  }
+  asked_.notify_one();
+}
+
+std::optional<MapMaker::Made> MapMaker::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(made_, std::nullopt);
+}
+
+bool MapMaker::busy() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_ || working_ || made_;
+}
+
+void MapMaker::work() {
+  ReadyBody ready;
+  for (std::unique_lock lock(mutex_);;) {
+    asked_.wait(lock, [this] { return waiting_ || ended_; });
+    if (ended_) return;
+    Made made{*std::exchange(waiting_, std::nullopt), nullptr, 0, ""};
+    working_ = true;
+    lock.unlock();
+    try {
+      if (!(ready.body == made.wish.body)) {
+        ready = {};  // two at once would be too much memory
+        ready = make_ready(made.wish.body, divisor_);
+      }
+      const auto begin = std::chrono::steady_clock::now();
+      if (!made.wish.motions.empty()) made.map = ready.preview->update(made.wish.motions, made.wish.blend);
+      made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    } catch (const Error& error) {
+      made.trouble = error.what();
+    } catch (const std::bad_alloc&) {
+      made.trouble = "There is not enough memory to show the volume in this pose";
+    }
+    lock.lock();
+    working_ = false;
+    made_ = std::move(made);
+    lock.unlock();
+    wake_();
+    lock.lock();
+  }
+}
+
+LivePose::LivePose(const std::function<void()>& wake) : swift_(1, wake), thorough_(2, wake) {}
+
+Blend preview_blend(const Editor& editor) { return editor.resampling.method == "lbs" ? Blend::Linear : Blend::DualQuaternion; }
+
+void LivePose::follow(Editor& editor) {
+  if (auto made = swift_.take()) coarse_ = std::move(*made), editor.touch();
+  if (auto made = thorough_.take()) fine_ = std::move(*made), editor.touch();
+  shown_ = nullptr;
+  trouble_.clear();
+  const Document& document = editor.document();
+  if (editor.workspace != Workspace::Pose || !document.volume || !document.tissues || !document.armature) return;
+  if (!document.weights) {
+    trouble_ = "No weights yet";
+    return;
+  }
+  PoseWish wish{{document.volume, document.tissues, document.weights}, {}, preview_blend(editor)};
+  const Pose pose = shown_pose(editor);
+  const bool at_rest = pose == rest_pose(*document.armature);
+  if (!at_rest && !motions_of_weights(*document.weights, *document.armature, pose, wish.motions)) {
+    trouble_ = "The weights belong to another rig";
+    return;
+  }
+  if (!(wish == wish_)) {
+    wish_ = std::move(wish);
+    since_ = editor.now;
+  }
+  swift_.ask(wish_);
+  if (at_rest) {
+    coarse_.map = nullptr;  // never to be seen under another pose
+    return;
+  }
+  if (coarse_.wish.body.volume == document.volume) shown_ = coarse_.map;
+  if (coarse_.wish == wish_) trouble_ = coarse_.trouble;
+  if (fine_.wish == wish_ && fine_.map) shown_ = fine_.map;
+  else if (editor.now < since_ + kRest) editor.wake_at(since_ + kRest);
+  else if (shown_) thorough_.ask(wish_);
+}
+
+}  // namespace limber::editor

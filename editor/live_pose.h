@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The volume that follows the pose. While the Pose workspace shows another pose than rest, the views read the volume
+// through the inverse map of that pose (core/deform/preview_map.h): rays, slices and whatever the pointer is over.
+//
+// Maps are made by threads of their own, always of the newest pose; one that a newer pose overtook before its turn is left
+// out. So the editor never waits for a map: the bones are where they are, the volume follows as fast as the machine can. A
+// pose that has rested for a while gets a map of half the step.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/deform/preview_map.h"
+
+namespace limber::editor {
+
+struct Editor;
+
+// A body that maps are made of. Equal pointers are equal contents.
+struct PosedBody {
+  std::shared_ptr<const LabelVolume> volume;
+  std::shared_ptr<const TissueTable> tissues;
+  std::shared_ptr<const SkinWeights> weights;
+
+  bool operator==(const PosedBody&) const = default;
+};
+
+// A body in a pose.
+struct PoseWish {
+  PosedBody body;
+  std::vector<RigidTransform> motions;  // of the weights' bones; empty: the body is only made ready
+  Blend blend = Blend::DualQuaternion;
+
+  bool operator==(const PoseWish&) const;
+};
+
+class MapMaker {
+ public:
+  struct Made {
+    PoseWish wish;
+    std::shared_ptr<const PreviewMap> map;
+    double seconds = 0;
+    std::string trouble;  // an Error's line in place of the map
+  };
+
+  //   divisor  of the body's own step
+  //   wake     called from another thread when there is something to take
+  MapMaker(int divisor, std::function<void()> wake);
+  ~MapMaker();
+
+  void ask(const PoseWish& wish);    // in place of what waits; once is enough
+  std::optional<Made> take();        // what was made last, once
+  bool busy() const;
+
+ private:
+  void work();
+
+  const int divisor_;
+  const std::function<void()> wake_;
+  mutable std::mutex mutex_;
+  std::condition_variable asked_;
+  std::optional<PoseWish> asked_last_, waiting_;
+  std::optional<Made> made_;
+  bool working_ = false, ended_ = false;
+  std::thread thread_;
+};
+
+class LivePose {
+ public:
+  explicit LivePose(const std::function<void()>& wake);
+
+  // Once a frame: asks for what is to be shown, and takes what was made.
+  void follow(Editor& editor);
+  // Of the pose that is shown, or the last one that is known; null at rest and where nothing can follow.
+  const std::shared_ptr<const PreviewMap>& map() const { return shown_; }
+  // Why the volume stays behind: "No weights yet"; "" where it follows, and where there is nothing to pose.
+  const std::string& trouble() const { return trouble_; }
+  double seconds() const { return coarse_.seconds; }  // that the last map took while the pose moved
+  bool busy() const { return swift_.busy() || thorough_.busy(); }
+
+ private:
+  MapMaker swift_, thorough_;
+  MapMaker::Made coarse_, fine_;  // of either
+  PoseWish wish_;
+  double since_ = 0;  // the editor's time when the wish came up
+  std::shared_ptr<const PreviewMap> shown_;
+  std::string trouble_;
+};
+
+// By what the pose is previewed: as it would be resampled.
+Blend preview_blend(const Editor& editor);
+
+}  // namespace limber::editor

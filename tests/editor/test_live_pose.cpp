@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cmath>
+#include <numbers>
+
+#include "core/deform/preview_map.h"
+#include "core/rig/bone_parts.h"
+#include "core/skin/rigid.h"
+#include "editor/editor_state.h"
+#include "editor/live_pose.h"
+#include "editor/posing.h"
+#include "editor/project.h"
+#include "editor/results.h"
+#include "render/gl/object.h"
+#include "tests/editor/small_limb.h"
+
+using namespace limber;
+using namespace limber::editor;
+using limber::test::LimbEditor;
+
+namespace {
+
+// The limb whose lower half follows one bone wholly, in the Pose workspace, seen from the front.
+struct LiveEditor : LimbEditor {
+  explicit LiveEditor(bool with_weights = true) : LimbEditor({900, 560}) {
+    if (with_weights) weigh();
+    play("key Ctrl+3\nkey Num1\nwait-job");
+    editor->selection.bone = 1;
+    editor->selection.bones = {1};
+    editor->posing.keep_limits = false;
+  }
+  void weigh() {
+    Document next = editor->document();
+    const TissueVoxels tissue(*next.volume);
+    next.weights = std::make_shared<const SkinWeights>(bind_rigid(*next.volume, tissue, *next.armature, split_bones(*next.volume, tissue, *next.tissues, *next.armature)));
+    commit(*editor, "Weigh", next);
+  }
+  const render::Scene& scene() const { return editor->views->scene; }
+  bool pose_is(double degrees) const { return std::abs(glm::degrees(glm::angle(scene().posed_from_rest[1].rotation)) - degrees) < 1e-6; }
+  // How far from its rest place a point of the lower half is read, mm.
+  double error() const {
+    const auto map = scene().pose;
+    if (!map) return INFINITY;
+    const glm::dvec3 low(0, 0, -25);
+    const auto rest = map->rest_at(voxel_from_world(map->grid) * (scene().posed_from_rest[1] * low));
+    return rest ? glm::distance(world_from_voxel(map->grid) * *rest, low) : INFINITY;
+  }
+  void turn(const char* axis, int degrees) {
+    play(std::string("key R\nkey ") + axis);
+    for (const char digit : std::to_string(degrees)) play(std::string("key ") + digit);
+    play("wait-job");
+  }
+};
+
+}  // namespace
+
+TEST_CASE("live pose: the volume follows while a bone is turned, is kept with Return and goes back with Escape") {
+  LiveEditor test;
+  CHECK(!test.scene().pose);  // at rest the volume itself is drawn
+  test.turn("X", 45);
+  CHECK(test.error() < 2);
+  CHECK(test.pose_is(45));
+  test.play("key Return\nwait-job");
+  CHECK(test.error() < 2);
+  CHECK(test.pose_is(45));
+  test.turn("X", 20);
+  CHECK(test.error() < 2);
+  CHECK(test.pose_is(65));
+  test.play("key Escape\nwait-job");
+  CHECK(test.error() < 2);
+  CHECK(test.pose_is(45));
+  test.play("key Ctrl+Z\nwait-job");
+  CHECK(!test.scene().pose);
+  test.play("key Ctrl+Shift+Z\nwait-job");
+  CHECK(test.scene().pose);
+  test.play("key Ctrl+1\nwait-job");
+  CHECK(!test.scene().pose);
+}
+
+TEST_CASE("live pose: a pose that rests is refined, and coarse again once it changes") {
+  LiveEditor test;
+  test.turn("X", 45);
+  CHECK(test.fact("posed") == "4");
+  test.play("wait 0.4\nwait-job");
+  CHECK(test.fact("posed") == "2");
+  test.play("key 9\nwait-job");
+  CHECK(test.fact("posed") == "4");
+}
+
+TEST_CASE("live pose: what the pointer is over is the voxel at rest, in slices and in the 3D view") {
+  LiveEditor test;
+  test.turn("Y", 90);
+  test.play("key Return\nclick view.four\nwait-job");
+  const glm::dvec3 rest(1, 1, -25), posed = test.scene().posed_from_rest[1].rotation * rest;
+  const Grid& grid = test.editor->document().volume->grid;
+  test.editor->views->cross_hair = posed;
+  test.play("wait-job");
+  const Rect* place = test.editor->layout.place_of(ViewId::Coronal);
+  REQUIRE(place);
+  const glm::vec2 pixel = place->low + pixel_of(slice_of(*test.editor->views, ViewId::Coronal).camera, posed, place->size());
+  test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y));
+  const Hover& hover = test.editor->views->hover;
+  CHECK(hover.label == 17);
+  CHECK(glm::distance(world_from_voxel(grid) * glm::dvec3(hover.voxel), rest) < 6);
+  REQUIRE(hover.weights.size() == 1);
+  CHECK(hover.weights[0].bone == "Fore");
+
+  test.play("move \"3D view/view\"");
+  REQUIRE(hover.inside);
+  CHECK(hover.label == test.editor->document().volume->at(hover.voxel));
+}
+
+TEST_CASE("live pose: linear blending and dual quaternions are chosen in the tool header, and kept with the project") {
+  LiveEditor test;
+  test.turn("X", 60);
+  test.play("key Return\nwait-job");
+  const auto dual = test.scene().pose;
+  test.play("click resample.lbs\nwait-job");
+  CHECK(preview_blend(*test.editor) == Blend::Linear);
+  CHECK(test.scene().pose != dual);
+  const std::string kept = editor_state(*test.editor);
+  test.play("click resample.dqs\nwait-job");
+  CHECK(preview_blend(*test.editor) == Blend::DualQuaternion);
+  CHECK(test.error() < 2);
+  restore_editor_state(*test.editor, kept);
+  CHECK(preview_blend(*test.editor) == Blend::Linear);
+}
+
+TEST_CASE("live pose: without weights only the bones move") {
+  LiveEditor test(false);
+  test.turn("X", 60);
+  CHECK(!test.scene().pose);
+  CHECK(glm::angle(test.scene().posed_from_rest[1].rotation) == doctest::Approx(std::numbers::pi / 3));
+  CHECK(test.editor->live->trouble() == "No weights yet");
+  test.play("key Return");
+  test.weigh();
+  test.play("wait-job");
+  CHECK(test.scene().pose);
+  CHECK(test.editor->live->trouble().empty());
+}
+
+TEST_CASE("live pose: weights of another volume are refused in words") {
+  LiveEditor test;
+  Document next = test.editor->document();
+  auto volume = std::make_shared<LabelVolume>(*next.volume);
+  for (std::size_t i = 0; i < volume->voxels.size() / 2; ++i) volume->voxels[i] = 0;
+  next.volume = volume;
+  commit(*test.editor, "Halve", next);
+  test.turn("X", 60);
+  CHECK(!test.scene().pose);
+  CHECK(test.editor->live->trouble().find("another volume") != std::string::npos);
+}
+
+TEST_CASE("live pose: a result is shown for its own pose, and gives way to the next one") {
+  LiveEditor test;
+  test.turn("X", 60);
+  test.play("key Return\nwait-job");
+  Document next = test.editor->document();
+  auto result = std::make_shared<Result>();
+  result->name = "Bent";
+  result->volume = next.volume;
+  result->from_volume = next.volume;
+  result->from_pose = next.pose;
+  next.results.push_back(result);
+  commit(*test.editor, "Add result", next);
+  show_result(*test.editor, "Bent");
+  test.play("wait-job");
+  CHECK(shown_result(*test.editor) == result);
+  CHECK(!test.scene().pose);
+  test.turn("X", 10);
+  CHECK(!shown_result(*test.editor));
+  CHECK(test.scene().pose);
+  test.play("key Escape\nkey Ctrl+4\nwait-job");
+  CHECK(shown_result(*test.editor) == result);
+}
+
+TEST_CASE("live pose: an editor closed with a posed body in all its views leaves no OpenGL object") {
+  {
+    LiveEditor test;
+    test.turn("X", 60);
+    test.play("key Return\nclick view.four\nwait 0.5\nwait-job");
+    CHECK(test.scene().pose);
+    CHECK(render::gl::live_objects() > 0);
+    test.editor.reset();
+    CHECK(render::gl::live_objects() == 0);
+  }
+}
