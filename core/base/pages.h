@@ -16,17 +16,23 @@ void want_large_pages(void* begin, std::int64_t bytes);
 // Gives back the whole pages of a range of heap memory whose bytes are all zero; they stay zero.
 void give_back_zeros(void* begin, std::int64_t bytes);
 
+constexpr std::int64_t kLargePage = std::int64_t{2} << 20;
+
 //   T  a type whose zero is all bytes zero
 template <class T>
 std::vector<T> sparse_zeros(std::int64_t count) {
-  constexpr std::int64_t kStep = (std::int64_t{8} << 20) / sizeof(T);  // never more than this is there at once
   std::vector<T> zeros;
   zeros.reserve(count);
-  while (std::ssize(zeros) < count) {
-    const std::int64_t before = std::ssize(zeros), grown = std::min(count, before + kStep);
-    if (count > kStep) want_large_pages(zeros.data() + before, (grown - before) * std::int64_t{sizeof(T)});
+  // From one large page's end to the next: the same memory serves for all, and is still in the cache.
+  const auto first = reinterpret_cast<std::uintptr_t>(zeros.data());
+  for (std::int64_t done = 0; done < count;) {
+    const auto from = first + static_cast<std::uintptr_t>(done) * sizeof(T), end = (from / kLargePage + 1) * kLargePage;
+    const std::int64_t grown = std::min(count, done + std::max<std::int64_t>(1, static_cast<std::int64_t>((end - from) / sizeof(T))));
+    const std::int64_t bytes = (grown - done) * std::int64_t{sizeof(T)};
+    if (count > kLargePage) want_large_pages(zeros.data() + done, bytes);
     zeros.resize(grown, T(0));
-    if (count > kStep) give_back_zeros(zeros.data() + before, (grown - before) * std::int64_t{sizeof(T)});
+    if (count > kLargePage) give_back_zeros(zeros.data() + done, bytes);
+    done = grown;
   }
   return zeros;
 }

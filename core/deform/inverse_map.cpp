@@ -82,6 +82,75 @@ Steps within(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& po
   return first > last ? Steps{1, 0} : Steps{static_cast<int>(first), static_cast<int>(last)};
 }
 
+// A cell of a brick, by its place there.
+PosedCell cell_at(const PosedLattice::Corners& corners, const glm::ivec3& brick_corner, const glm::ivec3& place) {
+  return PosedCell(&corners[PosedLattice::place(place.x, place.y, place.z)], PosedLattice::place(0, 1, 0), PosedLattice::place(0, 0, 1),
+                   brick_corner + place);
+}
+
+// A brick whose cells all move as one. Their bone's motion, read backward, gives the cell and the rest point at once; only
+// next to a cell's border, where the fixed-point corners decide, are cells asked.
+class RigidBrick {
+ public:
+  // Room for the brick's corners is needed where cells are asked.
+  RigidBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room)
+      : lattice_(lattice), brick_(brick), room_(room), cells_(lattice.tissue().bricks()[brick]),
+        rest_from_posed_(lattice.rest_from_posed(lattice.only_bone(brick))) {
+    // Corners are rounded to whole numbers of fixed point; as much again for what else is rounded.
+    const glm::dmat3& m = rest_from_posed_.linear;
+    for (int row = 0; row < 3; ++row) slack_ = std::max(slack_, (std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row])) / kFixedOne + 1e-9);
+  }
+
+  bool is_precise() const { return slack_ < 0.1; }  // voxels of the output are not a thousand times larger than those at rest
+
+  // claim(rest voxel, CellClaim) for every voxel of `range` whose centre lies in one of the cells.
+  template <class Claim>
+  void rasterize(const VoxelRange& range, const Claim& claim) {
+    const glm::dvec3 low = glm::dvec3(cells_.corner) - 0.5, step = rest_from_posed_.linear[0], ratio = lattice_.output().ratio;
+    const double posed_per_rest = ratio.x * ratio.y * ratio.z;
+    for (int z = range.low.z; z <= range.high.z; ++z)
+      for (int y = range.low.y; y <= range.high.y; ++y) {
+        const glm::dvec3 row = rest_from_posed_ * glm::dvec3(range.low.x, y, z) - low;
+        const Steps steps = within(glm::dvec3(-slack_), glm::dvec3(TissueVoxels::kBrick + slack_), row, row + step);
+        for (int i = steps.first, last = std::min(steps.last, range.high.x - range.low.x); i <= last; ++i) {
+          const glm::ivec3 voxel(range.low.x + i, y, z);
+          const glm::dvec3 place = row + double(i) * step;  // in the brick, cells as units
+          if (std::min({place.x, place.y, place.z}) < -slack_) continue;
+          // Whole numbers below; std::floor would be a call.
+          const glm::ivec3 least = glm::ivec3(place + (1 - slack_)) - 1, most(place + slack_);
+          if (least != most)
+            ask(least, most, voxel, claim);
+          else if (has(most))
+            claim(cells_.corner + most, CellClaim{voxel, low + place, posed_per_rest});
+        }
+      }
+  }
+
+ private:
+  // The cells around a border.
+  template <class Claim>
+  void ask(const glm::ivec3& least, const glm::ivec3& most, const glm::ivec3& voxel, const Claim& claim) {
+    if (!corners_) corners_ = &lattice_.corners(brick_, room_);
+    for (int k = least.z; k <= most.z; ++k)
+      for (int j = least.y; j <= most.y; ++j)
+        for (int i = least.x; i <= most.x; ++i)
+          if (const glm::ivec3 cell(i, j, k); has(cell))
+            cell_at(*corners_, cells_.corner, cell).rasterize({voxel, voxel}, [&](const CellClaim& exact) { claim(cells_.corner + cell, exact); });
+  }
+
+  bool has(const glm::ivec3& cell) const {
+    return ((cell.x | cell.y | cell.z) & ~7) == 0 && (cells_.mask[cell.z] >> (cell.x + 8 * cell.y) & 1);
+  }
+
+  const PosedLattice& lattice_;
+  std::int64_t brick_;
+  PosedLattice::Corners& room_;
+  const TissueVoxels::Brick& cells_;
+  const AffineTransform& rest_from_posed_;
+  double slack_ = 0;                                 // voxels at rest
+  const PosedLattice::Corners* corners_ = nullptr;   // once they were needed
+};
+
 VoxelRange voxels_of(const PosedLattice::FixedBox& box) { return {(box.low + (kFixedOne - 1)) >> 16, box.high >> 16}; }
 
 }  // namespace
@@ -125,13 +194,18 @@ void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::ve
       });
       continue;
     }
+    const auto claim = [&](const glm::ivec3& voxel, const CellClaim& cell) {
+      claims.claim(static_cast<std::uint32_t>(grid.index(voxel)), voxel, cell);
+    };
+    if (lattice.only_bone(brick) >= 0)
+      if (RigidBrick cells(lattice, brick, room); cells.is_precise()) {
+        cells.rasterize(reach, claim);
+        continue;
+      }
     const PosedLattice::Corners& corners = lattice.corners(brick, room);
     const glm::ivec3 first = tissue.bricks()[brick].corner;
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
-      const glm::ivec3 v = voxel - first;
-      const FixedPoint* lowest = &corners[PosedLattice::place(v.x, v.y, v.z)];
-      const auto cell = static_cast<std::uint32_t>(grid.index(voxel));
-      PosedCell(lowest, PosedLattice::place(0, 1, 0), PosedLattice::place(0, 0, 1), voxel).rasterize(reach, [&](const CellClaim& claim) { claims.claim(cell, voxel, claim); });
+      cell_at(corners, first, voxel - first).rasterize(reach, [&](const CellClaim& cell) { claim(voxel, cell); });
     });
   }
 }

@@ -26,11 +26,28 @@ constexpr std::array<std::uint8_t, 256> kBitCount = [] {
   return count;
 }();
 
+// The first bone that moves as each does, to within the rounding of a long chain of bones.
+std::vector<int> first_alike(const std::vector<RigidTransform>& motions) {
+  const auto alike = [](const RigidTransform& a, const RigidTransform& b) {
+    const double turn = std::abs(glm::dot(a.rotation, b.rotation));
+    const glm::dquat off = glm::dot(a.rotation, b.rotation) < 0 ? a.rotation + b.rotation : a.rotation - b.rotation;
+    return turn > 0.5 && glm::length(off) < 1e-13 && glm::length(a.translation - b.translation) < 1e-10;
+  };
+  std::vector<int> first(motions.size());
+  for (int i = 0; i < std::ssize(motions); ++i) {
+    first[i] = i;
+    for (int k = 0; k < i && first[i] == i; ++k)
+      if (first[k] == k && alike(motions[k], motions[i])) first[i] = k;
+  }
+  return first;
+}
+
 // Per bone, the weights of a brick's voxels and of those around it, summed over the eight voxels around each corner.
 class CornerWeights {
  public:
-  CornerWeights(const TissueVoxels& tissue, const SkinWeights& weights, std::int64_t brick)
-      : slot_of_(weights.bones().size(), -1) {
+  //   moves_as  per bone: the one it is counted as
+  CornerWeights(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as, std::int64_t brick)
+      : moves_as_(moves_as), slot_of_(weights.bones().size(), -1) {
     const glm::ivec3 corner = tissue.bricks()[brick].corner;
     for (int k = -1; k <= 1; ++k)
       for (int j = -1; j <= 1; ++j)
@@ -83,10 +100,11 @@ class CornerWeights {
 
   void add(const Influence& influence, int here) {
     for (int i = 0; i < 4 && influence.weight[i]; ++i) {
-      int& slot = slot_of_[influence.bone[i]];
+      const int bone = moves_as_[influence.bone[i]];
+      int& slot = slot_of_[bone];
       if (slot < 0) {
         slot = static_cast<int>(bones_.size());
-        bones_.push_back(influence.bone[i]);
+        bones_.push_back(bone);
         sums_.resize(sums_.size() + kHaloCount, 0);
       }
       sums_[slot * kHaloCount + here] += influence.weight[i];
@@ -102,18 +120,21 @@ class CornerWeights {
     }
   }
 
+  const std::vector<int>& moves_as_;
   std::vector<int> slot_of_, bones_, order_;
   std::vector<std::uint32_t> sums_;
   std::vector<BoneWeight> influences_;
 };
 
-// The bone that every one of them follows wholly, or kSeveral.
-int only_bone(const SkinWeights::Chunk& chunk) {
-  const Influence& first = chunk.front();
-  const bool same = first.weight[0] == kFullWeight && std::all_of(chunk.begin(), chunk.end(), [&](const Influence& i) {
-    return i.weight[0] == kFullWeight && i.bone[0] == first.bone[0];
+// What all bones that any of them follows move as, or kSeveral.
+int motion_of_all(const SkinWeights::Chunk& chunk, const std::vector<int>& moves_as) {
+  const int first = moves_as[chunk.front().bone[0]];
+  const bool same = std::all_of(chunk.begin(), chunk.end(), [&](const Influence& influence) {
+    for (int i = 0; i < 4 && influence.weight[i]; ++i)
+      if (moves_as[influence.bone[i]] != first) return false;
+    return true;
   });
-  return same ? first.bone[0] : kSeveral;
+  return same ? first : kSeveral;
 }
 
 // body(brick) for the brick itself and those of its 26 neighbours that have tissue.
@@ -125,6 +146,16 @@ void for_each_around(const TissueVoxels& tissue, std::int64_t brick, const Body&
     for (int y = low.y; y <= high.y; ++y)
       for (int x = low.x; x <= high.x; ++x)
         if (const int near = tissue.brick_at(glm::ivec3(x, y, z) * TissueVoxels::kBrick); near >= 0) body(near);
+}
+
+bool is_full(const TissueVoxels::Brick& brick) {
+  return std::all_of(std::begin(brick.mask), std::end(brick.mask), [](std::uint64_t slice) { return slice == ~std::uint64_t{0}; });
+}
+
+// body(i, j, k) for the eight outermost corners of a brick.
+template <class Body>
+void for_each_outermost(const Body& body) {
+  for (int c = 0; c < 8; ++c) body((c & 1) * TissueVoxels::kBrick, (c >> 1 & 1) * TissueVoxels::kBrick, (c >> 2) * TissueVoxels::kBrick);
 }
 
 // body(i, j, k) for every corner of the brick's tissue voxels, in order of place.
@@ -150,11 +181,12 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
                            Progress& progress)
     : volume_(&volume), tissue_(&tissue), weights_(&weights), world_from_voxel_(world_from_voxel(volume.grid)),
       voxel_from_world_(voxel_from_world(volume.grid)), bones_(skin_transforms(posed_from_rest)), blend_(blend),
-      output_{ratio} {
+      output_{ratio}, moves_as_(first_alike(posed_from_rest)) {
   const std::int64_t count = std::ssize(tissue.bricks());
   bounds_.resize(count);
   still_.resize(count);
   only_bone_.resize(count);
+  rigid_.resize(count);
   for (const RigidTransform& posed : posed_from_rest) {
     const glm::dmat3 turn = voxel_from_world_.linear * (glm::mat3_cast(posed.rotation) - glm::dmat3(1));
     shift_.push_back({turn * world_from_voxel_.linear, turn * world_from_voxel_.offset + voxel_from_world_.linear * posed.translation});
@@ -167,28 +199,45 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
   }
   if (count == 0) return;
   choose_base();
+  for (const RigidTransform& posed : posed_from_rest) rest_from_posed_.push_back(backward(posed));
   progress.update("pose", 0);
   parallel_for(count, 64, [&](std::int64_t begin, std::int64_t end) {
-    for (auto brick = begin; brick < end; ++brick) only_bone_[brick] = only_bone(weights.chunk(brick));
+    for (auto brick = begin; brick < end; ++brick) only_bone_[brick] = motion_of_all(weights.chunk(brick), moves_as_);
   });
   std::atomic<std::int32_t> kept = 0;
   parallel_for(count, 16, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) throw Cancelled();
     Corners room;
     for (auto brick = begin; brick < end; ++brick) {
-      const PosedBrick posed = compute(brick, room);
+      rigid_[brick] = only_bone_around(brick);
+      const BrickBounds posed = compute(brick, room);
       bounds_[brick] = posed.box;
       still_[brick] = posed.still;
-      if (keeps && !posed.still) kept_[kept_at_[brick] = kept++] = room;
+      if (keeps && rigid_[brick] == kSeveral) kept_[kept_at_[brick] = kept++] = room;
     }
   });
   progress.update("pose", 1);
 }
 
 const PosedLattice::Corners& PosedLattice::corners(std::int64_t brick, Corners& room) const {
-  if (kept_ && !still_[brick]) return kept_[kept_at_[brick]];
-  compute(brick, room);
+  if (rigid_[brick] == kSeveral && kept_) return kept_[kept_at_[brick]];
+  if (rigid_[brick] == kSeveral) {
+    compute(brick, room);
+    return room;
+  }
+  const TissueVoxels::Brick& cells = tissue_->bricks()[brick];
+  for_each_corner(cells, [&](int i, int j, int k) { room[place(i, j, k)] = posed_by(rigid_[brick], cells.corner + glm::ivec3(i, j, k)); });
   return room;
+}
+
+// The rest points of posed points under a bone's motion.
+AffineTransform PosedLattice::backward(const RigidTransform& posed_from_rest) const {
+  const RigidTransform back = inverse(posed_from_rest);
+  const glm::dmat3 turn = voxel_from_world_.linear * glm::mat3_cast(back.rotation) * world_from_voxel_.linear;
+  const glm::dvec3 shift = voxel_from_world_ * (back * (world_from_voxel_ * glm::dvec3(0)));
+  const glm::dvec3 first = output_.to_rest(glm::dvec3(0));
+  const glm::dmat3 steps(1 / output_.ratio.x, 0, 0, 0, 1 / output_.ratio.y, 0, 0, 0, 1 / output_.ratio.z);
+  return {turn * steps, turn * first + shift};
 }
 
 // Where the first tissue voxel's bone carries it.
@@ -238,34 +287,40 @@ FixedPoint PosedLattice::fixed(const glm::dvec3& rest, const glm::dvec3& moved, 
   return {std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne)};
 }
 
-std::optional<int> PosedLattice::only_bone_around(std::int64_t brick) const {
+FixedPoint PosedLattice::posed_by(int bone, const glm::ivec3& corner) const {
+  const glm::dvec3 rest = glm::dvec3(corner) - 0.5;
+  return fixed(rest, shift_[bone] * rest, bone);
+}
+
+int PosedLattice::only_bone_around(std::int64_t brick) const {
   const int bone = only_bone_[brick];
   bool same = bone != kSeveral;
   if (same) for_each_around(*tissue_, brick, [&](int near) { same &= only_bone_[near] == bone; });
-  return same ? std::optional(bone) : std::nullopt;
+  return same ? bone : kSeveral;
 }
 
-PosedLattice::PosedBrick PosedLattice::compute(std::int64_t brick, Corners& corners) const {
-  const glm::ivec3 first = tissue_->bricks()[brick].corner;
-  if (const auto bone = only_bone_around(brick)) {
-    const AffineTransform& shift = shift_[*bone];
-    return compute_by(brick, [&](int i, int j, int k) {
-      const glm::dvec3 rest = glm::dvec3(first + glm::ivec3(i, j, k)) - 0.5;
-      return fixed(rest, shift * rest, *bone);
-    }, corners);
+// Of a brick that moves as one, `corners` may hold only those that tell where it goes.
+PosedLattice::BrickBounds PosedLattice::compute(std::int64_t brick, Corners& corners) const {
+  const TissueVoxels::Brick& cells = tissue_->bricks()[brick];
+  const auto every = [&](const auto& body) { for_each_corner(cells, body); };
+  if (const int bone = rigid_[brick]; bone != kSeveral) {
+    const auto by_bone = [&](int i, int j, int k) { return posed_by(bone, cells.corner + glm::ivec3(i, j, k)); };
+    const auto outermost = [](const auto& body) { for_each_outermost(body); };
+    return is_full(cells) ? compute_by(brick, outermost, by_bone, corners) : compute_by(brick, every, by_bone, corners);
   }
-  CornerWeights weights(*tissue_, *weights_, brick);
-  return compute_by(brick, [&](int i, int j, int k) { return posed(first + glm::ivec3(i, j, k), weights.at(i, j, k)); }, corners);
+  CornerWeights weights(*tissue_, *weights_, moves_as_, brick);
+  return compute_by(brick, every, [&](int i, int j, int k) { return posed(cells.corner + glm::ivec3(i, j, k), weights.at(i, j, k)); }, corners);
 }
 
-// posed(i, j, k) is the place of a corner.
-template <class Posed>
-PosedLattice::PosedBrick PosedLattice::compute_by(std::int64_t brick, const Posed& posed, Corners& corners) const {
+//   visit           calls its argument with the corners to be posed
+//   posed(i, j, k)  is the place of a corner
+template <class Visit, class Posed>
+PosedLattice::BrickBounds PosedLattice::compute_by(std::int64_t brick, const Visit& visit, const Posed& posed, Corners& corners) const {
   const glm::dvec3 rest = output_.from_rest(glm::dvec3(tissue_->bricks()[brick].corner) - 0.5);
   const bool may_be_still = output_.ratio == glm::dvec3(1) && glm::all(glm::lessThan(glm::abs(rest), glm::dvec3(kFurthest)));
   const FixedPoint first(may_be_still ? rest * double(kFixedOne) : glm::dvec3(0));
-  PosedBrick result{{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)}, may_be_still};
-  for_each_corner(tissue_->bricks()[brick], [&](int i, int j, int k) {
+  BrickBounds result{{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)}, may_be_still};
+  visit([&](int i, int j, int k) {
     const FixedPoint corner = corners[place(i, j, k)] = posed(i, j, k);
     result.box = {glm::min(result.box.low, corner), glm::max(result.box.high, corner)};
     result.still = result.still && corner == first + glm::ivec3(i, j, k) * kFixedOne;

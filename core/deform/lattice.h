@@ -13,8 +13,9 @@
 // corner comes out the same, bit for bit, from every brick that has it: weights are added as whole numbers, bones in
 // rising order.
 //
-// Much of a posed limb follows one bone wholly. Such corners take that bone's motion in voxel coordinates without
-// blending, and where the bone does not move at all they stay what they are: whole halves, bit for bit.
+// Much of a posed limb follows one bone wholly, or bones that move as one: a hand whose fingers keep still goes where the
+// forearm goes. Bones that move as one are counted as one, the first of them. Corners that follow one alone take its motion
+// in voxel coordinates without blending, and where it does not move at all they stay what they are: whole halves, bit for bit.
 #pragma once
 
 #include <array>
@@ -77,20 +78,26 @@ class PosedLattice {
   const FixedBox& bounds(std::int64_t brick) const { return bounds_[brick]; }  // of the brick's posed corners
   // Whether every cell of the brick lies where it lay at rest, and output voxels are the volume's own.
   bool is_still(std::int64_t brick) const { return still_[brick]; }
+  // The bone that the brick and all tissue around it follow wholly, so that its cells move as one; -1 where they are several.
+  int only_bone(std::int64_t brick) const { return rigid_[brick]; }
+  // Rest points by posed points of what follows that bone wholly.
+  const AffineTransform& rest_from_posed(int bone) const { return rest_from_posed_[bone]; }
   // The brick's corners; computed into `room` where they are not kept.
   const Corners& corners(std::int64_t brick, Corners& room) const;
 
  private:
   FixedPoint posed(const glm::ivec3& corner, std::span<const BoneWeight> influences) const;
   FixedPoint fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const;
-  struct PosedBrick {
+  FixedPoint posed_by(int bone, const glm::ivec3& corner) const;
+  struct BrickBounds {
     FixedBox box;
     bool still;
   };
-  PosedBrick compute(std::int64_t brick, Corners& corners) const;
-  template <class Posed>
-  PosedBrick compute_by(std::int64_t brick, const Posed& posed, Corners& corners) const;
-  std::optional<int> only_bone_around(std::int64_t brick) const;
+  BrickBounds compute(std::int64_t brick, Corners& corners) const;
+  template <class Visit, class Posed>
+  BrickBounds compute_by(std::int64_t brick, const Visit& visit, const Posed& posed, Corners& corners) const;
+  AffineTransform backward(const RigidTransform& posed_from_rest) const;
+  int only_bone_around(std::int64_t brick) const;
   void choose_base();
 
   const LabelVolume* volume_;
@@ -103,8 +110,11 @@ class PosedLattice {
   OutputLattice output_;
   std::vector<FixedBox> bounds_;
   std::vector<std::uint8_t> still_;  // by brick
-  std::vector<int> only_bone_;       // by brick: the bone that all its tissue follows wholly, or kSeveral
-  std::unique_ptr<Corners[]> kept_;  // of the bricks that move, or none
+  std::vector<AffineTransform> rest_from_posed_;  // per bone
+  std::vector<int> moves_as_;        // per bone: the first that moves as it does
+  std::vector<int> only_bone_;       // by brick: what moves_as_ says of all its tissue, or kSeveral
+  std::vector<int> rigid_;           // by brick: the same of it and its neighbours
+  std::unique_ptr<Corners[]> kept_;  // of the bricks that bend, or none
   std::vector<std::int32_t> kept_at_;
 };
 

@@ -73,7 +73,7 @@ Difference difference_to_reference(const std::filesystem::path& bvh, const std::
       if (leaf.is_number())
         j = leaf;
       else
-        while (motion.joints[j].name != leaf) ++j;
+        while (motion.joints[j].name != leaf.get<std::string>()) ++j;
       const glm::dvec3 end = world[j] * motion.joints[j].end_site.value();
       largest.position = std::max(largest.position, glm::length(end - glm::dvec3(e[3 * i], e[3 * i + 1], e[3 * i + 2])) / extent);
     }
