@@ -9,8 +9,8 @@
 #include <map>
 
 #include <nlohmann/json.hpp>
-#include <zlib.h>
 
+#include "core/base/deflate.h"
 #include "core/base/error.h"
 #include "core/skin/best_four.h"
 #include "core/volume/volume_io.h"
@@ -81,24 +81,16 @@ std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::str
 
 std::string inflated(const std::string& bytes, std::size_t begin, std::size_t size, const std::string& where) {
   std::string data(size, '\0');
-  z_stream stream{};
-  if (inflateInit2(&stream, 15 + 32) != Z_OK) throw std::bad_alloc();
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + begin));
-  stream.next_out = reinterpret_cast<Bytef*>(data.data());
-  std::size_t in_left = bytes.size() - begin, out_left = size;
-  int state = Z_OK;
-  while (state == Z_OK) {
-    constexpr std::size_t kMost = std::size_t{1} << 30;
-    const uInt in = static_cast<uInt>(std::min(in_left, kMost)), out = static_cast<uInt>(std::min(out_left, kMost));
-    stream.avail_in = in;
-    stream.avail_out = out;
-    state = inflate(&stream, Z_NO_FLUSH);
-    in_left -= in - stream.avail_in;
-    out_left -= out - stream.avail_out;
-    if (in == stream.avail_in && out == stream.avail_out) break;
+  Inflater stream;
+  std::string_view packed = std::string_view(bytes).substr(begin);
+  std::size_t done = 0;
+  for (bool moves = true; moves && !stream.ended();) {
+    const Inflater::Step step = stream.inflate(packed, data.data() + done, size - done);
+    packed.remove_prefix(step.taken);
+    done += step.made;
+    moves = !step.damaged && step.taken + step.made > 0;
   }
-  inflateEnd(&stream);
-  if (state != Z_STREAM_END || out_left > 0) throw Error("the compressed weights are damaged or too short", where, kMakeAnew);
+  if (!stream.ended() || done < size) throw Error("the compressed weights are damaged or too short", where, kMakeAnew);
   return data;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <array>
 
-#include <zlib.h>
 
+#include "core/base/deflate.h"
 #include "core/base/error.h"
 #include "core/volume/dicom.h"
 #include "core/volume/header_text.h"
@@ -38,15 +38,15 @@ bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
 // The first bytes of what a gzip stream holds; fewer when the stream is damaged or ends.
 std::string inflated_start(std::string_view packed, std::size_t most) {
   std::string plain(most, '\0');
-  z_stream stream{};
-  if (inflateInit2(&stream, 15 + 32) != Z_OK) throw std::bad_alloc();
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
-  stream.avail_in = static_cast<uInt>(packed.size());
-  stream.next_out = reinterpret_cast<Bytef*>(plain.data());
-  stream.avail_out = static_cast<uInt>(plain.size());
-  inflate(&stream, Z_SYNC_FLUSH);
-  plain.resize(plain.size() - stream.avail_out);
-  inflateEnd(&stream);
+  Inflater stream;
+  std::size_t done = 0;
+  for (bool moves = true; moves && done < most && !stream.ended();) {
+    const Inflater::Step step = stream.inflate(packed, plain.data() + done, most - done);
+    packed.remove_prefix(step.taken);
+    done += step.made;
+    moves = !step.damaged && step.taken + step.made > 0;
+  }
+  plain.resize(done);
   return plain;
 }
 

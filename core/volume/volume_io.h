@@ -5,7 +5,7 @@
 //
 // A file is believed only where it is whole: the header is read by parsers of our own (nrrd_header, meta_header,
 // nifti_header, virtual_family; the libraries that were tried accept truncated data, negative spacing and data files
-// outside the header's folder without a word), and the voxels are inflated through zlib straight into the labels, so that
+// outside the header's folder without a word), and the voxels are inflated straight into the labels, so that
 // counting the bytes costs no second pass and a volume is held in memory once. Only DICOM goes through a library, GDCM.
 // Refused with one line: missing bytes, damaged compression, spacing or direction that cannot be, more than one volume,
 // colours, what does not fit in memory. Read with a warning: data that are whole despite a wrong header field.

@@ -7,11 +7,12 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include <fcntl.h>
 #include <unistd.h>
-#include <zlib.h>
 
+#include "core/base/deflate.h"
 #include "core/base/error.h"
 #include "core/volume/header_text.h"
 #include "core/volume/nifti_header.h"
@@ -25,12 +26,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are written in native byte order and say little endian");
 
 constexpr std::size_t kChunkVoxels = 1 << 14;
-// Level 3 of zlib deflates label volumes at 450 MB/s, faster than levels 1 and 2 because its output is smaller; level 6
-// takes twice the time for a third less. Labels of one byte come in runs: looking for nothing else is faster yet, and
-// makes the file smaller by a seventh.
-constexpr int kDeflateLevel = 3;
-
-// A file being written, plainly or through zlib.
+// A file being written, plainly or deflated.
 class OutputFile {
  public:
   explicit OutputFile(const Path& path) : path_(path) {
@@ -38,31 +34,18 @@ class OutputFile {
     if (descriptor_ < 0) fail();
   }
   ~OutputFile() {
-    if (deflating_) deflateEnd(&stream_);
     if (descriptor_ >= 0) ::close(descriptor_);
   }
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  enum class Wrap { Zlib, Gzip };
-  void begin_deflate(Wrap wrap, VoxelType type) {
-    const int strategy = size_of(type) == 1 ? Z_RLE : Z_DEFAULT_STRATEGY;
-    // The gzip header that zlib makes by itself names no time and no file: the same bytes every time.
-    if (deflateInit2(&stream_, kDeflateLevel, Z_DEFLATED, wrap == Wrap::Gzip ? 15 + 16 : 15, 9, strategy) != Z_OK) throw std::bad_alloc();
-    deflating_ = true;
-    packed_.resize(1 << 16);
+  void begin_deflate(Deflater::Wrap wrap) {
+    deflater_.emplace(wrap, [this](const void* bytes, std::size_t size) { put(bytes, size); });
   }
-  void write(const void* bytes, std::size_t size) {
-    if (!deflating_) return put(bytes, size);
-    stream_.next_in = static_cast<Bytef*>(const_cast<void*>(bytes));
-    stream_.avail_in = static_cast<uInt>(size);
-    while (stream_.avail_in > 0) pump(Z_NO_FLUSH);
-  }
+  void write(const void* bytes, std::size_t size) { deflater_ ? deflater_->write(bytes, size) : put(bytes, size); }
   void end_deflate() {
-    while (pump(Z_FINISH) != Z_STREAM_END) {
-    }
-    deflateEnd(&stream_);
-    deflating_ = false;
+    deflater_->end();
+    deflater_.reset();
   }
   std::int64_t place() const { return place_; }
   void overwrite(std::int64_t place, const std::string& text) {
@@ -75,13 +58,6 @@ class OutputFile {
   }
 
  private:
-  int pump(int flush) {
-    stream_.next_out = packed_.data();
-    stream_.avail_out = static_cast<uInt>(packed_.size());
-    const int result = deflate(&stream_, flush);
-    put(packed_.data(), packed_.size() - stream_.avail_out);
-    return result;
-  }
   void put(const void* bytes, std::size_t size) {
     const char* from = static_cast<const char*>(bytes);
     while (size > 0) {
@@ -98,9 +74,7 @@ class OutputFile {
   Path path_;
   int descriptor_ = -1;
   std::int64_t place_ = 0;
-  bool deflating_ = false;
-  z_stream stream_{};
-  std::vector<unsigned char> packed_;
+  std::optional<Deflater> deflater_;  // while bytes are packed
 };
 
 // What is to be written, whatever the format.
@@ -133,8 +107,8 @@ std::string sizes_text(const Grid& grid) {
 
 void write_text(OutputFile& out, const std::string& text) { out.write(text.data(), text.size()); }
 
-void write_data(OutputFile& out, const Voxels& voxels, OutputFile::Wrap wrap) {
-  if (voxels.compress) out.begin_deflate(wrap, voxels.type);
+void write_data(OutputFile& out, const Voxels& voxels, Deflater::Wrap wrap) {
+  if (voxels.compress) out.begin_deflate(wrap);
   write_voxels(out, voxels);
   if (voxels.compress) out.end_deflate();
 }
@@ -197,13 +171,13 @@ void write_nrrd(const Voxels& voxels, const Path& path) {
   write_atomically(path, [&](const Path& temporary) {
     OutputFile out(temporary);
     write_text(out, nrrd_header(voxels, ""));
-    write_data(out, voxels, OutputFile::Wrap::Gzip);
+    write_data(out, voxels, Deflater::Wrap::Gzip);
     out.close();
   });
 }
 
 // Data first, so that a header never names data that are not there.
-void write_detached(const Voxels& voxels, const Path& header_path, const std::string& data_extension, OutputFile::Wrap wrap,
+void write_detached(const Voxels& voxels, const Path& header_path, const std::string& data_extension, Deflater::Wrap wrap,
                     const std::function<std::string(const std::string& data_name, std::int64_t bytes)>& header) {
   const Path data_path = Path(header_path).replace_extension(data_extension);
   std::int64_t bytes = 0;
@@ -245,7 +219,7 @@ void write_meta(const Voxels& voxels, const Path& path) {
     OutputFile out(temporary);
     const std::string header = meta_header(voxels, "LOCAL", std::string(kDigits, ' '));
     write_text(out, header);
-    write_data(out, voxels, OutputFile::Wrap::Zlib);
+    write_data(out, voxels, Deflater::Wrap::Zlib);
     if (voxels.compress)
       out.overwrite(static_cast<std::int64_t>(header.find(kCompressedSize) + kCompressedSize.size()),
                     std::to_string(out.place() - static_cast<std::int64_t>(header.size())));
@@ -265,7 +239,7 @@ void write_nifti(const Voxels& voxels, const Path& path) {
   const bool compress = lower_case(path.extension().string()) == ".gz";
   write_atomically(path, [&](const Path& temporary) {
     OutputFile out(temporary);
-    if (compress) out.begin_deflate(OutputFile::Wrap::Gzip, voxels.type);
+    if (compress) out.begin_deflate(Deflater::Wrap::Gzip);
     write_text(out, make_nifti_header(voxels.grid, voxels.type, voxels.channels, nifti_version(voxels), false));
     write_voxels(out, voxels);
     if (compress) out.end_deflate();
@@ -283,13 +257,13 @@ Writer writer_of(const Path& path) {
   if (ends(".nrrd")) return write_nrrd;
   if (ends(".nhdr"))
     return [](const Voxels& voxels, const Path& to) {
-      write_detached(voxels, to, voxels.compress ? ".raw.gz" : ".raw", OutputFile::Wrap::Gzip,
+      write_detached(voxels, to, voxels.compress ? ".raw.gz" : ".raw", Deflater::Wrap::Gzip,
                      [&](const std::string& data, std::int64_t) { return nrrd_header(voxels, data); });
     };
   if (ends(".mha")) return write_meta;
   if (ends(".mhd"))
     return [](const Voxels& voxels, const Path& to) {
-      write_detached(voxels, to, voxels.compress ? ".zraw" : ".raw", OutputFile::Wrap::Zlib,
+      write_detached(voxels, to, voxels.compress ? ".zraw" : ".raw", Deflater::Wrap::Zlib,
                      [&](const std::string& data, std::int64_t bytes) { return meta_header(voxels, data, std::to_string(bytes)); });
     };
   if (ends(".nii") || ends(".nii.gz")) return write_nifti;
@@ -297,7 +271,7 @@ Writer writer_of(const Path& path) {
     return [](const Voxels& voxels, const Path& to) {
       Voxels plain = voxels;
       plain.compress = false;
-      write_detached(plain, to, ".img", OutputFile::Wrap::Gzip, [&](const std::string&, std::int64_t) {
+      write_detached(plain, to, ".img", Deflater::Wrap::Gzip, [&](const std::string&, std::int64_t) {
         return make_nifti_header(voxels.grid, voxels.type, voxels.channels, nifti_version(voxels), true);
       });
     };
@@ -307,7 +281,7 @@ Writer writer_of(const Path& path) {
         throw Error("Virtual Family files hold labels of 8 or 16 bits", to.string(), "write .nrrd, .mha or .nii.gz");
       Voxels plain = voxels;
       plain.compress = false;
-      write_detached(plain, to, ".raw", OutputFile::Wrap::Gzip, [&](const std::string&, std::int64_t) { return make_virtual_family(voxels.grid, voxels.tissues); });
+      write_detached(plain, to, ".raw", Deflater::Wrap::Gzip, [&](const std::string&, std::int64_t) { return make_virtual_family(voxels.grid, voxels.tissues); });
     };
   return nullptr;
 }

@@ -9,8 +9,8 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
+#include "core/base/deflate.h"
 #include "core/base/error.h"
 #include "core/volume/header_text.h"
 
@@ -121,29 +121,20 @@ class RawDecoder final : public Decoder {
 
 class DeflateDecoder final : public Decoder {
  public:
-  explicit DeflateDecoder(ByteSource& source) : Decoder(source) {
-    // 32: gzip or zlib by the stream's own mark.
-    if (inflateInit2(&stream_, 15 + 32) != Z_OK) throw std::bad_alloc();
-  }
-  ~DeflateDecoder() override { inflateEnd(&stream_); }
+  using Decoder::Decoder;
 
   std::size_t read(unsigned char* to, std::size_t bytes) override {
     std::size_t done = 0;
     while (done < bytes && !ended_) {
       const std::string_view input = source_.peek();
-      if (input.empty()) return done;
-      stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(input.data()));
-      stream_.avail_in = static_cast<uInt>(input.size());
-      stream_.next_out = to + done;
-      const auto wanted = static_cast<uInt>(std::min<std::size_t>(bytes - done, 1 << 30));
-      stream_.avail_out = wanted;
-      const int result = inflate(&stream_, Z_NO_FLUSH);
-      source_.pass(input.size() - stream_.avail_in);
-      done += wanted - stream_.avail_out;
-      if (result == Z_STREAM_END)
+      const Inflater::Step step = stream_.inflate(input, to + done, bytes - done);
+      if (step.damaged) damaged("the compressed data are damaged");
+      source_.pass(step.taken);
+      done += step.made;
+      if (stream_.ended())
         start_next_member();
-      else if (result != Z_OK && result != Z_BUF_ERROR)
-        damaged("the compressed data are damaged");
+      else if (input.empty() && step.made == 0)
+        return done;
     }
     return done;
   }
@@ -157,12 +148,15 @@ class DeflateDecoder final : public Decoder {
  private:
   // gzip files may be several streams one after the other (pigz, bgzip).
   void start_next_member() {
+    if (stream_.behind() > 0) source_.go_to(source_.place() - static_cast<std::int64_t>(stream_.behind()));
     const std::string_view rest = source_.peek();
-    const bool gzip = rest.size() >= 2 && rest[0] == '\x1f' && rest[1] == '\x8b';
-    if (!gzip || inflateReset(&stream_) != Z_OK) ended_ = true;
+    if (rest.size() >= 2 && rest[0] == '\x1f' && rest[1] == '\x8b')
+      stream_.start_next();
+    else
+      ended_ = true;
   }
 
-  z_stream stream_{};
+  Inflater stream_;
   bool ended_ = false;
 };
 

@@ -66,7 +66,7 @@ constexpr Part kParts[] = {
     {"Dear ImGui", "MIT", "interface"},      {"GLFW", "zlib", "window"},           {"libepoxy", "MIT", "OpenGL"},          {"FreeType", "FTL", "typefaces"},
     {"Inter", "OFL 1.1", "typeface"},        {"JetBrains Mono", "OFL 1.1", "typeface"}, {"Font Awesome 4.7", "OFL 1.1", "icons"}, {"GLM", "MIT", "vectors"},
     {"Eigen", "MPL 2.0", "linear algebra"},  {"oneTBB", "Apache 2.0", "threads"},  {"nlohmann json", "MIT", "JSON"},       {"CLI11", "BSD 3-clause", "command line"},
-    {"SQLite", "public domain", "projects"}, {"Zstandard", "BSD 3-clause", "projects"}, {"zlib", "zlib", "volumes"},       {"bzip2", "bzip2", "volumes"},
+    {"SQLite", "public domain", "projects"}, {"Zstandard", "BSD 3-clause", "projects"}, {"ISA-L", "BSD 3-clause", "volumes"},       {"bzip2", "bzip2", "volumes"},
     {"libpng", "libpng", "pictures"},        {"Expat", "MIT", "XML"},              {"OpenSSL", "Apache 2.0", "checksums"}, {"GDCM", "BSD 3-clause", "DICOM"},
 };
 

@@ -52,6 +52,7 @@ struct Door {
 
 const std::vector<Door> kDoors = {
     {"GDCM", {"gdcm"}, {"core/volume/dicom_codec.cpp"}},
+    {"ISA-L", {"isa-l"}, {"core/base/deflate.cpp"}},
     {"bzip2", {"bzlib"}, {"core/volume/voxel_stream.cpp"}},
     {"TetGen", {"tetgen"}, {"core/mesh/tetrahedralize.cpp"}},
     {"CHOLMOD", {"cholmod", "suitesparse/"}, {"core/base/cholesky.cpp"}},

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "tests/support/program.h"
+#include "tests/support/sanitizer.h"
 
 using namespace limber;
 using namespace limber::test;
@@ -117,7 +118,7 @@ TEST_CASE("worker: a crash, a kill and a failure without a word become clear mes
   CHECK_THROWS_AS(run_worker("job.json", quiet, {.program = "/no/such/program"}), Error);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // that alone takes terabytes of address space
+#ifndef LIMBER_ADDRESS_SANITIZER
 TEST_CASE("worker: a job that wants more memory than it may have ends with a message") {
   const TemporaryFolder folder;
   write_job(folder, "0.8");
