@@ -8,9 +8,13 @@
 // A failure writes NAME.png and NAME-difference.png into the folder that $LIMBER_GOLDEN_FAILURES names (else
 // golden-failures, in the folder the test runs in). After a wanted change:
 //   LIMBER_GOLDEN_REFRESH=1 build/tests/limber_editor_tests -tc="golden:*"     and look at each picture that changed.
+// To look at the scenes in another window, without comparing:
+//   LIMBER_SCENES=2048x1280@2 build/tests/limber_editor_tests -tc="golden:*"   writes NAME-2048x1280@2.png where it runs.
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <thread>
 
 #include "core/volume/phantom.h"
@@ -77,7 +81,19 @@ Comparison compare(const Image& a, const Image& b) {
 
 std::filesystem::path golden(const std::string& name) { return std::filesystem::path(LIMBER_SOURCE_DIR "/tests/editor/golden") / (name + ".png"); }
 
+// The window that $LIMBER_SCENES asks for.
+struct Window {
+  glm::ivec2 size = kWindow;
+  float scale = 1;
+};
+std::optional<Window> wanted_window() {
+  Window window;
+  const char* named = std::getenv("LIMBER_SCENES");
+  return named && std::sscanf(named, "%dx%d@%f", &window.size.x, &window.size.y, &window.scale) >= 2 ? std::optional(window) : std::nullopt;
+}
+
 void check_golden(const std::string& name, const Image& window) {
+  if (wanted_window()) return render::write_png(window, name + "-" + std::getenv("LIMBER_SCENES") + ".png");
   const Image picture = halved(window);
   if (std::getenv("LIMBER_GOLDEN_REFRESH")) render::write_png(picture, golden(name));
   const Comparison found = compare(picture, render::read_png(golden(name)));
@@ -94,7 +110,11 @@ void check_golden(const std::string& name, const Image& window) {
 
 // A sitting in which nothing moves by itself.
 struct Scene {
-  Scene() : sitting(home.folder.path(), {}, kWindow) { editor().preferences.reduce_motion = true; }
+  Scene() : sitting(home.folder.path(), {}, wanted_window().value_or(Window{}).size) {
+    editor().preferences.reduce_motion = true;
+    editor().preferences.scale = wanted_window().value_or(Window{}).scale;
+    sitting.play("wait-idle");
+  }
 
   Editor& editor() { return sitting.editor(); }
   void play(const std::string& script) { sitting.play(script); }
