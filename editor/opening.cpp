@@ -58,7 +58,7 @@ Document with_volume(const VolumeFile& file) {
 }
 
 [[noreturn]] void refuse(const std::string& what, const Path& path, const std::string& what_to_do) {
-  throw Error(what, path.string(), what_to_do + ". Nothing was changed in this project.");
+  throw Error(what, path.string(), what_to_do);
 }
 
 // ---- work: reads beside the editor, fits against the document as it was then

@@ -284,7 +284,7 @@ class Resampling {
 
   // The skin that touches the rest point's voxel, 0 when there is none or the voxel lay bare itself.
   Label skin_over(const glm::dvec3& rest) const {
-    const glm::ivec3 voxel(glm::floor(rest + 0.5));
+    const glm::ivec3 voxel = glm::ivec3(rest + 1.5) - 1;  // rest points lie in tissue; std::floor would be a call
     if (depth_->at_voxel(voxel) > skin_reach_ || touches_air(volume_, voxel)) return 0;
     for (const glm::ivec3& step : neighbours())
       if (const Label label = volume_.at_or_air(voxel + step); labels_.skin[label]) return label;

@@ -105,6 +105,10 @@ Label LabelSampler::nearest(const glm::dvec3& point) const {
 }
 
 Label LabelSampler::tissue(const glm::dvec3& point) const {
+  // What has not moved lies in the middle of its voxel.
+  const glm::ivec3 size = volume_->grid.size;
+  if (point.x >= 0 && point.y >= 0 && point.z >= 0 && point.x < size.x && point.y < size.y && point.z < size.z)
+    if (const glm::ivec3 voxel(point); glm::dvec3(voxel) == point) return volume_->at(voxel);
   Neighbours around;
   if (!neighbours(point, around)) return 0;
   if (around.uniform()) return around.label[0];

@@ -30,6 +30,8 @@ std::vector<KeyHint> held_hints(const Editor& editor) {
       Chord alone = binding.chord;
       alone.modifiers = {};
       all.push_back({key_caps(alone), op->label});
+      // A click of the left button has a meaning of its own beside its drag.
+      if (alone.kind == Chord::Kind::Drag && alone.button == MouseButton::Left) all.back().caps.back() += " drag";
     }
   }
   return all;
