@@ -2,7 +2,6 @@
 #include "editor/live_pose.h"
 
 #include <algorithm>
-#include <chrono>
 #include <new>
 #include <utility>
 
@@ -85,7 +84,7 @@ void MapMaker::work() {
   for (std::unique_lock lock(mutex_);;) {
     asked_.wait(lock, [this] { return waiting_ || ended_; });
     if (ended_) return;
-    Made made{*std::exchange(waiting_, std::nullopt), nullptr, 0, ""};
+    Made made{*std::exchange(waiting_, std::nullopt), nullptr, ""};
     working_ = true;
     lock.unlock();
     try {
@@ -93,9 +92,7 @@ void MapMaker::work() {
         ready = {};  // two at once would be too much memory
         ready = make_ready(made.wish.body, divisor_);
       }
-      const auto begin = std::chrono::steady_clock::now();
-      if (!made.wish.motions.empty()) made.map = ready.preview->update(made.wish.motions, made.wish.blend);
-      made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      made.map = ready.preview->update(made.wish.motions, made.wish.blend);
     } catch (const Error& error) {
       made.trouble = error.what();
     } catch (const std::bad_alloc&) {
@@ -117,35 +114,44 @@ Blend preview_blend(const Editor& editor) { return editor.resampling.method == "
 void LivePose::follow(Editor& editor) {
   if (auto made = swift_.take()) coarse_ = std::move(*made), editor.touch();
   if (auto made = thorough_.take()) fine_ = std::move(*made), editor.touch();
+  const std::optional<DenseWish> dense = choose(editor);
+  metrics_.follow(editor, dense, shown_ && shown_ == fine_.map);
+}
+
+// Which map is shown; returns what it stands for.
+std::optional<DenseWish> LivePose::choose(Editor& editor) {
   shown_ = nullptr;
+  posed_ = false;
   trouble_.clear();
   const Document& document = editor.document();
-  if (editor.workspace != Workspace::Pose || !document.volume || !document.tissues || !document.armature) return;
+  if (editor.workspace != Workspace::Pose || !document.volume || !document.tissues || !document.armature) return {};
   if (!document.weights) {
     trouble_ = "No weights yet";
-    return;
+    return {};
   }
   PoseWish wish{{document.volume, document.tissues, document.weights}, {}, preview_blend(editor)};
   const Pose pose = shown_pose(editor);
-  const bool at_rest = pose == rest_pose(*document.armature);
-  if (!at_rest && !motions_of_weights(*document.weights, *document.armature, pose, wish.motions)) {
+  if (!motions_of_weights(*document.weights, *document.armature, pose, wish.motions)) {
     trouble_ = "The weights belong to another rig";
-    return;
+    return {};
   }
   if (!(wish == wish_)) {
     wish_ = std::move(wish);
     since_ = editor.now;
   }
   swift_.ask(wish_);
-  if (at_rest) {
-    coarse_.map = nullptr;  // never to be seen under another pose
-    return;
+  if (pose == rest_pose(*document.armature)) {
+    // Seen once, so that the driver's programs are ready when the first bone is turned.
+    if (!warmed_up_ && coarse_.wish == wish_ && coarse_.map) shown_ = coarse_.map, warmed_up_ = true;
+    return {};
   }
+  posed_ = true;
   if (coarse_.wish.body.volume == document.volume) shown_ = coarse_.map;
   if (coarse_.wish == wish_) trouble_ = coarse_.trouble;
   if (fine_.wish == wish_ && fine_.map) shown_ = fine_.map;
   else if (editor.now < since_ + kRest) editor.wake_at(since_ + kRest);
   else if (shown_) thorough_.ask(wish_);
+  return DenseWish{document.volume, document.tissues, document.armature, document.weights, pose, wish_.blend};
 }
 
 }  // namespace limber::editor

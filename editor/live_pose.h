@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/deform/preview_map.h"
+#include "editor/live_metrics.h"
 
 namespace limber::editor {
 
@@ -34,7 +35,7 @@ struct PosedBody {
 // A body in a pose.
 struct PoseWish {
   PosedBody body;
-  std::vector<RigidTransform> motions;  // of the weights' bones; empty: the body is only made ready
+  std::vector<RigidTransform> motions;  // of the weights' bones
   Blend blend = Blend::DualQuaternion;
 
   bool operator==(const PoseWish&) const;
@@ -45,7 +46,6 @@ class MapMaker {
   struct Made {
     PoseWish wish;
     std::shared_ptr<const PreviewMap> map;
-    double seconds = 0;
     std::string trouble;  // an Error's line in place of the map
   };
 
@@ -81,16 +81,21 @@ class LivePose {
   const std::shared_ptr<const PreviewMap>& map() const { return shown_; }
   // Why the volume stays behind: "No weights yet"; "" where it follows, and where there is nothing to pose.
   const std::string& trouble() const { return trouble_; }
-  double seconds() const { return coarse_.seconds; }  // that the last map took while the pose moved
+  bool posed() const { return posed_; }  // the pose on show is another than rest
+  LiveMetrics& metrics() { return metrics_; }
   bool busy() const { return swift_.busy() || thorough_.busy(); }
 
  private:
+  std::optional<DenseWish> choose(Editor& editor);
+
   MapMaker swift_, thorough_;
   MapMaker::Made coarse_, fine_;  // of either
   PoseWish wish_;
   double since_ = 0;  // the editor's time when the wish came up
   std::shared_ptr<const PreviewMap> shown_;
   std::string trouble_;
+  bool posed_ = false, warmed_up_ = false;
+  LiveMetrics metrics_;
 };
 
 // By what the pose is previewed: as it would be resampled.

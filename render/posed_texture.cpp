@@ -71,15 +71,24 @@ PosedTexture::PosedTexture() : nodes_(gl::Texture::create()), cubes_(gl::Texture
 
 void PosedTexture::upload(const std::shared_ptr<const PreviewMap>& map, int largest_texture) {
   const bool fits = glm::all(glm::lessThanEqual(map->size, glm::ivec3(largest_texture)));
-  if (!fits || (map->size != size_ && !(allocate(nodes_, map->size, kNodes) && allocate(cubes_, map->size, kCubes)))) {
-    size_ = glm::ivec3(0);
+  if (fits && !glm::all(glm::lessThanEqual(map->size, room_))) make_room(map->size, largest_texture);
+  if (!fits || room_ == glm::ivec3(0))
     throw Error("the pose cannot be shown: the graphics driver has no room for it", "its map", "pose less far, or resample");
-  }
   size_ = map->size;
   write(nodes_, size_, kNodes, map->nodes.data());
   write(cubes_, size_, kCubes, map->cubes.data());
   map_ = map;
   gl::check_gl("the upload of a pose");
+}
+
+// Maps grow and shrink from pose to pose. Room is kept, and is no power of two: a software driver translates its programs
+// anew when an axis becomes one, which takes as long as many pictures.
+void PosedTexture::make_room(const glm::ivec3& size, int largest_texture) {
+  for (int axis = 0; axis < 3; ++axis) {
+    room_[axis] = std::max(room_[axis], size[axis]);
+    if ((room_[axis] & (room_[axis] - 1)) == 0 && room_[axis] < largest_texture) ++room_[axis];
+  }
+  if (!allocate(nodes_, room_, kNodes) || !allocate(cubes_, room_, kCubes)) room_ = glm::ivec3(0);
 }
 
 int PosedTexture::bind(const VolumeTexture& volume, gl::Program& program, int first) const {
@@ -90,7 +99,7 @@ int PosedTexture::bind(const VolumeTexture& volume, gl::Program& program, int fi
   program.set("u_node_offset", glm::vec3(-glm::dvec3(kPad) * scale - 0.5 - glm::dvec3(map_->first)));
   program.set("u_rest_scale", glm::vec3(map_->extent / halving));
   program.set("u_rest_offset", glm::vec3((map_->low + 0.5) / halving + double(kPad)));
-  program.set("u_map_texel", 1.0f / glm::vec3(size_));
+  program.set("u_map_texel", 1.0f / glm::vec3(room_));
   program.set("u_map_size", size_);
   program.set("u_steepest", static_cast<float>(map_->steepest() / halving));
   return first;

@@ -28,9 +28,11 @@ class PosedTexture {
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
 
  private:
+  void make_room(const glm::ivec3& size, int largest_texture);
+
   std::shared_ptr<const PreviewMap> map_;
   gl::Texture nodes_, cubes_;
-  glm::ivec3 size_{0};
+  glm::ivec3 size_{0}, room_{0};  // texels in use, and there
 };
 
 // Around the places that the map leads to the field's set.

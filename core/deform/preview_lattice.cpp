@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::int64_t kMostFineVoxels = 1'500'000;  // a limb at 2 mm has 650 000 tissue voxels, a body at 2 mm ten millions
 constexpr double kLeastWeight = 1.0 / 1024;
+constexpr double kHold = 1000;  // of tissue that follows one bone wholly over what is blended: bones stay stiff up to their border
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
 constexpr int kGrain = 16;  // bricks
 
@@ -81,6 +82,7 @@ class Gather {
       float& least = distance_[size_t(cell) * 8 + i];
       least = std::min(least, static_cast<float>(glm::dot(away, away)));
     }
+    const double hold = influence.weight[0] == kFullWeight ? kHold : 1;
     for (int n = 0; n < 4 && influence.weight[n]; ++n) {
       int& slot = slot_of_[influence.bone[n]];
       if (slot < 0) {
@@ -90,7 +92,7 @@ class Gather {
       }
       float* sums = &sums_[(size_t(slot) * cells + cell) * 8];
       for (int i = 0; i < 8; ++i)
-        sums[i] += static_cast<float>(influence.weight[n] * (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z));
+        sums[i] += static_cast<float>(hold * influence.weight[n] * (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z));
     }
   }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The coarse lattice that a live preview is posed by: cells of `step` voxels an axis, those that hold tissue and one ring
 // around them, so that the body's surface lies well inside what the cells cover. Its vertices follow the bones with the
-// mean of the influences of the tissue voxels in the cells around, each counted by its trilinear share of the vertex;
-// vertices without tissue around follow what their neighbours do.
+// mean of the influences of the tissue voxels in the cells around, each counted by its trilinear share of the vertex; where
+// tissue that follows one bone wholly is among them, as bone does, that alone counts, so that bones do not bend. Vertices
+// without tissue around follow what their neighbours do.
 //
 // Coordinates. Cell c covers the voxels c step .. c step + step - 1. In *cell coordinates* its middle is the whole number
 // c and vertex v, its lowest corner, lies at v - 1/2; so a cell stands to this lattice as a voxel to lattice.h.

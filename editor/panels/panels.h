@@ -36,6 +36,7 @@ void draw_tissue(Editor& editor, Column& column);
 void draw_clipping(Editor& editor, Column& column);
 void draw_under_cursor(Editor& editor, Column& column);
 void draw_history(Editor& editor, Column& column);
+void draw_live_volume(Editor& editor, Column& column);
 void draw_steps(Editor& editor, Column& column);
 void draw_running(Editor& editor, Column& column);
 void draw_resample(Editor& editor, Column& column);

@@ -7,6 +7,7 @@
 
 #include "editor/fields.h"
 #include "editor/icons.h"
+#include "editor/panels/change.h"
 #include "editor/panels/panels.h"
 #include "editor/prepare.h"
 #include "editor/results.h"
@@ -18,18 +19,6 @@ namespace {
 constexpr float kHead = 30, kTableHead = 26;
 constexpr float kColumns[] = {60, 84, 70};  // of time, volume and overlap
 constexpr float kState = 190, kNarrowState = 116, kNarrow = 640;
-
-std::string percent(const std::optional<double>& value) {
-  if (!value) return "-";
-  char text[24];
-  std::snprintf(text, sizeof text, "%+.2f %%", *value);
-  return text;
-}
-
-Colour colour_of_change(const Theme& theme, const std::optional<double>& value) {
-  if (!value) return theme.text2;
-  return std::abs(*value) <= 1 ? theme.ok : std::abs(*value) <= 5 ? theme.warn : theme.error;
-}
 
 void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 6>& words, const std::array<Colour, 6>& colours, ImFont* first, ImFont* digits) {
   const Look& look = editor.look;

@@ -19,9 +19,11 @@ using limber::test::LimbEditor;
 
 namespace {
 
+constexpr glm::ivec2 kWithSidebar{1120, 600};
+
 // The limb whose lower half follows one bone wholly, in the Pose workspace, seen from the front.
 struct LiveEditor : LimbEditor {
-  explicit LiveEditor(bool with_weights = true) : LimbEditor({900, 560}) {
+  explicit LiveEditor(bool with_weights = true, const glm::ivec2& size = {900, 560}) : LimbEditor(size) {
     if (with_weights) weigh();
     play("key Ctrl+3\nkey Num1\nwait-job");
     editor->selection.bone = 1;
@@ -126,14 +128,13 @@ TEST_CASE("live pose: linear blending and dual quaternions are chosen in the too
 }
 
 TEST_CASE("live pose: without weights only the bones move") {
-  LiveEditor test(false);
+  LiveEditor test(false, kWithSidebar);
   test.turn("X", 60);
   CHECK(!test.scene().pose);
   CHECK(glm::angle(test.scene().posed_from_rest[1].rotation) == doctest::Approx(std::numbers::pi / 3));
   CHECK(test.editor->live->trouble() == "No weights yet");
-  test.play("key Return");
-  test.weigh();
-  test.play("wait-job");
+  CHECK(test.fact("text:No weights yet") == "shown");
+  test.play("key Return\nclick \"Volume, live/Heat diffusion\"\nwait-job");
   CHECK(test.scene().pose);
   CHECK(test.editor->live->trouble().empty());
 }
@@ -148,6 +149,36 @@ TEST_CASE("live pose: weights of another volume are refused in words") {
   test.turn("X", 60);
   CHECK(!test.scene().pose);
   CHECK(test.editor->live->trouble().find("another volume") != std::string::npos);
+}
+
+TEST_CASE("live pose: what a resting pose does to the tissue is measured as its result would be, and again for the next pose") {
+  LiveEditor test(true, kWithSidebar);
+  test.play("wait 1\nwait-job");
+  LiveMetrics& metrics = test.editor->live->metrics();
+  CHECK(!metrics.known());  // at rest there is nothing to measure
+  CHECK(test.fact("text:At rest") == "shown");
+  test.turn("X", 60);
+  CHECK(!metrics.known());
+  test.play("key Return\nwait 1\nwait-job\nwait 0.1");
+  REQUIRE(metrics.known());
+  const PoseMetrics bent = *metrics.known();
+  const Document& document = test.editor->document();
+  const PoseMetrics same = measure({document.volume, document.tissues, document.armature, document.weights, *document.pose, Blend::DualQuaternion});
+  REQUIRE(bent.tissues.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(bent.tissues[i].name == same.tissues[i].name);
+    CHECK(bent.tissues[i].mm3_after == same.tissues[i].mm3_after);
+  }
+  CHECK(bent.overlap_voxels == same.overlap_voxels);
+  CHECK(test.fact("text:dense") == "shown");
+  test.turn("X", 80);
+  CHECK(!metrics.known());
+  CHECK(metrics.last());
+  CHECK(test.fact("text:coarse") == "shown");
+  test.play("wait 1\nwait-job");  // while the tool goes on
+  REQUIRE(metrics.known());
+  CHECK(metrics.known()->overlap_voxels != bent.overlap_voxels);
+  test.play("key Escape");
 }
 
 TEST_CASE("live pose: a result is shown for its own pose, and gives way to the next one") {

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/panels/change.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace limber::editor {
+
+std::string percent(const std::optional<double>& value) {
+  if (!value) return "-";
+  char text[24];
+  std::snprintf(text, sizeof text, "%+.2f %%", *value);
+  return text;
+}
+
+Colour colour_of_change(const Theme& theme, const std::optional<double>& percent) {
+  if (!percent) return theme.text2;
+  return std::abs(*percent) <= 1 ? theme.ok : std::abs(*percent) <= 5 ? theme.warn : theme.error;
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How a change of a volume reads in tables.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "editor/theme.h"
+
+namespace limber::editor {
+
+std::string percent(const std::optional<double>& value);  // "+1.25 %"; "-" for none
+Colour colour_of_change(const Theme& theme, const std::optional<double>& percent);
+
+}  // namespace limber::editor
