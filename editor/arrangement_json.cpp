@@ -33,7 +33,7 @@ std::optional<Choice> choice(const Json& json, const char* key, int count) {
 
 Json json_of(const Arrangement& arrangement) {
   Json json{{"views", static_cast<int>(arrangement.views)}, {"tool_strip", arrangement.tool_strip}, {"console", arrangement.console},
-            {"results", arrangement.results}, {"sidebar_width", arrangement.sidebar_width}, {"bottom_height", arrangement.bottom_height},
+            {"results", arrangement.results}, {"timeline", arrangement.timeline}, {"sidebar_width", arrangement.sidebar_width}, {"bottom_height", arrangement.bottom_height},
             {"split_x", arrangement.split_x}, {"split_y", arrangement.split_y}, {"four_x", arrangement.four_x}, {"four_y", arrangement.four_y}};
   if (arrangement.sidebar) json["sidebar"] = *arrangement.sidebar;
   if (arrangement.maximized) json["maximized"] = static_cast<int>(*arrangement.maximized);
@@ -46,6 +46,7 @@ void restore(const Json& json, Arrangement& arrangement) {
   take_switch(json, "tool_strip", arrangement.tool_strip);
   take_switch(json, "console", arrangement.console);
   take_switch(json, "results", arrangement.results);
+  take_switch(json, "timeline", arrangement.timeline);
   take_switch(json, "sidebar", arrangement.sidebar);
   take_size(json, "sidebar_width", 260, 520, arrangement.sidebar_width);
   take_size(json, "bottom_height", 60, 4000, arrangement.bottom_height);

@@ -4,6 +4,8 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "editor/timeline.h"
+
 namespace limber::editor {
 
 namespace {
@@ -70,6 +72,13 @@ void on_key(Editor& editor, const KeyChanged& event) {
   run_chord(editor, chord);
 }
 
+// Its rows, not the buttons above them.
+bool over_timeline(const Editor& editor) {
+  const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
+  return window && std::string_view(window->RootWindow->Name) == "##bottom" && editor.timeline->area.contains(editor.input.pointer) &&
+         editor.arrangement().timeline && !editor.arrangement().console;
+}
+
 // Buttons, handles and bars in the views take the left button for themselves.
 bool over_widget(const Editor& editor) {
   const auto& widgets = editor.widgets.widgets();
@@ -82,9 +91,9 @@ bool over_widget(const Editor& editor) {
 void on_press(Editor& editor, MouseButton button) {
   editor.list_focus = {};
   const ViewPlace* view = hovered_view(editor);
-  if (!view || editor.drag || dialog_open(editor)) return;
+  if (!(view || over_timeline(editor)) || editor.drag || dialog_open(editor)) return;
   if (button == MouseButton::Left && over_widget(editor)) return;
-  editor.views->active = view->id;
+  if (view) editor.views->active = view->id;
   const Modifiers modifiers = editor.input.modifiers();
   const Chord press{Chord::Kind::Press, modifiers, Key::None, button}, drag{Chord::Kind::Drag, modifiers, Key::None, button};
   if (!editor.keymap.find(drag, contexts(editor))) return run_chord(editor, press);
@@ -126,11 +135,11 @@ void on_move(Editor& editor, const glm::vec2& from, const glm::vec2& to) {
 
 void on_wheel(Editor& editor, const Wheeled& event) {
   if (editor.modal) return end_modal(editor, editor.modal->wheel(editor, event.steps));
-  if (!hovered_view(editor) || editor.drag || dialog_open(editor)) return;
+  if (!(hovered_view(editor) || over_timeline(editor)) || editor.drag || dialog_open(editor)) return;
   editor.input.wheel = event.steps;
   editor.input.wheel_sideways = event.sideways;
   if (event.steps != 0) run_chord(editor, {Chord::Kind::Wheel, editor.input.modifiers()});
-  if (event.sideways != 0) run(editor, "view.pan_sideways_step");
+  if (event.sideways != 0 && hovered_view(editor)) run(editor, "view.pan_sideways_step");
 }
 
 }  // namespace
@@ -146,6 +155,7 @@ std::vector<std::string> contexts(const Editor& editor) {
   const ViewPlace* view = hovered_view(editor);
   if (view && view->id != ViewId::Body) contexts.push_back("slice");
   if (view && view->id == ViewId::Body) contexts.push_back("view3d");
+  if (over_timeline(editor)) contexts.push_back("timeline");
   constexpr const char* kWorkspaces[] = {"rig", "skin", "pose", "resample"};
   contexts.push_back(kWorkspaces[static_cast<int>(editor.workspace)]);
   contexts.push_back("select");

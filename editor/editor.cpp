@@ -12,6 +12,7 @@
 #include "editor/panels/panels.h"
 #include "editor/project.h"
 #include "editor/sitting.h"
+#include "editor/timeline.h"
 #include "editor/tooltip.h"
 
 namespace limber::editor {
@@ -80,7 +81,8 @@ void Dialog::escape(Editor& editor) { editor.close_dialog(); }
 
 Editor::Editor(Host& host, const Preferences& preferences)
     : host(host), preferences(preferences), keymap(read_keymap(asset("keymap.json"))), operators(gather_operators()),
-      jobs(kJobsAtOnce, [&host] { host.wake(); }), arrangements(preferences.arrangements) {
+      jobs(kJobsAtOnce, [&host] { host.wake(); }), arrangements(preferences.arrangements),
+      timeline(std::make_unique<Timeline>()) {
   IMGUI_CHECKVERSION();
   imgui = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -196,8 +198,10 @@ void Editor::frame(double time) {
   if (poll_jobs(*this)) touch();
   std::erase_if(each_frame, [this](const auto& act) { return !act(*this); });
   layout = arrange(size, look.scale, arrangement());
+  advance_time(*this);
   draw_views();
   draw();
+  await_next_frame(*this);
   follow_tour(*this);
   keep_edits(*this);
   keep_remembered(*this);

@@ -37,6 +37,8 @@ struct ImGuiContext;
 
 namespace limber::editor {
 
+struct Timeline;
+
 // What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
 struct Drag {
   MouseButton button = MouseButton::Left;
@@ -190,6 +192,7 @@ struct Editor {
   std::optional<PendingPress> pending_press;
   std::unique_ptr<Modal> modal;  // null: none
   PointerWrap modal_wrap;
+  std::unique_ptr<Timeline> timeline;
   float wheel_rest = 0;  // of the slices' wheel: parts of a step that a pad has made
   std::string last_operator;  // id, for Repeat
   double now = 0;

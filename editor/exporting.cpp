@@ -12,6 +12,7 @@
 #include "core/rig/bvh.h"
 #include "core/skin/weights_io.h"
 #include "core/volume/volume_io.h"
+#include "core/rig/motion_edit.h"
 #include "editor/icons.h"
 #include "editor/panels/question.h"
 #include "render/image_io.h"
@@ -20,6 +21,15 @@ namespace limber::editor {
 
 namespace {
 
+// As it moves the rig; without a rig, the motion itself.
+Motion motion_of_clip(const Document& document) {
+  const std::shared_ptr<const Clip> clip = document.clips[static_cast<std::size_t>(document.clip)];
+  if (!document.armature) return *clip->motion;
+  const ClipOnRig on_rig(clip, document.armature);
+  const int frames = std::max(0, clip->range_end - clip->range_start) + 1;
+  return motion_of_poses(*document.armature, frames, clip->rate, [&](int frame) { return on_rig.at(clip->range_start + frame); });
+}
+
 void write_export(ExportKind kind, const Document& document, const Path& path) {
   switch (kind) {
     case ExportKind::Volume: return write_volume(*document.volume, path, *document.tissues, document.volume_type ? *document.volume_type : FileType{});
@@ -27,7 +37,7 @@ void write_export(ExportKind kind, const Document& document, const Path& path) {
     case ExportKind::Rig: return write_armature(*document.armature, path);
     case ExportKind::Weights: return write_weights(*document.weights, *document.volume, TissueVoxels(*document.volume), path);
     case ExportKind::Pose: return write_pose(*document.pose, *document.armature, path);
-    case ExportKind::Motion: return write_bvh(*document.motion, path);
+    case ExportKind::Motion: return write_bvh(motion_of_clip(document), path);
   }
 }
 
@@ -74,7 +84,7 @@ std::string why_not_export(const Editor& editor, ExportKind kind) {
     case ExportKind::Rig: return document.armature ? "" : "There is no rig yet";
     case ExportKind::Weights: return document.weights ? "" : "There are no weights yet";
     case ExportKind::Pose: return document.pose ? "" : "There is no pose yet";
-    case ExportKind::Motion: return document.motion ? "" : "There is no motion yet";
+    case ExportKind::Motion: return document.shown_clip() && (document.armature || document.shown_clip()->motion) ? "" : "There is no motion yet";
   }
   return "";
 }

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/deform/preview_map.h"
 #include "editor/recording.h"
+#include "editor/timeline.h"
 
 namespace limber::editor {
 
@@ -58,7 +59,11 @@ const std::vector<std::pair<std::string, Fact>>& facts() {
       {"projection", [](const Editor& e) { return std::string(e.views->body.camera.projection == render::Projection::Perspective ? "perspective" : "parallel"); }},
       {"sidebar", [](const Editor& e) { return yes(!e.layout.sidebar.empty()); }},
       {"strip", [](const Editor& e) { return yes(!e.layout.tool_strip.empty()); }},
-      {"console", [](const Editor& e) { return yes(!e.layout.bottom.empty()); }},
+      {"console", [](const Editor& e) { return yes(!e.layout.bottom.empty() && e.arrangement().console); }},
+      {"frame", [](const Editor& e) { return std::to_string(shown_frame(e)); }},
+      {"playing", [](const Editor& e) { return yes(e.timeline->play.on); }},
+      {"clip", [](const Editor& e) { return shown_clip(e) ? shown_clip(e)->name : std::string("none"); }},
+      {"keys", [](const Editor& e) { return std::to_string(shown_clip(e) ? frames_of(shown_clip(e)->keys).size() : 0); }},
       {"theme", [](const Editor& e) { return e.preferences.theme; }},
       {"tool", [](const Editor& e) { return std::string(e.tool == Tool::Select ? "select" : "cross-hair"); }},
       {"selected", [](const Editor& e) { return std::to_string(e.selection.tissues.size()); }},

@@ -62,6 +62,31 @@ bool number_field(Editor& editor, const std::string& name, const Rect& rect, dou
   return changed;
 }
 
+bool choice_field(Editor& editor, const Rect& rect, const std::vector<std::string>& choices, int& chosen) {
+  const Look& look = editor.look;
+  const Pressed pressed = press_area(editor, "list", rect);
+  fill(rect, pressed.hovered ? look.theme.hover : look.theme.raised, look.px(4));
+  put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(10), rect.low.y}, {rect.high.x - look.px(24), rect.high.y}}, choices[chosen]);
+  put_icon(look.fonts.regular, look.theme.text2, Rect{{rect.high.x - look.px(24), rect.low.y}, rect.high}, icon::kOpened);
+  if (pressed.clicked) ImGui::OpenPopup("choices");
+  ImGui::SetNextWindowPos({rect.low.x, rect.high.y + look.px(2)});
+  ImGui::SetNextWindowSizeConstraints({rect.width(), 0}, {rect.width(), look.px(240)});
+  if (!ImGui::BeginPopup("choices", ImGuiWindowFlags_NoMove)) return false;
+  const int before = chosen;
+  for (int i = 0; i < static_cast<int>(choices.size()); ++i) {
+    ImGui::PushID(i);
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    if (ImGui::Selectable("##choice", i == chosen, 0, ImVec2(width, look.px(22)))) chosen = i;
+    const Rect row{from_im(corner), {corner.x + width, corner.y + look.px(22)}};
+    register_widget(editor, choices[i], row);
+    put_text(editor, look.fonts.regular, look.theme.text, Rect{{row.low.x + look.px(8), row.low.y}, row.high}, choices[i]);
+    ImGui::PopID();
+  }
+  ImGui::EndPopup();
+  return chosen != before;
+}
+
 bool text_field(Editor& editor, const std::string& name, const Rect& rect, std::string& text, const char* hint, bool focus) {
   const Look& look = editor.look;
   ImGui::SetCursorScreenPos(im(rect.low));

@@ -29,6 +29,7 @@ class Form final : public Dialog {
 
   FormRequest request_;
   bool accept_ = false;
+  bool focused_ = false;  // its text field has been given the keyboard
 };
 
 void Form::draw_choice(Editor& editor, FormField& field, const Rect& rect) {
@@ -42,26 +43,8 @@ void Form::draw_choice(Editor& editor, FormField& field, const Rect& rect) {
     }
     return;
   }
-  const Pressed pressed = press_area(editor, "list", rect);
-  fill(rect, pressed.hovered ? look.theme.hover : look.theme.raised, look.px(4));
-  put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(10), rect.low.y}, {rect.high.x - look.px(24), rect.high.y}}, field.choices[field.chosen]);
-  put_icon(look.fonts.regular, look.theme.text2, Rect{{rect.high.x - look.px(24), rect.low.y}, rect.high}, icon::kOpened);
-  if (pressed.hovered) tooltip(editor, rect, field.label, field.sentence);
-  if (pressed.clicked) ImGui::OpenPopup("choices");
-  ImGui::SetNextWindowPos({rect.low.x, rect.high.y + look.px(2)});
-  ImGui::SetNextWindowSizeConstraints({rect.width(), 0}, {rect.width(), look.px(240)});
-  if (!ImGui::BeginPopup("choices", ImGuiWindowFlags_NoMove)) return;
-  for (int i = 0; i < std::ssize(field.choices); ++i) {
-    ImGui::PushID(i);
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x;
-    if (ImGui::Selectable("##choice", i == field.chosen, 0, ImVec2(width, look.px(22)))) field.chosen = i;
-    const Rect row{from_im(corner), {corner.x + width, corner.y + look.px(22)}};
-    register_widget(editor, field.choices[i], row);
-    put_text(editor, look.fonts.regular, look.theme.text, Rect{{row.low.x + look.px(8), row.low.y}, row.high}, field.choices[i]);
-    ImGui::PopID();
-  }
-  ImGui::EndPopup();
+  choice_field(editor, rect, field.choices, field.chosen);
+  if (ImGui::IsMouseHoveringRect(im(rect.low), im(rect.high)) && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) tooltip(editor, rect, field.label, field.sentence);
 }
 
 void Form::draw_field(Editor& editor, FormField& field, const Rect& row) {
@@ -70,6 +53,10 @@ void Form::draw_field(Editor& editor, FormField& field, const Rect& row) {
   put_text(editor, look.fonts.regular, look.theme.text2, Rect{row.low, {row.low.x + look.px(kLabel), row.high.y}}, field.label);
   const Rect rect{{row.low.x + look.px(kLabel + 8), row.low.y + look.px(4)}, {row.high.x, row.high.y - look.px(4)}};
   if (field.kind == FormField::Kind::Choice) return draw_choice(editor, field, rect);
+  if (field.kind == FormField::Kind::Text) {
+    text_field(editor, "text", rect, field.text, "", !std::exchange(focused_, true));
+    return;
+  }
   bool committed = false;
   number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, false, committed);
   if (ImGui::IsItemHovered()) tooltip(editor, rect, field.label, field.sentence + "\nDrag it, or type after a double click.");
@@ -129,6 +116,12 @@ FormField choice_of(std::string label, std::string sentence, std::vector<std::st
   FormField field{std::move(label), std::move(sentence), FormField::Kind::Choice};
   field.choices = std::move(choices);
   field.chosen = chosen;
+  return field;
+}
+
+FormField text_of(std::string label, std::string sentence, std::string text) {
+  FormField field{std::move(label), std::move(sentence), FormField::Kind::Text};
+  field.text = std::move(text);
   return field;
 }
 

@@ -15,15 +15,18 @@ struct FormField {
   std::string label;
   std::string sentence;  // its tool tip
 
-  enum class Kind { Number, Choice } kind = Kind::Number;
+  enum class Kind { Number, Choice, Text } kind = Kind::Number;
   double value = 0, low = 0, high = 1;  // of a number
   const char* format = "%.0f";
   const char* unit = "";
   std::vector<std::string> choices;  // of a choice; up to four stand beside one another, more in a list
   int chosen = 0;
+  std::string text;
 };
 FormField number_of(std::string label, std::string sentence, double value, double low, double high, const char* format, const char* unit = "");
 FormField choice_of(std::string label, std::string sentence, std::vector<std::string> choices, int chosen = 0);
+
+FormField text_of(std::string label, std::string sentence, std::string text);
 
 struct FormRequest {
   std::string title;

@@ -25,6 +25,10 @@ inline constexpr char kVisible[] = "\uf06e", kHidden[] = "\uf070", kOneView[] = 
 inline constexpr char kSelect[] = "\uf245", kMove[] = "\uf047", kRotate[] = "\uf01e", kScale[] = "\uf0b2", kPick[] = "\uf1fb", kCut[] = "\uf0c4",
                       kMirror[] = "\uf0ec", kLinkViews[] = "\uf0c1";
 
+// Time
+inline constexpr char kFirst[] = "\uf049", kBack[] = "\uf048", kPlay[] = "\uf04b", kPause[] = "\uf04c", kForward[] = "\uf051", kLast[] = "\uf050",
+                      kLoop[] = "\uf079", kKey[] = "\uf084", kMarker[] = "\uf02e", kOnionSkin[] = "\uf24d";
+
 // States
 inline constexpr char kOk[] = "\uf058", kFail[] = "\uf057", kWarning[] = "\uf071", kError[] = "\uf06a", kInfo[] = "\uf05a",
                       kRunning[] = "\uf110", kWaiting[] = "\uf017", kTick[] = "\uf00c", kClose[] = "\uf00d", kOpened[] = "\uf0d7",

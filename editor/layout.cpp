@@ -60,6 +60,7 @@ Arrangement default_arrangement(Workspace workspace) {
     arrangement.results = true;
     arrangement.bottom_height = 228;
   }
+  if (workspace == Workspace::Pose) arrangement.timeline = true;
   if (workspace == Workspace::Skin) arrangement.views = ViewLayout::Split;
   return arrangement;
 }
@@ -108,7 +109,7 @@ Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrange
 
   // Bottom area
   float views_bottom = bottom;
-  if ((arrangement.console || arrangement.results) && !alone) {
+  if ((arrangement.console || arrangement.results || arrangement.timeline) && !alone) {
     const float most = std::max(kBottomLow, unscaled.y / 2);
     const float height = unscaled.y < 720 ? kBottomInSmall : std::clamp(arrangement.bottom_height, kBottomLow, most);
     views_bottom = std::max(bottom - px(height), std::round((header_bottom + bottom) / 2));  // the views keep half of what there is

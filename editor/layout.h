@@ -4,7 +4,7 @@
 //   top bar 36
 //   tool header 36                              | sidebar 320, down to the status bar
 //   tool strip 44 | views, 2 px gaps            |
-//   bottom area (console)                       |
+//   bottom area (console, results or timeline)                       |
 //   status 26
 //
 // Sizes are pixels at scale 1. Small windows: under 1360 wide the sidebar takes 280 and the search field shrinks to its
@@ -31,6 +31,7 @@ struct Arrangement {
   bool tool_strip = true;
   bool console = false;
   bool results = false;
+  bool timeline = false;
   float sidebar_width = 320, bottom_height = 192;
   float split_x = 0.66f, split_y = 0.5f, four_x = 0.5f, four_y = 0.5f;  // shares of the first view
   std::optional<ViewId> maximized;

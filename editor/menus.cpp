@@ -75,7 +75,15 @@ std::vector<Menu> menus() {
         "view.ortho", "view.frame_selected", "view.frame_all", "> Navigate", "view.walk", "view.centre_on_pick", "view.orbit_left", "view.orbit_right", "view.orbit_up",
         "view.orbit_down", "view.zoom_in", "view.zoom_out", "<", "-", "view.solid", "view.xray_display", "view.tissue", "-", "> Clipping", "view.clip_box", "view.clip_plane", "view.reset_clipping",
         "<", "> Tissues", "view.hide", "view.isolate_selected", "view.reveal", "<", "> Slices", "slice.show_labels", "slice.show_outlines", "slice.next", "slice.previous", "<", "> Overlays",
-        "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.bones", "view.cross_hair", "<", "-", "view.find", "view.sidebar", "view.tool_strip", "view.results", "view.console", "view.full_screen"}},
+        "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.bones", "view.cross_hair", "<", "-", "view.find", "view.sidebar", "view.tool_strip", "view.timeline", "view.results", "view.console", "view.full_screen"}},
+      {"Motion",
+       {"file.import_motion", "> Retarget", "motion.retarget", "motion.map", "motion.map_by_names", "motion.load_map", "motion.save_map", "-", "motion.travel_locked", "motion.travel_in_place",
+        "motion.travel_free", "motion.mirror", "-", "motion.reference_found", "motion.reference_rest", "motion.reference_first", "<", "> Clip", "motion.rename_clip", "motion.trim", "motion.untrim",
+        "motion.resample", "-", "motion.delete_clip", "<", "-", "motion.play", "motion.play_reverse", "motion.frame_back", "motion.frame_forward", "motion.first", "motion.last", "> Playing", "motion.loop",
+        "motion.ping_pong", "motion.faster", "motion.slower", "motion.play_at_file_rate", "<", "-", "motion.insert_key", "motion.delete_key", "motion.auto_key", "> Keys", "motion.next_key",
+        "motion.previous_key", "motion.choose_all_keys", "motion.choose_no_keys", "-", "motion.move_keys", "motion.scale_keys", "motion.duplicate_keys", "motion.delete_keys", "<", "-", "> Markers",
+        "motion.marker", "motion.rename_marker", "motion.delete_marker", "<", "> Range", "motion.set_start", "motion.set_end", "motion.preview_range", "motion.clear_range", "motion.view_all",
+        "motion.show_seconds", "<", "-", "file.export_motion"}},
       {"Help", {"help.guide", "help.keys", "help.tour", "help.new", "-", "search.commands", "view.console", "help.last_error", "help.system_facts", "-", "help.about"}},
   };
 }
@@ -83,6 +91,7 @@ std::vector<Menu> menus() {
 Menu pointer_menu(const std::string& name, ViewId view) {
   if (name == "Views") return {name, {"view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom", "view.opposite", "-", "view.ortho", "view.frame_selected", "view.frame_all", "view.walk"}};
   if (name == "Display") return {name, {"view.solid", "view.xray_display", "view.tissue", "-", "view.clip_box", "view.clip_plane"}};
+  if (name == "Keys") return {name, {"motion.insert_key", "motion.delete_key", "motion.auto_key", "-", "motion.next_key", "motion.previous_key"}};
   if (name == "Workspaces") return {name, {"workspace.rig", "workspace.skin", "workspace.pose", "workspace.resample"}};
   if (name == "Tissue")
     return {name, {"view.hide", "view.isolate_selected", "view.reveal", "view.frame_selected", "-", "edit.rename", "prepare.merge"}};

@@ -16,6 +16,7 @@
 #include "core/volume/volume_io.h"
 #include "editor/project.h"
 #include "editor/thumbnails.h"
+#include "editor/timeline.h"
 
 namespace limber::editor {
 
@@ -97,7 +98,7 @@ Import read_rig(const Path& path, const Document& now) {
   return {[rig](Document& d) {
             d.armature = rig;
             d.weights.reset();
-            d.pose.reset();
+            d.pose = pose_at_frame(d);
           },
           file.warnings};
 }
@@ -117,7 +118,8 @@ Import read_pose_file(const Path& path, const Document& now) {
 
 Import read_motion(const Path& path) {
   auto motion = shared(read_bvh(path));
-  return {[motion](Document& d) { d.motion = motion; }, motion->warnings};
+  if (motion->frame_count == 0) refuse("this motion has no frames", path, "import it as a rig, or choose another file");
+  return {[motion, name = path.stem().string()](Document& d) { add_clip(d, clip_of(motion, name)); }, motion->warnings};
 }
 
 Import read_import(FileKind kind, const Path& path, const Document& now, Progress& progress) {
@@ -134,9 +136,11 @@ Import read_import(FileKind kind, const Path& path, const Document& now, Progres
   Document replaced = with_volume(file);
   replaced.volume = shared(std::move(file.volume));
   return {[replaced](Document& d) {
-            auto motion = d.motion;
+            Document before = std::move(d);
             d = replaced;
-            d.motion = motion;
+            d.clips = std::move(before.clips);
+            d.clip = before.clip;
+            d.frame = before.frame;
           },
           file.warnings};
 }
@@ -280,7 +284,8 @@ void open_sample(Editor& editor, Sample sample, Then then) {
       document.tissues = shared(std::move(phantom.tissues));
       document.volume_type = shared(FileType{"NRRD", "uint8", true});
       document.armature = shared(std::move(phantom.armature));
-      document.motion = shared(std::move(phantom.motion));
+      add_clip(document, clip_of(shared(std::move(phantom.motion)), "Motion"));
+      document.frame = 0;
       opened->name = std::string(facts.name);
       opened->label = "Open sample: " + opened->name;
       opened->agreed = agreed;

@@ -11,7 +11,7 @@
 namespace limber::editor {
 
 // In the order in which files that come together are taken in.
-enum class FileKind { Project, Volume, Tissues, Rig, Weights, Pose, Motion };
+enum class FileKind { Project, Volume, Tissues, Rig, Weights, Motion, Pose };
 // Throws Error for what is missing, or is of no kind that is read.
 FileKind kind_of(const Path& path);
 

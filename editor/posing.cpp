@@ -5,6 +5,7 @@
 
 #include "core/rig/joint_limits.h"
 #include "editor/project.h"
+#include "editor/timeline.h"
 
 namespace limber::editor {
 
@@ -55,8 +56,10 @@ void drop_shown_pose(Editor& editor) {
 
 void commit_pose(Editor& editor, const std::string& label, Pose pose) {
   drop_shown_pose(editor);
-  if (pose == pose_of(editor.document())) return;
+  const Pose before = pose_of(editor.document());
+  if (pose == before) return;
   Document next = editor.document();
+  if (editor.timeline->auto_key) key_changes(next, before, pose);
   next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
   commit(editor, label, std::move(next));
 }

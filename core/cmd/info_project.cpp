@@ -67,7 +67,11 @@ std::string describe_project(const Path& file) {
   if (document.armature) json["bones"] = names_of(*document.armature);
   if (document.weights) json["weights"] = {{"voxels", document.weights->size()}, {"bones", document.weights->bones().size()}};
   if (document.pose) json["posed_bones"] = turned_bones(document);
-  if (document.motion) json["motion"] = {{"joints", document.motion->joints.size()}, {"frames", document.motion->frame_count}};
+  for (const auto& clip : document.clips) {
+    Json one = {{"name", clip->name}, {"keys", frames_of(clip->keys).size()}};
+    if (clip->motion) one.update({{"joints", clip->motion->joints.size()}, {"frames", clip->motion->frame_count}});
+    json["clips"].push_back(one);
+  }
   if (!document.results.empty()) json["results"] = results_of(document);
   if (const auto left = recoverable(journal_path(std::filesystem::absolute(file)))) json["unsaved_edits"] = left->edits;
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -28,7 +28,7 @@ Pose pose_of_motion(const PoseOptions& options, const Armature& armature) {
   const Motion motion = read_bvh(options.motion);
   warn(motion.warnings);
   const RetargetMap map = options.map.empty() ? match_by_names(motion, armature) : read_retarget_map(options.map, motion, armature);
-  return Retarget(motion, armature, map, {.in_place = !options.root_motion}).at(options.frame.value_or(0));
+  return Retarget(motion, armature, map, {.travel = options.root_motion ? Travel::Free : Travel::Locked}).at(options.frame.value_or(0));
 }
 }  // namespace
 

@@ -72,8 +72,9 @@ Document read_parts(const Options& options, Progress& progress) {
     document.weights = shared(std::move(weights.weights));
   }
   if (!options.motion.empty()) {
-    document.motion = shared(read_bvh(options.motion));
-    warn(document.motion->warnings);
+    const auto motion = shared(read_bvh(options.motion));
+    warn(motion->warnings);
+    document.clips.push_back(shared(clip_of(motion, std::filesystem::path(options.motion).stem().string())));
   }
   return document;
 }
@@ -155,7 +156,7 @@ void export_part(const Options& options) {
   else if (options.part == "pose")
     write_pose(there(document.pose, options), *document.armature, options.output);
   else if (options.part == "motion")
-    write_bvh(there(document.motion, options), options.output);
+    write_bvh(there(document.shown_clip() ? document.shown_clip()->motion : nullptr, options), options.output);
   else
     write_volume(result_named(document, options), options.output, tissues, type);
 }

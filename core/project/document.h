@@ -11,9 +11,9 @@
 
 #include <glm/glm.hpp>
 
+#include "core/pose/clip.h"
 #include "core/pose/pose.h"
 #include "core/rig/armature.h"
-#include "core/rig/bvh.h"
 #include "core/skin/skin_weights.h"
 #include "core/volume/label_volume.h"
 #include "core/volume/tissue_table.h"
@@ -74,10 +74,14 @@ struct Document {
   std::shared_ptr<const FileType> volume_type;  // what the volume's file was
   std::shared_ptr<const Armature> armature;
   std::shared_ptr<const SkinWeights> weights;
-  std::shared_ptr<const Pose> pose;
-  std::shared_ptr<const Motion> motion;
+  std::shared_ptr<const Pose> pose;  // at `frame`: as the clip says there, until it is changed
   std::shared_ptr<const Visibility> visibility;
   std::vector<std::shared_ptr<const Result>> results;
+  std::vector<std::shared_ptr<const Clip>> clips;
+  int clip = 0;   // the one that moves the rig, where there are any
+  int frame = 0;  // of that clip
+
+  const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 
   bool operator==(const Document&) const = default;  // the same parts: pointers, not contents
 };

@@ -8,10 +8,11 @@
 
 namespace limber {
 
-constexpr std::uint32_t kDocumentLayout = 1;
+// 1 had one motion and no clips.
+constexpr std::uint32_t kDocumentLayout = 2;
 
 // A part's first byte.
-enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result };
+enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip };
 
 template <class T>
 struct PartKindOf;
@@ -25,6 +26,7 @@ template <> struct PartKindOf<Pose>        { static constexpr PartKind kKind = P
 template <> struct PartKindOf<Motion>      { static constexpr PartKind kKind = PartKind::Motion;     static constexpr const char* kName = "motion"; };
 template <> struct PartKindOf<Visibility>  { static constexpr PartKind kKind = PartKind::Visibility; static constexpr const char* kName = "visibility"; };
 template <> struct PartKindOf<Result>      { static constexpr PartKind kKind = PartKind::Result;     static constexpr const char* kName = "result"; };
+template <> struct PartKindOf<Clip>        { static constexpr PartKind kKind = PartKind::Clip;       static constexpr const char* kName = "clip"; };
 // clang-format on
 
 constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;  // voxels and long texts

@@ -15,7 +15,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::uint32_t kMostResults = 100'000;
+constexpr std::uint32_t kMostInList = 100'000;
+constexpr std::int64_t kMostFrames = 1 << 28;
 constexpr std::int32_t kLongestAxis = 1 << 20;
 constexpr std::int64_t kBatch = 32;  // leaves unpacked together
 
@@ -28,6 +29,12 @@ glm::dquat get_rotation(ByteReader& in) {
   glm::dquat q;
   for (double* value : {&q.w, &q.x, &q.y, &q.z}) *value = in.get<double>();
   return q;
+}
+// Far from where sums of a few of them would overflow.
+std::int32_t get_frame(ByteReader& in) {
+  const auto frame = in.get<std::int32_t>();
+  in.require(std::abs(std::int64_t{frame}) <= kMostFrames);
+  return frame;
 }
 std::vector<std::string> get_texts(ByteReader& in) {
   std::vector<std::string> texts(in.count(4));
@@ -108,6 +115,51 @@ void get(ByteReader& in, Motion& motion) {
              std::int64_t{motion.channel_count} * motion.frame_count == std::ssize(motion.values));
 }
 
+void get(ByteReader& in, Keys& keys) {
+  for (std::size_t bones = in.count(44); bones > 0; --bones) {
+    auto& track = keys.bones[in.text()];
+    for (std::size_t count = in.count(36); count > 0; --count) {
+      const auto frame = get_frame(in);
+      track[frame] = get_rotation(in);
+    }
+    in.require(!track.empty());
+  }
+  for (std::size_t count = in.count(28); count > 0; --count) {
+    const auto frame = get_frame(in);
+    keys.root[frame] = get_vector(in);
+  }
+}
+
+void get(ByteReader& in, RetargetMap& map) {
+  for (std::size_t count = in.count(41); count > 0; --count) {
+    RetargetMap::Source& source = map.sources[in.text()];
+    source.joint = in.text();
+    const bool has_offset = in.flag();
+    const glm::dquat offset = get_rotation(in);
+    if (has_offset) source.rest_offset = offset;
+  }
+}
+
+void get(ByteReader& in, Clip& clip) {
+  clip.name = in.text();
+  clip.rate = in.get<double>();
+  in.require(std::isfinite(clip.rate) && clip.rate > 0);
+  for (int* number : {&clip.start, &clip.first, &clip.last, &clip.range_start, &clip.range_end}) *number = get_frame(in);
+  in.require(clip.first >= 0 && clip.first <= clip.last && (!clip.motion || clip.last < std::max(1, clip.motion->frame_count)));
+  get(in, clip.map);
+  clip.retarget.travel = static_cast<Travel>(in.get_below<std::uint8_t>(static_cast<int>(Travel::Free) + 1));
+  clip.retarget.mirror = in.flag();
+  clip.retarget.scale = in.get<double>();
+  in.require(std::isfinite(clip.retarget.scale) && clip.retarget.scale >= 0);
+  clip.retarget.reference = static_cast<Reference>(in.get_below<std::uint8_t>(static_cast<int>(Reference::FirstFrame) + 1));
+  get(in, clip.keys);
+  clip.markers.resize(in.count(8));
+  for (Marker& marker : clip.markers) {
+    marker.frame = get_frame(in);
+    marker.name = in.text();
+  }
+}
+
 void get(ByteReader& in, Visibility& visibility) {
   const std::size_t count = in.count(7);
   for (std::size_t i = 0; i < count; ++i) {
@@ -144,7 +196,8 @@ class Reading {
   Document document(const ChunkHash& root) {
     const Node node = this->node(root, "contents");
     ByteReader in(node.bytes, [this] { throw damaged("contents"); });
-    if (in.get<std::uint32_t>() != kDocumentLayout)
+    const auto layout = in.get<std::uint32_t>();
+    if (layout < 1 || layout > kDocumentLayout)
       throw Error("the document was written by a newer version of Limber", where_, "open it with that version");
     Document document;
     std::size_t next = 0;
@@ -159,16 +212,30 @@ class Reading {
     part(document.armature);
     part(document.weights);
     part(document.pose);
-    part(document.motion);
+    std::shared_ptr<const Motion> only_motion;
+    if (layout == 1) part(only_motion);
     part(document.visibility);
-    const auto results = in.get_below<std::uint32_t>(kMostResults);
-    in.require(node.nodes.size() - next == results);
-    for (; next < node.nodes.size(); ++next) {
-      std::shared_ptr<const Result> result;
-      read_or_leave_out(node.nodes[next], result);
-      if (result) document.results.push_back(std::move(result));
+    const auto list = [&]<class T>(std::vector<std::shared_ptr<const T>>& parts) {
+      const auto count = in.get_below<std::uint32_t>(kMostInList);
+      in.require(node.nodes.size() - next >= count);
+      for (const std::size_t end = next + count; next < end; ++next) {
+        std::shared_ptr<const T> one;
+        read_or_leave_out(node.nodes[next], one);
+        if (one) parts.push_back(std::move(one));
+      }
+    };
+    list(document.results);
+    if (layout == 1) {
+      if (only_motion) document.clips.push_back(std::make_shared<const Clip>(clip_of(only_motion, "Motion")));
+    } else {
+      list(document.clips);
+      document.clip = in.get<std::int32_t>();
+      document.frame = get_frame(in);
+      in.require(document.clip >= 0);
     }
+    in.require(next == node.nodes.size());
     in.end();
+    document.clip = std::clamp<int>(document.clip, 0, std::max<int>(0, static_cast<int>(document.clips.size()) - 1));
     leave_out_what_does_not_fit(document);
     progress_.update("open", 1);
     return document;
@@ -372,7 +439,7 @@ class Reading {
       in.require(next < node.nodes.size());
       pointer = read<T>(node.nodes[next++]);
     };
-    if (!node.leaves.empty()) return with_text_from_leaves(node, in);
+    if (!node.leaves.empty()) return from_leaves<Result>(node, in);
     part(result.volume);
     part(result.from_volume);
     part(result.from_tissues);
@@ -387,17 +454,30 @@ class Reading {
     return result;
   }
 
-  // A long report: the same bytes, from leaves.
-  Result with_text_from_leaves(const Node& node, ByteReader& in) {
+  Clip read_part(const Node& node, ByteReader& in, const Clip*) {
+    if (!node.leaves.empty()) return from_leaves<Clip>(node, in);
+    Clip clip;
+    const bool has_motion = in.flag();
+    in.require(node.nodes.size() == (has_motion ? 1 : 0));
+    if (has_motion) clip.motion = read<Motion>(node.nodes[0]);
+    get(in, clip);
+    in.end();
+    return clip;
+  }
+
+  // A long report, many keys: the same bytes, from leaves.
+  template <class T>
+  T from_leaves(const Node& node, ByteReader& in) {
+    const std::string what = PartKindOf<T>::kName;
     in.end();
     std::string bytes;
-    for_leaves(node.leaves, 0, "result", [&](std::int64_t, const std::string& leaf) {
-      take_memory(2 * std::ssize(leaf), "result");
+    for_leaves(node.leaves, 0, what, [&](std::int64_t, const std::string& leaf) {
+      take_memory(2 * std::ssize(leaf), what);
       bytes += leaf;
     });
-    ByteReader from_leaves(bytes, [this] { throw damaged("result"); });
+    ByteReader all(bytes, [&] { throw damaged(what); });
     const Node whole{node.nodes, {}, {}};
-    return read_part(whole, from_leaves, static_cast<const Result*>(nullptr));
+    return read_part(whole, all, static_cast<const T*>(nullptr));
   }
 
   void leave_out_what_does_not_fit(Document& document) {

@@ -97,6 +97,33 @@ void put(ByteWriter& out, const Visibility& visibility) {
   put(out, visibility.clip_plane.normal);
 }
 
+void put(ByteWriter& out, const Keys& keys) {
+  out.count(keys.bones.size());
+  for (const auto& [bone, track] : keys.bones) {
+    out.text(bone);
+    out.count(track.size());
+    for (const auto& [frame, rotation] : track) {
+      out.put(static_cast<std::int32_t>(frame));
+      put(out, rotation);
+    }
+  }
+  out.count(keys.root.size());
+  for (const auto& [frame, place] : keys.root) {
+    out.put(static_cast<std::int32_t>(frame));
+    put(out, place);
+  }
+}
+
+void put(ByteWriter& out, const RetargetMap& map) {
+  out.count(map.sources.size());
+  for (const auto& [bone, source] : map.sources) {
+    out.text(bone);
+    out.text(source.joint);
+    out.flag(source.rest_offset.has_value());
+    put(out, source.rest_offset.value_or(glm::dquat(1, 0, 0, 0)));
+  }
+}
+
 // The influences of a group of bricks, first bones then weights, each in a plane of its own: it packs better.
 std::string group_bytes(const SkinWeights& weights, std::int64_t group) {
   const std::int64_t first = group * kGroupBricks, end = std::min(weights.chunk_count(), first + kGroupBricks);
@@ -141,10 +168,13 @@ class DocumentWriter::Writing {
     part(document.weights);
     progress_.update("save", 0.75);
     part(document.pose);
-    part(document.motion);
     part(document.visibility);
     out.count(document.results.size());
     for (const auto& result : document.results) root.nodes.push_back(write(result));
+    out.count(document.clips.size());
+    for (const auto& clip : document.clips) root.nodes.push_back(write(clip));
+    out.put(static_cast<std::int32_t>(document.clip));
+    out.put(static_cast<std::int32_t>(document.frame));
     root.bytes = out.take();
     const ChunkHash hash = put_chunk(to_chunk(root));
     progress_.update("save", 1);
@@ -239,6 +269,25 @@ class DocumentWriter::Writing {
     out.text(result.name);
     out.text(result.method);
     out.text(result.report);
+  }
+
+  void fill(Node& node, ByteWriter& out, const Clip& clip) {
+    out.flag(clip.motion != nullptr);
+    if (clip.motion) node.nodes.push_back(write(clip.motion));
+    out.text(clip.name);
+    out.put(clip.rate);
+    for (int number : {clip.start, clip.first, clip.last, clip.range_start, clip.range_end}) out.put(static_cast<std::int32_t>(number));
+    put(out, clip.map);
+    out.put(static_cast<std::uint8_t>(clip.retarget.travel));
+    out.flag(clip.retarget.mirror);
+    out.put(clip.retarget.scale);
+    out.put(static_cast<std::uint8_t>(clip.retarget.reference));
+    put(out, clip.keys);
+    out.count(clip.markers.size());
+    for (const Marker& marker : clip.markers) {
+      out.put(static_cast<std::int32_t>(marker.frame));
+      out.text(marker.name);
+    }
   }
 
   template <class Bytes>

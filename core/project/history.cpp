@@ -43,6 +43,14 @@ std::int64_t own_bytes(const Motion& motion) {
   for (const std::string& warning : motion.warnings) bytes += heap_bytes(warning);
   return bytes;
 }
+std::int64_t own_bytes(const Clip& clip) {  // without its motion, which is shared
+  constexpr std::int64_t kNode = kBlock + 48;  // of a map
+  std::int64_t bytes = heap_bytes(clip.name) + heap_bytes(clip.markers) + kNode * std::ssize(clip.keys.root);
+  for (const auto& [bone, source] : clip.map.sources) bytes += kNode + std::int64_t{sizeof source} + heap_bytes(bone) + heap_bytes(source.joint);
+  for (const auto& [bone, track] : clip.keys.bones) bytes += kNode + heap_bytes(bone) + (kNode + 16) * std::ssize(track);
+  for (const Marker& marker : clip.markers) bytes += heap_bytes(marker.name);
+  return bytes;
+}
 std::int64_t own_bytes(const Visibility& visibility) {
   return static_cast<std::int64_t>(visibility.looks.size()) * (kBlock + std::int64_t{sizeof(std::pair<Label, TissueLook>)} + 32);
 }
@@ -95,10 +103,11 @@ class History::Ledger {
     count(document.armature, step);
     visit(document.weights, step);
     count(document.pose, step);
-    count(document.motion, step);
     count(document.visibility, step);
     for (const auto& result : document.results) visit(result, step);
-    bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results));
+    for (const auto& clip : document.clips)
+      if (count(clip, step)) count(clip->motion, step);
+    bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results) + heap_bytes(document.clips));
   }
 
   std::unordered_map<const void*, std::int64_t> uses_;
@@ -119,6 +128,15 @@ bool History::commit(std::string label, Document next) {
   ++position_;
   keep_within_limit();
   return true;
+}
+
+void History::amend(std::string label, Document next) {
+  if (next == current()) return;
+  for (; can_redo(); steps_.pop_back()) ledger_->remove(steps_.back().document);
+  ledger_->add(next);
+  ledger_->remove(current());
+  steps_.back() = {std::move(label), std::move(next), next_revision_++};
+  keep_within_limit();
 }
 
 void History::reset(Document first, std::string label) {

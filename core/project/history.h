@@ -37,6 +37,9 @@ class History {
   // Makes `next` current and forgets what could be redone. False, and nothing happens, when it equals the current document
   // (the same parts).
   bool commit(std::string label, Document next);
+  // In place of the current step, which becomes what it would have been at once: for many small steps of one deed. It is
+  // then the last step.
+  void amend(std::string label, Document next);
   // Another project: one step that counts as saved.
   void reset(Document first, std::string label);
 

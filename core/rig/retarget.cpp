@@ -8,7 +8,9 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/rig/body_skeleton.h"
+#include "core/rig/mirror.h"
 
 namespace limber {
 
@@ -279,7 +281,7 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
   // Offsets, at the moment when the source stands.
   const Skeleton rig = skeleton_of(armature);
   Skeleton source = skeleton_of(motion);
-  const int standing = standing_frame(motion, source);
+  const int standing = settings.reference == Reference::Found ? standing_frame(motion, source) : settings.reference == Reference::RestPose ? -1 : 0;
   place_joints(source, motion, standing);
   const auto world = forward_kinematics(motion, standing);
   const Alignment alignment(rig, source, joint_of_bone_, standing < 0);
@@ -289,7 +291,7 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
     const glm::dquat at_standing = lps_from_bvh(world[joint_of_bone_[b]].rotation);
     rest_offset_[b] = given ? *given : glm::normalize(glm::conjugate(at_standing) * alignment.turns()[b]);
   }
-  scale_ = scale_between(rig, source);
+  scale_ = settings.scale > 0 ? settings.scale : scale_between(rig, source);
 
   // Bones of the trunk that lie between matched ones: nearest below by walking up, nearest above by what walks up to them.
   for (size_t top = 0; top < joint_of_bone_.size(); ++top) {
@@ -301,6 +303,11 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
     for (size_t k = 0; k < gap.size(); ++k)
       if (between_[gap[k]].below < 0) between_[gap[k]] = {below, static_cast<int>(top), double(gap.size() - k) / double(gap.size() + 1)};
   }
+
+  std::vector<int> feet;
+  for (BodySide side : kSides)
+    if (const auto foot = rig.joint.find({BodyPart::Foot, side}); foot != rig.joint.end() && joint_of_bone_[foot->second] >= 0) feet.push_back(foot->second);
+  if (settings.travel == Travel::Free && !feet.empty()) follow_the_feet(feet);
 }
 
 RetargetMap Retarget::map() const {
@@ -313,6 +320,52 @@ RetargetMap Retarget::map() const {
 Pose Retarget::at(int frame) const {
   if (frame < 0 || frame >= motion_->frame_count)
     throw Error("the motion has no frame " + std::to_string(frame), "--frame", "choose one from 0 to " + std::to_string(motion_->frame_count - 1));
+  Pose pose = carried_over(frame);
+  if (!feet_.empty()) pose.root_translation += feet_[frame];
+  return settings_.mirror ? flipped(pose, *armature_) : pose;
+}
+
+// Legs of other proportions take steps of other lengths, so that a body that travels as the source's hips do slides. From
+// frame to frame, what its feet that stand moved more than the source's is taken off; of two that stand the stiller one
+// counts most.
+void Retarget::follow_the_feet(const std::vector<int>& feet) {
+  constexpr double kStanding = 200, kStill = 20;  // mm/s: slower feet stand; slower ones are alike
+  constexpr double kLifted = 60;                  // mm above its lowest place
+  const int frames = motion_->frame_count;
+  const std::size_t count = feet.size();
+  std::vector<glm::dvec3> source(frames * count), rig(frames * count);
+  parallel_for(frames, 64, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t frame = begin; frame < end; ++frame) {
+      const auto joints = forward_kinematics(*motion_, static_cast<int>(frame));
+      const auto posed = posed_from_rest(*armature_, carried_over(static_cast<int>(frame)));
+      for (std::size_t i = 0; i < count; ++i) {
+        source[frame * count + i] = scale_ * lps_from_bvh(joints[joint_of_bone_[feet[i]]].translation);
+        rig[frame * count + i] = posed[feet[i]] * armature_->bones[feet[i]].head;
+      }
+    }
+  });
+
+  std::vector<double> ground(count, 1e300);
+  for (std::size_t k = 0; k < source.size(); ++k) ground[k % count] = std::min(ground[k % count], source[k].z);
+  feet_.assign(frames, glm::dvec3(0));
+  for (int frame = 1; frame < frames; ++frame) {
+    glm::dvec3 slid(0);
+    double weights = 0, standing = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t now = frame * count + i, before = now - count;
+      const glm::dvec3 moved = source[now] - source[before], ours = rig[now] - rig[before];
+      const double speed = std::hypot(moved.x, moved.y) / motion_->frame_time, height = source[now].z - ground[i];
+      const double stands = std::clamp(2 - speed / kStanding, 0.0, 1.0) * std::clamp(2 - height / kLifted, 0.0, 1.0);
+      const double weight = stands / (speed * speed + kStill * kStill);
+      slid += weight * glm::dvec3(ours.x - moved.x, ours.y - moved.y, 0);
+      weights += weight;
+      standing = std::max(standing, stands);
+    }
+    feet_[frame] = feet_[frame - 1] - (weights > 0 ? standing / weights * slid : glm::dvec3(0));
+  }
+}
+
+Pose Retarget::carried_over(int frame) const {
   const auto source = forward_kinematics(*motion_, frame);
   const size_t count = joint_of_bone_.size();
   auto matched = [&](int bone) { return glm::normalize(lps_from_bvh(source[joint_of_bone_[bone]].rotation) * rest_offset_[bone]); };
@@ -332,12 +385,13 @@ Pose Retarget::at(int frame) const {
     pose.rotation[b] = glm::normalize(glm::conjugate(carried) * posed[b]);
   }
 
-  if (!settings_.in_place) {
+  if (settings_.travel != Travel::Locked) {
     const auto first = std::find_if(joint_of_bone_.begin(), joint_of_bone_.end(), [](int joint) { return joint >= 0; });
     if (first != joint_of_bone_.end()) {
       const auto start = forward_kinematics(*motion_, 0);
       pose.root_translation = scale_ * lps_from_bvh(source[*first].translation - start[*first].translation);
     }
+    if (settings_.travel == Travel::InPlace) pose.root_translation.x = pose.root_translation.y = 0;
   }
   return pose;
 }

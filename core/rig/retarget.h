@@ -27,9 +27,12 @@ struct RetargetMap {
   struct Source {
     std::string joint;
     std::optional<glm::dquat> rest_offset;  // as above; without one it is found
+
+    bool operator==(const Source&) const = default;
   };
   std::map<std::string, Source> sources;  // by rig bone; bones that are not named follow
 
+  bool operator==(const RetargetMap&) const = default;
   // The bone's source joint, empty when it has none.
   std::string joint_of(const std::string& bone) const;
 };
@@ -43,8 +46,23 @@ RetargetMap read_retarget_map(const Path& path, const Motion& motion, const Arma
 RetargetMap parse_retarget_map(const std::string& text, const std::string& where, const Motion& motion, const Armature& armature);
 void write_retarget_map(const RetargetMap& map, const Path& path);
 
+// How the body goes with the source's hips.
+enum class Travel {
+  Locked,   // stays where it rests
+  InPlace,  // goes up and down, and nowhere else
+  Free,     // goes as the source does since frame 0, and so that its feet on the ground slide as little as the source's
+};
+
+// The moment at which the source stands as the rig rests.
+enum class Reference { Found, RestPose, FirstFrame };
+
 struct RetargetSettings {
-  bool in_place = true;  // false: the body travels as the source does since frame 0 (--root-motion)
+  Travel travel = Travel::Locked;
+  bool mirror = false;  // left and right change places
+  double scale = 0;     // of the travel: mm for a unit of the file; 0: by the legs' lengths
+  Reference reference = Reference::Found;
+
+  bool operator==(const RetargetSettings&) const = default;
 };
 
 // Prepared once, asked for many frames. Invariant: `motion` and `armature` outlive it.
@@ -53,12 +71,15 @@ class Retarget {
   // Throws Error when the motion has no frames.
   Retarget(const Motion& motion, const Armature& armature, const RetargetMap& map, const RetargetSettings& settings = {});
 
-  Pose at(int frame) const;               // throws Error for a frame the motion lacks
+  Pose at(int frame) const;  // throws Error for a frame the motion lacks
   int joint_of(int bone) const { return joint_of_bone_[bone]; }  // -1 where unmatched
   double scale() const { return scale_; }                        // mm per file unit
   RetargetMap map() const;                                       // with the offsets that are in use
 
  private:
+  Pose carried_over(int frame) const;  // without what the feet add to the travel
+  void follow_the_feet(const std::vector<int>& feet);
+
   const Motion* motion_;
   const Armature* armature_;
   RetargetSettings settings_;
@@ -70,6 +91,7 @@ class Retarget {
   };
   std::vector<Between> between_;  // per bone; below = -1 where it follows its parent
   double scale_ = 1;
+  std::vector<glm::dvec3> feet_;  // by frame, where the body travels freely: added to its place
 };
 
 }  // namespace limber

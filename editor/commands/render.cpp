@@ -85,9 +85,9 @@ Visibility visibility_of(const Options& options, const TissueTable& tissues, Vis
   return visibility;
 }
 
-Clip clip_of(const Options& options, const Visibility& visibility) {
+render::Clip clip_of(const Options& options, const Visibility& visibility) {
   const auto point = [](const std::vector<double>& v, size_t first) { return glm::dvec3(v[first], v[first + 1], v[first + 2]); };
-  Clip clip;
+  render::Clip clip;
   if (visibility.clip_box.enabled) clip.box = {visibility.clip_box.low, visibility.clip_box.high};
   if (visibility.clip_plane.enabled) clip.plane = {visibility.clip_plane.point, visibility.clip_plane.normal};
   if (!options.clip_box.empty()) {
@@ -183,7 +183,7 @@ std::pair<glm::dvec3, glm::dvec3> box_of_tissue(const LabelVolume& volume, const
 }
 
 // The world box of the tissue (and the clip box), which the picture is to show.
-std::array<glm::dvec3, 2> box_of_tissue(const Scene& scene, const Clip& clip) {
+std::array<glm::dvec3, 2> box_of_tissue(const Scene& scene, const render::Clip& clip) {
   const LabelVolume& volume = *scene.volume;
   glm::ivec3 low = volume.grid.size, high(-1);
   size_t i = 0;

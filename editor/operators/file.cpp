@@ -61,7 +61,7 @@ Operator sample(const char* id, Sample which) {
   return {id, facts_of(which).name, icon::kVolume, "File", "Opens a made-up body to try things on.", [which](Editor& e) { open_sample(e, which); }};
 }
 
-std::string nothing_open(const Editor& editor) { return editor.document().volume || editor.document().armature || editor.document().motion ? "" : "There is nothing to save yet"; }
+std::string nothing_open(const Editor& editor) { return editor.document().volume || editor.document().armature || !editor.document().clips.empty() ? "" : "There is nothing to save yet"; }
 
 }  // namespace
 

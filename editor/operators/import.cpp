@@ -5,6 +5,7 @@
 #include "editor/operators/files.h"
 #include "editor/operators/polls.h"
 #include "editor/panels/file_browser.h"
+#include "editor/retargeting.h"
 
 namespace limber::editor {
 
@@ -25,7 +26,7 @@ Operator import_operator(const ImportFacts& facts, std::string (*why_not)(const 
                        .filters = {facts.filter},
                        .takes_dicom = facts.kind == FileKind::Volume,
                        .folder = e.project_path.parent_path(),
-                       .chosen = [kind = facts.kind](Editor& ed, const Path& path) { import_file(ed, kind, path); }});
+                       .chosen = [kind = facts.kind](Editor& ed, const Path& path) { kind == FileKind::Motion ? import_motion(ed, path) : import_file(ed, kind, path); }});
           },
           why_not};
 }
@@ -49,7 +50,7 @@ void import_any(Editor& editor) {
                   .chosen = [](Editor& e, const Path& path) {
                     start_task(e, "Import " + path.filename().string(), [path](Progress&) -> Finish {
                       const FileKind kind = kind_of(path);
-                      return [kind, path](Editor& ed) { kind == FileKind::Project ? open_project(ed, path) : import_file(ed, kind, path); };
+                      return [kind, path](Editor& ed) { kind == FileKind::Project ? open_project(ed, path) : kind == FileKind::Motion ? import_motion(ed, path) : import_file(ed, kind, path); };
                     });
                   }});
 }

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "editor/editor.h"
+#include "editor/timeline.h"
 
 namespace limber::editor {
 
@@ -22,13 +23,19 @@ void note_use(Editor& editor, const Operator& op) {
   editor.preferences.command_counts[op.id] += 1;
 }
 
+// Looking around and choosing do not touch the pose.
+bool goes_on_while_playing(const Operator& op) {
+  constexpr const char* kSuch[] = {"view.", "slice.", "select.", "motion.", "workspace.", "compare.", "search.", "help.", "file.save"};
+  return std::any_of(std::begin(kSuch), std::end(kSuch), [&](const char* such) { return op.id.starts_with(such); });
+}
+
 }  // namespace
 
 std::vector<Operator> gather_operators() {
   std::vector<Operator> all;
   for (auto list : {file_operators, import_operators, export_operators, edit_operators, workspace_operators, view_operators, navigation_operators, clip_operators,
                     slice_operators, tissue_operators, select_operators, search_operators, preferences_operators, prepare_operators, skin_operators, pose_operators,
-                    resample_operators, help_operators})
+                    motion_operators, motion_clip_operators, resample_operators, help_operators})
     for (Operator& op : list()) all.push_back(std::move(op));
   return all;
 }
@@ -58,6 +65,7 @@ bool attempt(Editor& editor, const std::string& label, const std::function<void(
 void run(Editor& editor, const Operator& op) {
   editor.touch();
   if (const std::string reason = why_not(editor, op); !reason.empty()) return editor.messages.info(op.label, reason);
+  if (!goes_on_while_playing(op)) stop_playing(editor);
   if (attempt(editor, op.label, op.run)) note_use(editor, op);
 }
 

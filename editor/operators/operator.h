@@ -40,6 +40,8 @@ std::vector<Operator> preferences_operators();
 std::vector<Operator> prepare_operators();
 std::vector<Operator> skin_operators();
 std::vector<Operator> pose_operators();
+std::vector<Operator> motion_operators();
+std::vector<Operator> motion_clip_operators();
 std::vector<Operator> resample_operators();
 std::vector<Operator> help_operators();
 // All of the above.

@@ -66,13 +66,14 @@ class Flicker final : public Modal {
   Key key_;
 };
 
-bool results_seen(const Editor& editor) { return editor.arrangement().results && !editor.arrangement().console; }
+bool results_seen(const Editor& editor) { return editor.arrangement().results && !editor.arrangement().console && !editor.arrangement().timeline; }
 
-// The console gives way.
-void toggle_results(Editor& editor) {
-  editor.arrangement().results = !results_seen(editor);
-  if (editor.arrangement().results) editor.arrangement().console = false;
+// What else stands there gives way.
+void show_results(Editor& editor, bool shown) {
+  editor.arrangement().results = shown;
+  if (shown) editor.arrangement().console = editor.arrangement().timeline = false;
 }
+void toggle_results(Editor& editor) { show_results(editor, !results_seen(editor)); }
 
 void delete_result(Editor& editor) {
   const auto gone = chosen_result(editor);
@@ -106,8 +107,7 @@ std::vector<Operator> resample_operators() {
       {"result.rename", "Rename result...", icon::kRename, "Result", "Gives the chosen result another name, in the table below the views.",
        [](Editor& e) {
          e.renaming_result = {chosen_result(e)->name, chosen_result(e)->name};
-         e.arrangement().results = true;
-         e.arrangement().console = false;
+         show_results(e, true);
        },
        needs_result},
       {"result.delete", "Delete result", icon::kTrash, "Result", "Takes the chosen result out of the project.", delete_result, needs_result},

@@ -51,6 +51,12 @@ void toggle_xray(Editor& editor) {
   editor.views->display = editor.views->display == render::Display::XRay ? render::Display::Solid : render::Display::XRay;
 }
 
+bool timeline_seen(const Editor& editor) { return editor.arrangement().timeline && !editor.arrangement().console; }
+void toggle_timeline(Editor& editor) {
+  editor.arrangement().timeline = !timeline_seen(editor);
+  if (editor.arrangement().timeline) editor.arrangement().console = false;
+}
+
 }  // namespace
 
 std::vector<Operator> view_operators() {
@@ -76,6 +82,7 @@ std::vector<Operator> view_operators() {
        [](Editor& e) { e.arrangement().sidebar = e.layout.sidebar.empty(); }, nullptr, [](const Editor& e) { return !e.layout.sidebar.empty(); }},
       {"view.tool_strip", "Tool strip", "", "View", "Shows or hides the tools at the left.",
        [](Editor& e) { e.arrangement().tool_strip = !e.arrangement().tool_strip; }, nullptr, [](const Editor& e) { return e.arrangement().tool_strip; }},
+      {"view.timeline", "Timeline", icon::kMotion, "View", "Opens or closes the timeline below the views.", toggle_timeline, nullptr, timeline_seen},
       {"view.console", "Console", icon::kConsole, "Help", "Opens or closes the list of messages below the views.",
        [](Editor& e) { e.arrangement().console = !e.arrangement().console; }, nullptr, [](const Editor& e) { return e.arrangement().console; }},
       {"view.context_menu", "Menu", "", "View", "Lists what can be done with what is under the pointer.", open_context_menu},

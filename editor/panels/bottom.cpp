@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The area below the views: the console where it is open, else the results.
+// The area below the views: the console where it is open, else the timeline, else the results.
 #include "editor/panels/panels.h"
 
 namespace limber::editor {
@@ -10,7 +10,9 @@ void draw_bottom(Editor& editor) {
   begin_region(editor, Region::Bottom, "bottom", rect, editor.look.theme.panel);
   Rect seen = rect;
   if (editor.layout.sidebar_over_views && !editor.layout.sidebar.empty()) seen.high.x = std::min(seen.high.x, editor.layout.sidebar.low.x);
-  editor.arrangement().console ? draw_console(editor, seen) : draw_results(editor, seen);
+  if (editor.arrangement().console) draw_console(editor, seen);
+  else if (editor.arrangement().timeline) draw_timeline(editor, seen);
+  else draw_results(editor, seen);
   end_region(editor);
 }
 

@@ -35,6 +35,7 @@ void draw_tissues(Editor& editor, Column& column);
 void draw_tissue(Editor& editor, Column& column);
 void draw_clipping(Editor& editor, Column& column);
 void draw_under_cursor(Editor& editor, Column& column);
+void draw_motion(Editor& editor, Column& column);
 void draw_history(Editor& editor, Column& column);
 void draw_live_volume(Editor& editor, Column& column);
 void draw_steps(Editor& editor, Column& column);
@@ -44,6 +45,7 @@ void draw_resample(Editor& editor, Column& column);
 // In the bottom area
 void draw_console(Editor& editor, const Rect& rect);
 void draw_results(Editor& editor, const Rect& rect);
+void draw_timeline(Editor& editor, const Rect& rect);
 
 // In the status bar: the job at work takes its place left of `right`; returns what is left.
 float draw_job_slot(Editor& editor, const Rect& bar, float right);

@@ -36,7 +36,10 @@ void draw_sidebar(Editor& editor) {
       draw_running(editor, column);
       draw_resample(editor, column);
     }
-    if (editor.workspace == Workspace::Pose) draw_live_volume(editor, column);
+    if (editor.workspace == Workspace::Pose) {
+      draw_live_volume(editor, column);
+      draw_motion(editor, column);
+    }
     draw_outliner(editor, column);
     draw_tissues(editor, column);
     draw_tissue(editor, column);

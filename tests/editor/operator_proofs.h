@@ -70,6 +70,8 @@ std::vector<Proof> proofs_of_files();
 std::vector<Proof> proofs_of_pages();
 std::vector<Proof> proofs_of_posing();
 std::vector<Proof> proofs_of_comparing();
+std::vector<Proof> proofs_of_motion();
+std::vector<Proof> proofs_of_clips();
 
 void prove(Stage& stage, const std::vector<Proof>& proofs);
 

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/pose/pose_io.h"
 #include "core/rig/armature_io.h"
+#include "core/rig/motion_edit.h"
 #include "core/skin/weights_io.h"
 #include "tests/editor/sitting.h"
 #include "tests/support/bent_tube.h"
@@ -25,7 +26,7 @@ struct TubeFiles : Home {
     write_weights(tube.weights, tube.volume, TissueVoxels(tube.volume), *this / "weights.nrrd");
     write_pose(tube.pose(60), tube.rig, *this / "pose.json");
     write_tissue_table(tube.tissues, *this / "tissues.json");
-    write_bvh(motion_of(tube.rig), *this / "motion.bvh");
+    write_bvh(motion_of_poses(tube.rig, 1, 30, [&](int) { return rest_pose(tube.rig); }), *this / "motion.bvh");
   }
   BentTube tube;
 };
@@ -55,7 +56,7 @@ TEST_CASE("opening: a volume and what belongs to it come in together, dropped in
   CHECK(document.weights->size() == files.tube.weights.size());
   CHECK(document.armature->bones.size() == 2);
   CHECK(document.pose->rotation.size() == 2);
-  CHECK(document.motion->joints.size() == 2);
+  CHECK(document.shown_clip()->motion->joints.size() == 2);
   sitting.play("key Ctrl+Z\n key Ctrl+Z\n key Ctrl+Z\n key Ctrl+Z\n expect volume yes");
   CHECK_FALSE(sitting.editor().document().armature);
 }
@@ -103,7 +104,7 @@ TEST_CASE("import and export: each kind of file goes out through its menu and co
     }
   }
   Sitting again(files.folder.path(), {files / "out-volume.nrrd"});
-  for (const char* name : {"out-rig.json", "out-weights.nrrd", "out-pose.json", "out-motion.bvh", "out-tissues.json"}) {
+  for (const char* name : {"out-rig.json", "out-weights.nrrd", "out-motion.bvh", "out-pose.json", "out-tissues.json"}) {
     INFO(name);
     editor::open_files(again.editor(), {files / name});
     again.play("wait-job\n expect error none");
@@ -113,7 +114,7 @@ TEST_CASE("import and export: each kind of file goes out through its menu and co
   CHECK(*after.weights == *before.weights);
   CHECK(*after.pose == *before.pose);
   CHECK(after.armature->bones.size() == before.armature->bones.size());
-  CHECK(after.motion->joints == before.motion->joints);
+  CHECK(after.shown_clip()->motion->joints == before.shown_clip()->motion->joints);
 }
 
 TEST_CASE("export: the view is written as a picture, and turned all around without holding up the editor") {

@@ -9,6 +9,7 @@
 #include "editor/opening.h"
 #include "render/image_io.h"
 #include "tests/editor/operator_proofs.h"
+#include "tests/editor/small_clip.h"
 
 namespace limber::test {
 
@@ -32,6 +33,10 @@ std::string answer(const std::string& menu, const std::string& name) { return "c
 template <class Part>
 Effect brings(const char* file, Part Document::*part) {
   return [=](Stage& s, const Seen& b) { return s.is("edit", (std::string("Import ") + file).c_str()) && s.document().*part && s.document().*part != b.document.*part; };
+}
+
+Effect brings_clip(const char* name) {
+  return [=](Stage& s, const Seen& b) { return s.is("edit", std::string("Import ") + name + ".bvh") && s.document().clips.size() == b.document.clips.size() + 1 && s.is("clip", name); };
 }
 
 // One element of a DICOM file, explicit and little-endian.
@@ -88,7 +93,7 @@ void leave_edits(Stage& s) {
   {
     const auto session = Session::start({.edits_folder = s.home / "edits"});
     session->keep(document, "Open limb");
-    document.motion = std::make_shared<const Motion>(motion_of(*document.armature));
+    document.clips = {std::make_shared<const Clip>(clip_of(std::make_shared<const Motion>(motion_of(*document.armature)), "Motion"))};
     session->keep(document, "An edit");
     REQUIRE(session->flush(20));
   }
@@ -123,9 +128,9 @@ std::vector<Proof> proofs_of_files() {
       {"file.export_weights", answer("File/Export/Weights...", "out-weights"), writes("out-weights.nrrd", [](const Path& p, const Document&) { return kind_of(p) == FileKind::Weights; }), Shows::Nothing, "click Edit/Weights/Rigid\n wait-job"},
       {"file.export_pose", answer("File/Export/Pose...", "out-pose"), writes("out-pose.json", [](const Path& p, const Document& d) { return read_pose(p, *d.armature) == *d.pose; }), Shows::Nothing,
        "click \"Edit/Pose/Flex a joint...\"\n double-click Angle/value\n type \"30\"\n key Return\n key Return"},
-      {"file.import_motion", answer("File/Import/Motion...", "moves.bvh"), brings("moves.bvh", &Document::motion), Shows::Nothing, "",
-       [](Stage& s) { write_bvh(motion_of(*s.document().armature), s.home / "moves.bvh"); }},
-      {"file.export_motion", answer("File/Export/Motion...", "out-motion"), writes("out-motion.bvh", [](const Path& p, const Document& d) { return read_bvh(p).joints == d.motion->joints; })},
+      {"file.import_motion", answer("File/Import/Motion...", "moves.bvh") + "\n wait-idle\n key Return", brings_clip("moves"), Shows::Nothing, "",
+       [](Stage& s) { write_bvh(bending_motion(*s.document().armature), s.home / "moves.bvh"); }},
+      {"file.export_motion", answer("File/Export/Motion...", "out-motion"), writes("out-motion.bvh", [](const Path& p, const Document& d) { return read_bvh(p).joints == d.shown_clip()->motion->joints; })},
       {"view.screenshot", "key F12\n type view\n key Return\n wait-job", writes("view.png", [](const Path& p, const Document&) { return render::read_png(p).size.x > 300; })},
       {"view.turntable", "key Ctrl+F12\n type turn\n key Return\n wait-job",
        writes("turn-0035.png", [](const Path& p, const Document&) { return render::read_png(p).rgba != render::read_png(p.parent_path() / "turn-0009.png").rgba; })},
@@ -135,7 +140,7 @@ std::vector<Proof> proofs_of_files() {
       {"file.import_weights", answer("File/Import/Weights...", "out-weights.nrrd"), brings("out-weights.nrrd", &Document::weights)},
       {"file.import_pose", answer("File/Import/Pose...", "out-pose.json"), brings("out-pose.json", &Document::pose), Shows::InBody, "key Ctrl+3"},
       {"file.import_tissues", answer("File/Import/Tissues...", "out-tissues.json"), brings("out-tissues.json", &Document::tissues)},
-      {"file.import", "key Ctrl+I\n type out-motion.bvh\n key Return\n wait-job", brings("out-motion.bvh", &Document::motion)},
+      {"file.import", "key Ctrl+I\n type out-motion.bvh\n key Return\n wait-job\n wait-idle\n key Return", brings_clip("out-motion")},
 
       {"file.new", "key Ctrl+N\n click \"Don't save\"", [](Stage& s, const Seen& b) { return b.document.volume && !s.document().volume && !s.document().armature; }},
       {"file.open", "click File/Open...\n type limb.limber\n key Return\n wait-job", [](Stage& s, const Seen&) { return s.is("name", "limb.limber") && s.is("hidden", "1") && s.document().armature; }},
@@ -152,7 +157,7 @@ std::vector<Proof> proofs_of_files() {
   proofs.push_back(sample("file.sample_body", "Body", becomes("name", "Body")));
   proofs.push_back(sample("file.sample_body_open", "Body, opened", [](Stage& s, const Seen&) { return s.is("name", "Body, opened") && s.fact("hidden") != "0"; }));
   proofs.push_back({"file.open_recent", "key Ctrl+Shift+O", [](Stage& s, const Seen&) { return s.editor().start_screen && s.is("text:Samples"); }});
-  proofs.push_back({"file.recover", "click File/Recover...\n click dialog/Recover\n wait-job", [](Stage& s, const Seen&) { return s.editor().life.recoverable.empty() && s.document().motion && s.is("unsaved", "yes"); }, Shows::Nothing, "", leave_edits});
+  proofs.push_back({"file.recover", "click File/Recover...\n click dialog/Recover\n wait-job", [](Stage& s, const Seen&) { return s.editor().life.recoverable.empty() && s.document().shown_clip() && s.is("unsaved", "yes"); }, Shows::Nothing, "", leave_edits});
   proofs.push_back({"file.quit", "key Ctrl+Q\n click \"Don't save\"", becomes("quit", "yes")});
   return proofs;
 }

@@ -48,6 +48,16 @@ bool equal(const Visibility& a, const Visibility& b) { return a == b; }
 template <class T>
 bool equal(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>& b);
 
+template <class Track>
+bool same_track(const Track& a, const Track& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return x.first == y.first && same(x.second, y.second); });
+}
+bool equal(const Clip& a, const Clip& b) {
+  const auto same_bone = [](const auto& x, const auto& y) { return x.first == y.first && same_track(x.second, y.second); };
+  return a.name == b.name && equal(a.motion, b.motion) && same(a.rate, b.rate) && a.start == b.start && a.first == b.first && a.last == b.last && a.map == b.map &&
+         a.retarget == b.retarget && a.range_start == b.range_start && a.range_end == b.range_end && a.markers == b.markers && same_track(a.keys.root, b.keys.root) &&
+         std::equal(a.keys.bones.begin(), a.keys.bones.end(), b.keys.bones.begin(), b.keys.bones.end(), same_bone);
+}
 bool equal(const Result& a, const Result& b) {
   return a.name == b.name && a.method == b.method && a.report == b.report && equal(a.volume, b.volume) && equal(a.from_volume, b.from_volume) &&
          equal(a.from_tissues, b.from_tissues) && equal(a.from_armature, b.from_armature) && equal(a.from_weights, b.from_weights) &&
@@ -106,6 +116,17 @@ Motion short_motion() {
   return motion;
 }
 
+Clip keyed_clip() {
+  Clip clip = clip_of(shared(short_motion()), "walk \xff", 7);
+  clip.map.sources = {{"Lower", {"Hips", glm::dquat(0.5, -0.5, 0.5, -0.0)}}, {"Upper", {"Hips", {}}}};
+  clip.retarget = {.travel = Travel::InPlace, .mirror = true, .scale = 2.54, .reference = Reference::FirstFrame};
+  clip.range_end = 99;
+  clip.keys.bones["Lower"] = {{-5, {1, 0, 0, 0}}, {12, {0.1, 0.2, 0.3, 0.4}}};
+  clip.keys.root[12] = {1e-300, -0.0, 7};
+  clip.markers = {{3, "step"}, {3, ""}};
+  return clip;
+}
+
 Result result_of(const Document& document, std::mt19937& random) {
   LabelVolume posed = *document.volume;
   for (int i = 0; i < 20; ++i) posed.voxels[random() % posed.voxels.size()] = static_cast<Label>(below(random, 3));
@@ -117,12 +138,12 @@ Result result_of(const Document& document, std::mt19937& random) {
 
 bool same_contents(const Document& a, const Document& b) {
   if (!equal(a.volume, b.volume) || !equal(a.tissues, b.tissues) || !equal(a.volume_type, b.volume_type) || !equal(a.armature, b.armature) ||
-      !equal(a.weights, b.weights) || !equal(a.pose, b.pose) || !equal(a.motion, b.motion) || !equal(a.visibility, b.visibility) ||
+      !equal(a.weights, b.weights) || !equal(a.pose, b.pose) || !equal(a.visibility, b.visibility) ||
       a.results.size() != b.results.size())
     return false;
   for (std::size_t i = 0; i < a.results.size(); ++i)
     if (!equal(a.results[i], b.results[i])) return false;
-  return true;
+  return a.clip == b.clip && a.frame == b.frame && std::equal(a.clips.begin(), a.clips.end(), b.clips.begin(), b.clips.end(), [](const auto& x, const auto& y) { return equal(x, y); });
 }
 
 Document small_document() {
@@ -134,7 +155,9 @@ Document small_document() {
   document.armature = shared(two_bones());
   document.weights = shared(SkinWeights({"Upper", "Lower"}, TissueVoxels(*document.volume)));
   document.pose = shared(rest_pose(*document.armature));
-  document.motion = shared(short_motion());
+  document.clips = {shared(keyed_clip()), shared(Clip{.name = "Keys alone", .rate = 23.976})};
+  document.clip = 1;
+  document.frame = -3;
   document.visibility = shared(Visibility{.looks = {{2, {.visible = false, .opacity = 0.25f}}}});
   document.results.push_back(shared(result_of(document, random)));
   return document;
@@ -142,7 +165,16 @@ Document small_document() {
 
 Document random_edit(const Document& document, std::mt19937& random) {
   Document next = document;
-  switch (below(random, 8)) {
+  switch (below(random, 9)) {
+    case 8: {
+      Clip clip = document.clips.empty() ? Clip{.name = "New"} : *document.clips[0];
+      clip.keys.bones["Lower"][below(random, 50)] = glm::angleAxis(unit(random), glm::dvec3(1, 0, 0));
+      clip.markers.push_back({below(random, 50), "m"});
+      next.clips = {shared(std::move(clip))};
+      next.clip = 0;
+      next.frame = below(random, 50);
+      break;
+    }
     case 0: {
       TissueTable table = *document.tissues;
       table.tissues[random() % table.tissues.size()].name = "tissue " + std::to_string(random());

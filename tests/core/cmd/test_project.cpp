@@ -41,7 +41,7 @@ TEST_CASE("project command: what create puts in, inspect and info tell and expor
   CHECK(json["weights"]["voxels"] == json["volume"]["tissue_voxels"]);
   CHECK(json["bones"].size() == json["weights"]["bones"]);
   CHECK(json["posed_bones"].empty());
-  CHECK(json["motion"]["frames"] > 0);
+  CHECK(json["clips"][0]["frames"] > 0);
   CHECK(run_limber({"info", folder / "arm.limber", "--json"}).out == inspected.out);
   CHECK(run_limber({"info", folder / "arm.limber"}).out.starts_with("kind        project"));
   CHECK(project(folder, {"verify"}).exit_code == 0);

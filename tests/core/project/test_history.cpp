@@ -142,3 +142,21 @@ TEST_CASE("history: a document larger than the limit still leaves half of the li
   CHECK(history.steps().size() == 11);
   CHECK(history.dropped() == 0);
 }
+
+TEST_CASE("history: an amended step is one step, and memory counts it once") {
+  const Document first = small_document();
+  History history(first);
+  history.commit("Frame 1", with_pose(first, 1));
+  history.commit("Turn", with_pose(first, 2));
+  history.undo();
+  const std::int64_t before = history.bytes();
+  for (int i = 0; i < 50; ++i) history.amend("Frame " + std::to_string(i), with_pose(first, i));
+  CHECK(history.steps().size() == 2);
+  CHECK_FALSE(history.can_redo());
+  CHECK(history.bytes() < before);
+  CHECK(history.current().pose->root_translation.x == 49);
+  CHECK(history.steps()[1].label == "Frame 49");
+  CHECK(history.unsaved());
+  history.undo();
+  CHECK(history.current() == first);
+}

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/rig/armature_io.h"
+#include "core/rig/mirror.h"
 #include "tests/support/program.h"
 #include "tests/support/shared_data.h"
 
@@ -148,9 +149,20 @@ TEST_CASE("retarget: in place the root stays, with root motion it travels scaled
   const Armature rig = hanging_body();
   const RetargetMap map = match_by_names(motion, rig);
   CHECK(Retarget(motion, rig, map).at(2).root_translation == glm::dvec3(0));
-  const Retarget travelling(motion, rig, map, {.in_place = false});
+  const Retarget travelling(motion, rig, map, {.travel = Travel::Free});
   CHECK(travelling.scale() == doctest::Approx(820.0 / 8).epsilon(1e-6));
   CHECK(glm::length(travelling.at(2).root_translation - glm::dvec3(2 * 820.0 / 8, 0, 0)) < 1e-4);
+  CHECK(Retarget(motion, rig, map, {.travel = Travel::InPlace}).at(2).root_translation == glm::dvec3(0, 0, travelling.at(2).root_translation.z));
+  CHECK(Retarget(motion, rig, map, {.travel = Travel::Free, .scale = 10}).at(2).root_translation.x == doctest::Approx(20));
+}
+
+TEST_CASE("retarget: in the mirror each side does what the other one did") {
+  const Motion motion = t_pose_body({{0, 0, 0}, {10, 20, 30}});
+  const Armature rig = hanging_body();
+  const RetargetMap map = match_by_names(motion, rig);
+  const Pose plain = Retarget(motion, rig, map).at(1), mirrored = Retarget(motion, rig, map, {.mirror = true}).at(1);
+  CHECK(mirrored == flipped(plain, rig));
+  CHECK_FALSE(mirrored == plain);
 }
 
 TEST_CASE("retarget: a map of one's own is read, written and held to what is there") {
@@ -186,6 +198,38 @@ TEST_CASE("retarget: real motions keep the directions of matched bones on real r
       CAPTURE(names);
       CHECK(largest_difference(read_bvh(test::shared_path(file)), read_armature(test::shared_path(rig_file)), 7) < 1e-4);
     }
+}
+
+TEST_CASE("retarget: a body that walks freely slides on its standing feet no more than the source does") {
+  for (const char* rig_file : {"data/bp3d/body.armature.json", "data/makehuman/body.armature.json"}) {
+    NEEDS_SHARED("data/bvh/cmu_12_01_walk.bvh");
+    NEEDS_SHARED(rig_file);
+    CAPTURE(std::string(rig_file));
+    const Motion motion = read_bvh(test::shared_path("data/bvh/cmu_12_01_walk.bvh"));
+    const Armature rig = read_armature(test::shared_path(rig_file));
+    const Retarget retarget(motion, rig, match_by_names(motion, rig), {.travel = Travel::Free});
+    double theirs = 0, ours = 0;
+    for (int joint = 0; joint < std::ssize(motion.joints); ++joint) {
+      if (motion.joints[joint].name != "LeftFoot" && motion.joints[joint].name != "RightFoot") continue;
+      int bone = 0;
+      while (retarget.joint_of(bone) != joint) ++bone;
+      std::vector<glm::dvec3> source, posed;
+      for (int frame = 0; frame < motion.frame_count; ++frame) {
+        source.push_back(retarget.scale() * lps_from_bvh(forward_kinematics(motion, frame)[joint].translation));
+        posed.push_back(posed_from_rest(rig, retarget.at(frame))[bone] * rig.bones[bone].head);
+      }
+      double ground = 1e9;
+      for (const glm::dvec3& place : source) ground = std::min(ground, place.z);
+      for (std::size_t f = 1; f < source.size(); ++f) {
+        const double step = glm::length(glm::dvec2(source[f] - source[f - 1]));
+        if (step / motion.frame_time > 100 || source[f].z > ground + 30) continue;
+        theirs += step;
+        ours += glm::length(glm::dvec2(posed[f] - posed[f - 1]));
+      }
+    }
+    CHECK(theirs > 20);
+    CHECK(ours < 1.05 * theirs);
+  }
 }
 
 TEST_CASE("retarget: real motions find the limbs of real rigs") {

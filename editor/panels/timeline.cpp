@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Below the views: the transport, and under it time itself: ruler, markers, the clip with the chosen bone's angle, keys.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "editor/fields.h"
+#include "editor/icons.h"
+#include "editor/panels/panels.h"
+#include "editor/posing.h"
+#include "editor/timeline.h"
+#include "editor/tools/timeline_tools.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kTransport = 34, kRuler = 22, kMarks = 20, kLane = 54, kKeys = 36, kLabels = 56;
+constexpr float kLeastTicks = 60;  // pixels from one number to the next
+constexpr Colour kAngle = 0xFF5CB6FF;  // FFB65C
+
+std::string number_text(int value) {
+  // Groups of three, as in the facts of a clip.
+  std::string digits = std::to_string(std::abs(value));
+  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3) digits.insert(static_cast<std::size_t>(place), " ");
+  return (value < 0 ? "-" : "") + digits;
+}
+
+std::string seconds_text(double frames, double rate) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%.2f s", frames / rate);
+  return text;
+}
+
+// ---- transport
+
+class Transport {
+ public:
+  Transport(Editor& editor, const Rect& bar) : editor_(editor), look_(editor.look), bar_(bar), x_(bar.low.x + look_.px(8)), right_(bar.high.x - look_.px(8)) {}
+
+  void draw() {
+    fill(bar_, look_.theme.head);
+    fill({{bar_.low.x, bar_.high.y - look_.line()}, bar_.high}, look_.theme.void_);
+    draw_right();
+    const bool playing = editor_.timeline->play.on;
+    tool("motion.first");
+    tool("motion.frame_back");
+    {
+      const Operator* op = find_operator(editor_, "motion.play");
+      const Rect place = next(28);
+      const std::string why = why_not(editor_, *op);
+      if (button(editor_, "motion.play", place, {playing ? icon::kPause : icon::kPlay, "", playing ? ButtonStyle::Soft : ButtonStyle::Plain, why.empty()})) run(editor_, *op);
+      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor_, *op, place);
+    }
+    tool("motion.frame_forward");
+    tool("motion.last");
+    x_ += look_.px(4);
+    tool(editor_.timeline->play.at_end == AtEnd::PingPong ? "motion.ping_pong" : "motion.loop");
+    draw_speed();
+    line();
+    draw_frame();
+    if (fits(190)) draw_range();
+    line();
+    draw_keying();
+  }
+
+ private:
+  Rect next(float width) {
+    const float height = look_.px(26), y = std::round(bar_.centre().y - height / 2);
+    const Rect place{{x_, y}, {x_ + look_.px(width), y + height}};
+    x_ = place.high.x + look_.px(4);
+    return place;
+  }
+  bool fits(float width) const { return x_ + look_.px(width) < right_; }
+  void tool(const char* id) {
+    const Operator* op = find_operator(editor_, id);
+    const bool on = op->checked && op->checked(editor_);
+    operator_button(editor_, id, next(28), "", on ? ButtonStyle::Soft : ButtonStyle::Plain);
+  }
+  void line() {
+    x_ += look_.px(4);
+    fill({{x_, bar_.low.y + look_.px(9)}, {x_ + look_.line(), bar_.high.y - look_.px(9)}}, look_.theme.line2);
+    x_ += look_.line() + look_.px(8);
+  }
+  void words(const std::string& text) {
+    const float width = text_size(look_.fonts.regular, text).x;
+    put_text(editor_, look_.fonts.regular, look_.theme.text2, Rect{{x_, bar_.low.y}, {x_ + width + 1, bar_.high.y}}, text);
+    x_ += width + look_.px(8);
+  }
+
+  void draw_right() {
+    const bool wide = bar_.width() > look_.px(900);
+    for (const char* id : {"motion.retarget", "file.import_motion"}) {
+      const Operator* op = find_operator(editor_, id);
+      if (!op) continue;
+      const std::string label = !wide ? "" : std::string_view(id) == "file.import_motion" ? "Import BVH..." : op->label;
+      const char* sign = std::string_view(id) == "file.import_motion" ? icon::kMotion : op->icon;
+      const ButtonLook face{sign, label, ButtonStyle::Plain, why_not(editor_, *op).empty()};
+      const float width = label.empty() ? look_.px(30) : width_of_button(editor_, face), height = look_.px(26), y = std::round(bar_.centre().y - height / 2);
+      const Rect place{{right_ - width, y}, {right_, y + height}};
+      if (button(editor_, id, place, face)) run(editor_, *op);
+      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor_, *op, place);
+      right_ = place.low.x - look_.px(6);
+    }
+  }
+
+  void draw_speed() {
+    const auto& playing = editor_.timeline->play;
+    char text[24];
+    const bool slow = playing.on && playing.pictures_per_second > 0;
+    if (slow) std::snprintf(text, sizeof text, "%.0f fps", playing.pictures_per_second);
+    else std::snprintf(text, sizeof text, playing.speed < 1 && playing.speed != 0.5 && playing.speed != 0.1 ? "%.2f\u00d7" : "%.1f\u00d7", playing.speed);
+    const Rect place = next(74);
+    const Pressed pressed = press_area(editor_, "speed", place);
+    fill(place, pressed.hovered ? look_.theme.hover : look_.theme.raised, look_.px(4));
+    put_text(editor_, look_.fonts.mono, slow ? look_.theme.warn : look_.theme.text, Rect{{place.low.x + look_.px(8), place.low.y}, {place.high.x - look_.px(20), place.high.y}}, text);
+    put_icon(look_.fonts.regular, look_.theme.text2, Rect{{place.high.x - look_.px(20), place.low.y}, place.high}, icon::kOpened);
+    if (pressed.hovered) tooltip(editor_, place, "Speed", slow ? "Pictures in a second: some frames are left out so that time goes on." : "Against the clip's own rate.");
+    if (pressed.clicked) ImGui::OpenPopup("speeds");
+    if (!ImGui::BeginPopup("speeds", ImGuiWindowFlags_NoMove)) return;
+    editor_.place.region = Region::Popup;
+    for (const char* id : {"motion.faster", "motion.slower", "motion.play_at_file_rate", "motion.loop", "motion.ping_pong", "motion.show_seconds"}) operator_menu_item(editor_, id);
+    editor_.place.region = Region::Bottom;
+    ImGui::EndPopup();
+  }
+
+  // A whole number that is committed when its drag or typing ends.
+  void number(const std::string& name, int value, const std::function<void(int)>& moved, const std::function<void(int)>& ended) {
+    const float height = look_.px(22), y = std::round(bar_.centre().y - height / 2), width = look_.px(62);
+    const Rect place{{x_, y}, {x_ + width, y + height}};
+    x_ += width + look_.px(4);
+    auto& edited = editor_.edited_number;
+    double number = edited.name == name ? edited.value : value;
+    bool committed = false;
+    if (number_field(editor_, name, place, number, -1e6, 1e6, "%.0f", "", false, committed)) {
+      edited = {name, number};
+      if (moved) moved(static_cast<int>(std::round(number)));
+    }
+    if (!committed || edited.name != name) return;
+    const int wanted = static_cast<int>(std::round(edited.value));
+    edited = {};
+    ended(wanted);
+  }
+
+  void draw_frame() {
+    words("Frame");
+    number("Frame", shown_frame(editor_), {}, [this](int frame) {
+      stop_playing(editor_);
+      go_to_frame(editor_, frame);
+    });
+    x_ += look_.px(4);
+  }
+
+  void draw_range() {
+    words("Range");
+    const FrameRange range = playing_range(editor_);
+    number("Range start", range.low, {}, [&](int frame) { set(frame, std::max(frame, range.high)); });
+    number("Range end", range.high, {}, [&](int frame) { set(std::min(frame, range.low), frame); });
+  }
+  void set(int low, int high) {
+    edit_clip(editor_, "Set range", PoseThen::Stays, [&](Clip& clip) {
+      clip.range_start = low;
+      clip.range_end = high;
+    });
+  }
+
+  void draw_keying() {
+    const Operator* op = find_operator(editor_, "motion.insert_key");
+    const bool enabled = why_not(editor_, *op).empty(), long_form = fits(170);
+    const Rect place = next(long_form ? 124 : 30);
+    const Pressed pressed = press_area(editor_, "motion.insert_key", place, enabled);
+    fill(place, pressed.hovered && enabled ? look_.theme.hover : enabled ? look_.theme.raised : look_.theme.head, look_.px(4));
+    put_icon(look_.fonts.regular, enabled ? look_.theme.select : look_.theme.text3, Rect{{place.low.x + look_.px(7), place.low.y}, {place.low.x + look_.px(23), place.high.y}}, icon::kKey);
+    if (long_form) {
+      put_text(editor_, look_.fonts.regular, enabled ? look_.theme.text : look_.theme.text3, Rect{{place.low.x + look_.px(29), place.low.y}, place.high}, "Insert key");
+      put_key_caps(editor_, place.high.x - look_.px(7) - width_of_key_caps(editor_, {"I"}), place.centre().y, {"I"});
+    }
+    if (pressed.hovered) operator_tooltip(editor_, *op, place);
+    if (pressed.clicked) run(editor_, *op);
+    if (!fits(30)) return;
+    const Operator* automatic = find_operator(editor_, "motion.auto_key");
+    const Rect dot = next(28);
+    const Pressed on = press_area(editor_, "motion.auto_key", dot);
+    fill(dot, on.hovered ? look_.theme.hover : editor_.timeline->auto_key ? look_.theme.accent_soft : look_.theme.raised, look_.px(4));
+    put_icon(look_.fonts.regular, editor_.timeline->auto_key ? look_.theme.error : look_.theme.text3, dot, icon::kDot);
+    if (on.hovered) operator_tooltip(editor_, *automatic, dot);
+    if (on.clicked) run(editor_, *automatic);
+  }
+
+  Editor& editor_;
+  const Look& look_;
+  Rect bar_;
+  float x_, right_;
+};
+
+// ---- time
+
+// 1, 2 or 5 times a power of ten, at least `least`.
+double round_step(double least) {
+  const double power = std::pow(10, std::floor(std::log10(std::max(least, 1e-6))));
+  for (double step : {1.0, 2.0, 5.0})
+    if (step * power >= least * (1 - 1e-9)) return step * power;
+  return 10 * power;
+}
+
+void draw_ruler(Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const Rect& ruler = timeline.ruler;
+  const FrameRange range = playing_range(editor);
+  fill(ruler, look.theme.field);
+  const Rect inside = intersection(ruler, {{x_of(timeline, range.low), ruler.low.y}, {x_of(timeline, range.high), ruler.high.y}});
+  if (!inside.empty()) fill(inside, look.theme.accent_soft);
+  for (int end : {range.low, range.high}) {
+    const float x = std::round(x_of(timeline, end));
+    if (x >= ruler.low.x && x < ruler.high.x) fill({{x, ruler.low.y}, {x + look.line(), timeline.area.high.y}}, look.theme.line2);
+  }
+  const double unit = timeline.seconds ? frame_rate(editor) : 1, per_pixel = timeline.window.count / std::max(1.0f, ruler.width());
+  double step = round_step(look.px(kLeastTicks) * per_pixel / unit);
+  if (!timeline.seconds) step = std::max(1.0, step);
+  const double first = std::ceil(timeline.window.low / unit / step * 5) * step / 5, last = (timeline.window.low + timeline.window.count) / unit;
+  for (double at = first; at <= last; at += step / 5) {
+    const double whole = at / step;
+    const bool major = std::abs(whole - std::round(whole)) < 1e-6;
+    const float x = std::round(x_of(timeline, at * unit));
+    fill({{x, ruler.high.y - look.px(major ? 14 : 5)}, {x + look.line(), ruler.high.y}}, look.theme.line2);
+    if (!major) continue;
+    char text[24];
+    std::snprintf(text, sizeof text, timeline.seconds && step < 1 ? "%.2f" : "%.0f", at + 0.0);
+    put_text(editor, look.fonts.small_mono, look.theme.text2, glm::vec2(x + look.px(4), ruler.low.y + look.px(2)), text);
+  }
+}
+
+void draw_markers(Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const Clip* clip = shown_clip(editor);
+  if (!clip || timeline.marks.empty()) return;
+  for (const Marker& marker : clip->markers) {
+    const float x = x_of(timeline, marker.frame), y = timeline.marks.low.y + look.px(6), half = look.px(5);
+    if (x < timeline.marks.low.x - half || x > timeline.marks.high.x) continue;
+    ImGui::GetWindowDrawList()->AddTriangleFilled({x - half, y}, {x + half, y}, {x, y + look.px(9)}, look.theme.ok);
+    put_text(editor, look.fonts.small, look.theme.ok, glm::vec2(x + look.px(9), timeline.marks.low.y + look.px(2)), marker.name);
+  }
+}
+
+// ---- the chosen bone's angle
+
+constexpr float kPerSample = 3;        // pixels
+constexpr std::size_t kAtOnce = 24;    // samples in one picture, so that none is late
+
+float degrees_from_rest(const Pose& pose, int bone) {
+  const glm::dquat& q = pose.rotation[bone];
+  return static_cast<float>(glm::degrees(2 * std::atan2(std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z), std::abs(q.w))));
+}
+
+// A few samples more, until the curve is whole.
+void sample_curve(Editor& editor, const ClipOnRig& clip, int bone, const Rect& lane) {
+  Timeline& timeline = *editor.timeline;
+  auto& curve = timeline.curve;
+  const bool same = curve.clip == clip.clip().get() && curve.bone == bone && curve.low == timeline.window.low && curve.count == timeline.window.count && curve.width == lane.width();
+  if (!same) curve = {clip.clip().get(), bone, timeline.window.low, timeline.window.count, lane.width(), {}};
+  const auto wanted = static_cast<std::size_t>(lane.width() / editor.look.px(kPerSample)) + 1;
+  const int parent = clip.armature()->bones[bone].parent;
+  for (std::size_t i = 0; i < kAtOnce && curve.angles.size() < wanted; ++i) {
+    const double frame = frame_at(timeline, lane.low.x + static_cast<float>(curve.angles.size()) * editor.look.px(kPerSample));
+    const Pose pose = clip.at(static_cast<int>(std::clamp(std::round(frame), -1e8, 1e8)));
+    curve.angles.emplace_back(degrees_from_rest(pose, bone), parent >= 0 ? degrees_from_rest(pose, parent) : 0.0f);
+  }
+  if (curve.angles.size() < wanted) editor.touch();
+}
+
+void draw_curve(Editor& editor, const Rect& bar) {
+  const Timeline& timeline = *editor.timeline;
+  const ClipOnRig* clip = clip_on_rig(editor);
+  const int bone = editor.selection.bone.value_or(-1);
+  if (!clip || bone < 0 || bone >= std::ssize(clip->armature()->bones) || bar.height() < editor.look.px(30)) return;
+  sample_curve(editor, *clip, bone, timeline.lane);
+  const auto& angles = timeline.curve.angles;
+  float most = 1;
+  for (const glm::vec2& angle : angles) most = std::max({most, angle.x, angle.y});
+  const float low = bar.high.y - editor.look.px(5), height = bar.height() - editor.look.px(26);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImGui::PushClipRect(im(bar.low), im(bar.high), true);
+  const Colour colours[] = {kAngle, with_alpha(editor.look.theme.text3, 0.7f)};
+  for (int line = clip->armature()->bones[bone].parent >= 0 ? 1 : 0; line >= 0; --line) {
+    for (std::size_t i = 0; i < angles.size(); ++i)
+      list.PathLineTo({timeline.lane.low.x + static_cast<float>(i) * editor.look.px(kPerSample), low - height * angles[i][line] / most});
+    list.PathStroke(colours[line], 0, (line == 0 ? 1.5f : 1.0f) * editor.look.scale);
+  }
+  ImGui::PopClipRect();
+}
+
+void draw_lane(Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const Clip* clip = shown_clip(editor);
+  if (!clip || !clip->motion) return;
+  const Rect& lane = timeline.lane;
+  const Rect bar = intersection(lane, {{std::round(x_of(timeline, clip->start)), lane.low.y}, {std::round(x_of(timeline, clip->end() + 1.0)), lane.high.y}});
+  if (bar.empty()) return;
+  fill(bar, look.theme.accent_soft, look.px(3));
+  outline(bar, look.theme.accent, look.px(3), look.line());
+  draw_curve(editor, bar);
+  const float y = bar.low.y + look.px(3), right = bar.high.x - look.px(6);
+  float x = bar.low.x + look.px(10);
+  const float name = std::min(text_size(look.fonts.semibold, clip->name).x + 1, right - x);
+  if (name < look.px(20)) return;
+  put_text(editor, look.fonts.semibold, look.theme.accent_text, Rect{{x, y}, {x + name, y + look.px(18)}}, clip->name);
+  x += name + look.px(14);
+  char facts[128];
+  const std::string frames = number_text(clip->last - clip->first + 1);
+  const Document& document = editor.document();
+  const int bone = editor.selection.bone.value_or(-1);
+  const bool chosen = document.armature && bone >= 0 && bone < std::ssize(document.armature->bones);
+  std::snprintf(facts, sizeof facts, "%.5g fps \u00b7 %s frames%s%.40s%s", clip->rate, frames.c_str(), chosen ? " \u00b7 " : "", chosen ? document.armature->bones[bone].name.c_str() : "", chosen ? " angle" : "");
+  if (right - x > look.px(40)) put_text(editor, look.fonts.small, look.theme.text2, Rect{{x, y}, {right, y + look.px(18)}}, facts);
+}
+
+void draw_keys(Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const Clip* clip = shown_clip(editor);
+  if (!clip) return;
+  const float y = std::round(timeline.keys.centre().y), half = look.px(6);
+  for (int frame : frames_of(clip->keys)) {
+    const auto moving = timeline.moving.find(frame);
+    const float x = std::round(x_of(timeline, moving == timeline.moving.end() ? frame : moving->second));
+    if (x < timeline.keys.low.x - half || x > timeline.keys.high.x + half) continue;
+    const bool chosen = timeline.chosen.contains(frame) || frame == shown_frame(editor);
+    ImGui::GetWindowDrawList()->AddQuadFilled({x, y - half}, {x + half, y}, {x, y + half}, {x - half, y}, chosen ? look.theme.select : look.theme.text);
+  }
+  if (!timeline.box) return;
+  const Rect box = intersection(*timeline.box, timeline.area);
+  fill(box, with_alpha(look.theme.select, 0.15f));
+  outline(box, look.theme.select, 0, look.line());
+}
+
+void draw_play_head(Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const int frame = shown_frame(editor);
+  const float x = std::round(x_of(timeline, frame));
+  if (x < timeline.ruler.low.x - 1 || x > timeline.ruler.high.x + 1) return;
+  const float half = std::max(1.0f, std::round(look.scale));
+  fill({{x - half, timeline.ruler.low.y}, {x + half, timeline.area.high.y}}, look.theme.select);
+  const std::string text = std::to_string(frame);
+  const float width = std::max(look.px(48), text_size(look.fonts.small_mono, text).x + look.px(12));
+  const Rect tab{{x - std::round(width / 2), timeline.ruler.low.y + look.px(2)}, {x + std::round(width / 2), timeline.ruler.low.y + look.px(20)}};
+  fill(tab, look.theme.select, look.px(4));
+  put_text(editor, look.fonts.small_mono, look.theme.on_select, tab, text, Align::Centre);
+  if (timeline.marks.empty()) return;
+  const std::string seconds = seconds_text(frame, frame_rate(editor));
+  const float wide = text_size(look.fonts.small_mono, seconds).x, left = x + look.px(30) + wide > timeline.marks.high.x ? x - look.px(8) - wide : x + look.px(30);
+  put_text(editor, look.fonts.small_mono, look.theme.select, glm::vec2(left, timeline.marks.low.y + look.px(2)), seconds);
+}
+
+void place_rows(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  Timeline& timeline = *editor.timeline;
+  const float left = rect.low.x + look.px(kLabels), right = rect.high.x - look.px(12);
+  float y = rect.low.y;
+  const auto row = [&](float height) {
+    const Rect place{{left, y}, {right, std::min(y + height, rect.high.y)}};
+    y = place.high.y;
+    return place;
+  };
+  timeline.area = {{left, y}, {right, rect.high.y}};
+  timeline.ruler = row(look.px(kRuler));
+  // Low areas do without markers, and then with thinner rows.
+  const float rest = rect.high.y - y;
+  timeline.marks = rest > look.px(kMarks + 34 + 20) ? row(look.px(kMarks)) : Rect{};
+  const float keys = std::clamp(rest * 0.35f, look.px(16), look.px(kKeys));
+  timeline.lane = row(std::clamp(rect.high.y - y - keys, look.px(16), look.px(kLane)));
+  timeline.keys = row(keys);
+}
+
+}  // namespace
+
+void draw_timeline(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  Timeline& timeline = *editor.timeline;
+  const PathScope path(editor, "timeline");
+  const Rect bar{rect.low, {rect.high.x, rect.low.y + look.px(kTransport)}};
+  Transport(editor, bar).draw();
+  const Rect rows{{rect.low.x, bar.high.y}, rect.high};
+  const Clip* clip = shown_clip(editor);
+  if (!clip) {
+    timeline.area = timeline.ruler = timeline.marks = timeline.lane = timeline.keys = {};
+    if (empty_state(editor, rows, "No clip", "Import BVH...")) run(editor, "file.import_motion");
+    return;
+  }
+  place_rows(editor, rows);
+  const std::string fitted = clip->name + std::to_string(clip->start) + "+" + std::to_string(clip->end());
+  if (timeline.window.clip != fitted) {
+    timeline.window.clip = fitted;
+    timeline.chosen.clear();
+    fit_window(editor);
+  }
+  for (const auto& [name, place] : {std::pair<const char*, Rect>{"Marks", timeline.marks}, {"Clip", timeline.lane}, {"Keys", timeline.keys}})
+    if (!place.empty()) put_text(editor, look.fonts.small, look.theme.text3, Rect{{rect.low.x + look.px(12), place.low.y}, {place.low.x - look.px(4), place.high.y}}, name);
+  for (const auto& [name, place] : {std::pair<const char*, Rect>{"ruler", timeline.ruler}, {"marks", timeline.marks}, {"lane", timeline.lane}, {"keys", timeline.keys}})
+    register_widget(editor, name, place);
+  ImGui::PushClipRect(im(timeline.area.low - glm::vec2(look.px(26), 0)), im(timeline.area.high + glm::vec2(look.px(12), 0)), true);
+  draw_ruler(editor);
+  draw_lane(editor);
+  draw_markers(editor);
+  draw_keys(editor);
+  draw_play_head(editor);
+  ImGui::PopClipRect();
+}
+
+}  // namespace limber::editor

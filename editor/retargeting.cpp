@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/retargeting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/rig/motion_edit.h"
+#include "editor/form.h"
+#include "editor/project.h"
+#include "editor/task.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kUnits[] = {0, 1, 10, 1000, 25.4};  // mm of a file's unit; 0: found
+
+// What is known of a motion before it comes in.
+struct Incoming {
+  std::shared_ptr<const Motion> motion;
+  std::string name;
+  std::string facts, match;
+};
+
+std::string facts_of(const Motion& motion) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%d joints, %d frames, %.2f s at %.5g frames in a second.", static_cast<int>(motion.joints.size()), motion.frame_count,
+                motion.frame_count * motion.frame_time, 1 / motion.frame_time);
+  return text;
+}
+
+std::string match_of(std::shared_ptr<const Motion> motion, const std::shared_ptr<const Armature>& armature) {
+  if (!armature) return "There is no rig yet: joints and bones are matched when there is one.";
+  const ClipOnRig on_rig(std::make_shared<const Clip>(clip_of(std::move(motion), "")), armature);
+  if (!on_rig.retarget()) return "It moves no bone of this rig by its names: match them by hand in the map.";
+  const Matching matching = matching_of(on_rig);
+  char text[160];
+  std::snprintf(text, sizeof text, "%d joints move %d of %d bones, %d of them without doubt.", matching.joints, matching.bones, static_cast<int>(armature->bones.size()), matching.sure);
+  return text;
+}
+
+void take_in(Editor& editor, const Incoming& incoming, const std::vector<FormField>& fields) {
+  std::shared_ptr<const Motion> motion = incoming.motion;
+  if (fields[1].chosen == 1) motion = std::make_shared<const Motion>(y_up_from_z_up(*motion));
+  Clip clip = clip_of(motion, incoming.name, static_cast<int>(std::round(fields[2].value)));
+  clip.rate = fields[3].value;
+  clip.retarget.scale = kUnits[fields[0].chosen];
+  Document next = editor.document();
+  add_clip(next, std::move(clip));
+  commit(editor, "Import " + incoming.name + ".bvh", std::move(next));
+}
+
+void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
+  const double rate = clip_of(incoming->motion, "").rate;
+  const auto outcome = [incoming](const Editor&, const std::vector<FormField>& fields) {
+    std::string words = incoming->facts + " " + incoming->match;
+    if (std::abs(fields[3].value - clip_of(incoming->motion, "").rate) > 1e-3) {
+      char text[64];
+      std::snprintf(text, sizeof text, " Plays in %.2f s.", incoming->motion->frame_count / fields[3].value);
+      words += text;
+    }
+    for (const std::string& warning : incoming->motion->warnings) words += "\n" + warning;
+    return words;
+  };
+  editor.open_dialog(make_form({"Import " + incoming->name + ".bvh",
+                                "A new clip of this motion, carried over to the rig.",
+                                "Import",
+                                {choice_of("Scale", "How far the body travels: as far as its legs carry it, or in the file's own unit.", {"Fit to the rig", "1 = 1 mm", "1 = 1 cm", "1 = 1 m", "1 = 1 inch"}),
+                                 choice_of("Up", "The axis that points up in the file.", {"Y", "Z"}),
+                                 number_of("First frame", "Where it begins in the timeline.", 0, -100'000, 100'000, "%.0f"),
+                                 number_of("Frame rate", "Frames in a second. The file's own unless it is known to be wrong.", rate, 1, 1000, "%.6g", "fps")},
+                                outcome,
+                                [incoming](Editor& e, const std::vector<FormField>& fields) { take_in(e, *incoming, fields); }}));
+}
+
+}  // namespace
+
+Matching matching_of(const ClipOnRig& clip) {
+  Matching matching;
+  const Retarget* retarget = clip.retarget();
+  if (!retarget) return matching;
+  std::set<int> joints;
+  for (int bone = 0; bone < std::ssize(clip.armature()->bones); ++bone)
+    if (const int joint = retarget->joint_of(bone); joint >= 0) joints.insert(joint);
+  matching.bones = moved_bones(clip);
+  matching.joints = static_cast<int>(joints.size());
+  for (MatchKind kind : match_kinds(*clip.clip()->motion, *clip.armature(), map_in_use(clip))) matching.sure += kind >= MatchKind::SamePart;
+  return matching;
+}
+
+int moved_bones(const ClipOnRig& clip) {
+  int moved = 0;
+  for (int bone = 0; clip.retarget() && bone < std::ssize(clip.armature()->bones); ++bone) moved += clip.retarget()->joint_of(bone) >= 0;
+  return moved;
+}
+
+RetargetMap map_in_use(const ClipOnRig& clip) {
+  RetargetMap map;
+  if (!clip.retarget()) return map;
+  for (int bone = 0; bone < std::ssize(clip.armature()->bones); ++bone)
+    if (const int joint = clip.retarget()->joint_of(bone); joint >= 0) {
+      const std::string& name = clip.armature()->bones[bone].name;
+      const auto given = clip.clip()->map.sources.find(name);
+      map.sources[name] = given != clip.clip()->map.sources.end() ? given->second : RetargetMap::Source{clip.clip()->motion->joints[joint].name, {}};
+    }
+  return map;
+}
+
+void choose_clip(Editor& editor, int clip) {
+  if (clip == editor.document().clip) return;
+  stop_playing(editor);
+  Document next = editor.document();
+  next.clip = clip;
+  next.frame = std::clamp(next.frame, next.shown_clip()->range_start, std::max(next.shown_clip()->range_start, next.shown_clip()->range_end));
+  next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  editor.timeline->chosen.clear();
+  commit(editor, "Show clip " + next.shown_clip()->name, std::move(next));
+}
+
+void import_motion(Editor& editor, const Path& path) {
+  start_task(editor, "Read " + path.filename().string(), [path, armature = editor.document().armature](Progress&) -> Finish {
+    auto incoming = std::make_shared<Incoming>();
+    incoming->motion = std::make_shared<const Motion>(read_bvh(path));
+    incoming->name = path.stem().string();
+    if (incoming->motion->frame_count == 0) throw Error("this motion has no frames", path.string(), "import it as a rig, or choose another file");
+    incoming->facts = facts_of(*incoming->motion);
+    incoming->match = match_of(incoming->motion, armature);
+    return [incoming](Editor& e) { ask(e, incoming); };
+  });
+}
+
+}  // namespace limber::editor

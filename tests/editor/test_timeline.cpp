@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/posing.h"
+#include "editor/timeline.h"
+#include "editor/tools/timeline_tools.h"
+#include "tests/editor/small_clip.h"
+
+namespace limber::test {
+
+using namespace editor;
+
+namespace {
+
+struct BendingEditor : SmallEditor {
+  explicit BendingEditor(const Document& document = bending_limb(), const glm::ivec2& size = {1280, 720}) : SmallEditor(size, {}, false) {
+    editor->history.reset(document, "Open limb");
+    editor->name = "limb";
+    frame_all(*editor, false);
+    play("key Ctrl+3");
+    player.settle();
+  }
+  double shown_bend() { return bend_of(shown_pose(*editor)); }
+  double bend() { return bend_of(pose_of(editor->document())); }
+  glm::vec2 on_ruler(int frame) { return {std::round(x_of(*editor->timeline, frame)), editor->timeline->ruler.centre().y}; }
+  void move_to(const glm::vec2& place) { play("move " + std::to_string(static_cast<int>(place.x)) + " " + std::to_string(static_cast<int>(place.y))); }
+  void press(int frame) {
+    move_to(on_ruler(frame));
+    host->events.push(ButtonChanged{MouseButton::Left, true});
+    player.step();
+  }
+  void release() {
+    host->events.push(ButtonChanged{MouseButton::Left, false});
+    player.settle();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("timeline: a press on the ruler shows that frame's pose in the same picture, and the release takes it as one edit") {
+  BendingEditor test;
+  const auto steps = test.editor->history.position();
+  test.press(20);
+  CHECK(shown_frame(*test.editor) == 20);
+  CHECK(test.shown_bend() == doctest::Approx(20));
+  CHECK(test.editor->history.position() == steps);
+  for (int frame : {25, 31, 40}) {
+    test.host->events.push(PointerMoved{test.on_ruler(frame)});
+    test.player.step();
+    CHECK(shown_frame(*test.editor) == frame);
+    CHECK(test.shown_bend() == doctest::Approx(frame));
+  }
+  test.release();
+  CHECK(test.editor->document().frame == 40);
+  CHECK(test.bend() == doctest::Approx(40));
+  CHECK(test.editor->history.position() == steps + 1);
+}
+
+TEST_CASE("timeline: Escape during scrubbing goes back to the frame before") {
+  BendingEditor test;
+  test.press(20);
+  test.play("key Escape");
+  test.release();
+  CHECK(shown_frame(*test.editor) == 0);
+  CHECK(test.shown_bend() == doctest::Approx(0));
+}
+
+TEST_CASE("timeline: steps from frame to frame are one edit, which undo takes back with the pose that was there") {
+  BendingEditor test;
+  Pose changed = pose_of(test.editor->document());
+  changed.rotation[0] = glm::angleAxis(0.5, glm::dvec3(0, 0, 1));
+  commit_pose(*test.editor, "Turn", changed);
+  const auto steps = test.editor->history.position();
+  test.play("key Right\n key Right\n key Right");
+  CHECK(test.editor->document().frame == 3);
+  CHECK(test.bend() == doctest::Approx(3));
+  CHECK(pose_of(test.editor->document()).rotation[0] == glm::dquat(1, 0, 0, 0));
+  CHECK(test.editor->history.position() == steps + 1);
+  test.play("key Ctrl+Z");
+  CHECK(test.editor->document().frame == 0);
+  CHECK(pose_of(test.editor->document()) == changed);
+}
+
+TEST_CASE("timeline: a playing clip shows the frame of the moment, whatever the pictures cost") {
+  BendingEditor test(bending_limb(601, 120));
+  test.play("key Space");
+  const double began = test.player.now();
+  for (const double later : {0.1, 0.35, 0.36, 2.0, 4.9}) {
+    test.editor->frame(began + later);
+    CHECK(shown_frame(*test.editor) == static_cast<int>(std::floor(later * 120 + 1e-3)));
+    CHECK(test.shown_bend() == doctest::Approx(std::remainder(shown_frame(*test.editor), 720)).epsilon(1e-5));
+  }
+  test.editor->frame(began + 601 / 120.0 + 0.25);
+  CHECK(shown_frame(*test.editor) == 30);  // begins again
+}
+
+TEST_CASE("timeline: playing stops at the range's end, begins again there, or turns round") {
+  for (const auto& [mode, expected] : {std::pair{AtEnd::Stop, 30}, {AtEnd::Loop, 14}, {AtEnd::PingPong, 25}}) {
+    CAPTURE(static_cast<int>(mode));
+    BendingEditor test;
+    edit_clip(*test.editor, "Set range", PoseThen::Stays, [](Clip& clip) {
+      clip.range_start = 10;
+      clip.range_end = 30;
+    });
+    test.editor->timeline->play.at_end = mode;
+    go_to_frame(*test.editor, 10);
+    play(*test.editor, 1);
+    test.editor->frame(test.editor->now + 25.01 / 30);
+    CHECK(shown_frame(*test.editor) == expected);
+    CHECK(test.editor->timeline->play.on == (mode != AtEnd::Stop));
+  }
+}
+
+TEST_CASE("timeline: what changes the pose stops the playing at the frame that is seen") {
+  BendingEditor test;
+  test.play("key Space\n wait 0.5");
+  CHECK(test.editor->timeline->play.on);
+  run(*test.editor, "motion.insert_key");
+  test.play("key Space");
+  CHECK_FALSE(test.editor->timeline->play.on);
+  CHECK(test.editor->document().frame > 10);
+  CHECK(test.bend() == doctest::Approx(test.editor->document().frame));
+}
+
+TEST_CASE("timeline: an unkeyed change lasts until the frame changes, a keyed one stays with its frame") {
+  BendingEditor test;
+  go_to_frame(*test.editor, 10);
+  Pose changed = pose_of(test.editor->document());
+  changed.rotation[1] = glm::angleAxis(glm::radians(40.0), glm::dvec3(1, 0, 0));
+  commit_pose(*test.editor, "Bend", changed);
+  go_to_frame(*test.editor, 11);
+  go_to_frame(*test.editor, 10);
+  CHECK(test.bend() == doctest::Approx(10));
+
+  test.editor->timeline->auto_key = true;
+  commit_pose(*test.editor, "Bend", changed);
+  go_to_frame(*test.editor, 11);
+  CHECK(test.bend() == doctest::Approx(41));  // 30 degrees more than the motion
+  go_to_frame(*test.editor, 10);
+  CHECK(pose_of(test.editor->document()) == changed);
+}
+
+TEST_CASE("timeline: keys without a motion make a clip of their own") {
+  BendingEditor test(small_limb());
+  CHECK(test.fact("text:No clip") == "shown");
+  Pose bent = pose_of(test.editor->document());
+  run(*test.editor, "motion.insert_key");
+  go_to_frame(*test.editor, 10);
+  bent.rotation[1] = glm::angleAxis(glm::radians(60.0), glm::dvec3(1, 0, 0));
+  commit_pose(*test.editor, "Bend", bent);
+  run(*test.editor, "motion.insert_key");
+  go_to_frame(*test.editor, 5);
+  CHECK(test.bend() == doctest::Approx(30));
+  go_to_frame(*test.editor, 99);
+  CHECK(test.bend() == doctest::Approx(60));
+}
+
+TEST_CASE("timeline: buttons and rows stand inside the area and beside one another at every size") {
+  for (const auto& [size, scale] : {std::pair<glm::ivec2, double>{{1280, 720}, 1}, {{1600, 900}, 1}, {{2560, 1440}, 2}, {{1024, 640}, 1}}) {
+    CAPTURE(size.x);
+    Preferences preferences;
+    preferences.scale = scale;
+    SmallEditor test(size, preferences, false);
+    test.editor->history.reset(bending_limb(), "Open limb");
+    test.play("key Ctrl+3");
+    test.player.settle();
+    const auto& widgets = test.editor->widgets.widgets();
+    for (const Widget& widget : widgets) {
+      if (widget.region != Region::Bottom) continue;
+      CHECK(test.editor->layout.bottom.contains(widget.rect));
+      for (const Widget& other : widgets)
+        if (other.region == Region::Bottom && other.name != widget.name) CHECK_FALSE(widget.rect.overlaps(other.rect));
+    }
+  }
+}
+
+}  // namespace limber::test
