@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where themes, key map, icons and samples lie: beside the installed program (share/limber), else in the source tree.
+// The program's own files, by name.
 #pragma once
 
-#include <string>
-
-#include "core/base/file.h"
+#include "core/base/asset.h"
 
 namespace limber::editor {
 
-// Throws Error when the file is not there: the installation is incomplete.
-Path asset(const std::string& name);  // "themes/dark.json"
+using limber::asset;
 
 }  // namespace limber::editor

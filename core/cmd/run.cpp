@@ -13,6 +13,7 @@ void add_commands(CLI::App& app) {
   app.set_version_flag("--version", LIMBER_VERSION);
   add_convert(app);
   add_fit_joint(app);
+  add_fit_rig(app);
   add_fk(app);
   add_info(app);
   add_job(app);

@@ -71,18 +71,16 @@ Motion walk(const Armature& armature) {
 }
 }  // namespace
 
-Phantom make_arm_phantom(double spacing, Progress& progress) {
+phantom::Anatomy phantom::arm_anatomy(double thinnest_radius) {
   Anatomy anatomy;
   // A right arm: the left one across x = 0.
-  add_arm(anatomy, {.root = Frame{}.mirrored_x(), .bend_degrees = kArmBend, .thinnest_radius = thinnest(spacing)});
-  Phantom result{voxelize(anatomy, spacing, progress), {}, anatomy.armature, arm_curl(anatomy.armature)};
-  result.tissues = phantom_tissues(result.volume);
-  return result;
+  add_arm(anatomy, {.root = Frame{}.mirrored_x(), .bend_degrees = kArmBend, .thinnest_radius = thinnest_radius});
+  return anatomy;
 }
 
-Phantom make_body_phantom(double spacing, Progress& progress) {
+phantom::Anatomy phantom::body_anatomy(double thinnest_radius) {
   Anatomy anatomy;
-  const TrunkJoints joints = add_trunk(anatomy, thinnest(spacing));
+  const TrunkJoints joints = add_trunk(anatomy, thinnest_radius);
   for (const bool left : {true, false}) {
     const auto placed = [&](const Frame& frame) { return left ? frame : frame.mirrored_x(); };
     const std::string name = left ? "Left" : "Right";
@@ -91,15 +89,27 @@ Phantom make_body_phantom(double spacing, Progress& progress) {
                       .flesh_parent = joints.flesh,
                       .rig_parent = require_bone(anatomy.armature, name + "Clavicle"),
                       .bend_degrees = kBodyElbowBend,
-                      .thinnest_radius = thinnest(spacing)});
+                      .thinnest_radius = thinnest_radius});
     add_leg(anatomy, {.root = placed(Frame{joints.left_hip, glm::dmat3(1)}.turned({0, 1, 0}, -kLegSpread)),
                       .prefix = name,
                       .flesh_parent = joints.flesh,
                       .rig_parent = joints.hips_bone,
                       .bend_degrees = kKneeBend,
-                      .thinnest_radius = thinnest(spacing)},
+                      .thinnest_radius = thinnest_radius},
             placed(Frame{}));
   }
+  return anatomy;
+}
+
+Phantom make_arm_phantom(double spacing, Progress& progress) {
+  const Anatomy anatomy = arm_anatomy(thinnest(spacing));
+  Phantom result{voxelize(anatomy, spacing, progress), {}, anatomy.armature, arm_curl(anatomy.armature)};
+  result.tissues = phantom_tissues(result.volume);
+  return result;
+}
+
+Phantom make_body_phantom(double spacing, Progress& progress) {
+  const Anatomy anatomy = body_anatomy(thinnest(spacing));
   Phantom result{voxelize(anatomy, spacing, progress), {}, anatomy.armature, walk(anatomy.armature)};
   result.tissues = phantom_tissues(result.volume);
   return result;

@@ -30,6 +30,10 @@ struct TrunkJoints {
 };
 TrunkJoints add_trunk(Anatomy& anatomy, double thinnest_radius);
 
+// The two samples as they stand: a right arm whose shoulder lies at the origin, and a whole body.
+Anatomy arm_anatomy(double thinnest_radius = 0.5);
+Anatomy body_anatomy(double thinnest_radius = 0.5);
+
 // A motion of the rig's own hierarchy, in BVH axes (Y up) and mm.
 struct Turn {
   std::string bone;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "editor/assets.h"
+#include "core/base/asset.h"
 
 #include <filesystem>
 
 #include "core/base/error.h"
 
-namespace limber::editor {
+namespace limber {
 
 namespace fs = std::filesystem;
 
@@ -17,4 +17,4 @@ Path asset(const std::string& name) {
   throw Error("a file of the program itself is missing", name, "install Limber again");
 }
 
-}  // namespace limber::editor
+}  // namespace limber

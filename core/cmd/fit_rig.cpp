@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber fit-rig VOLUME --template NAME|RIG|auto [--tissues T] [--bones L,L] -o RIG [--report R.json]
+#include "core/rig/auto_fit.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/file.h"
+#include "core/base/parallel.h"
+#include "core/cmd/command.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/bone_tissue.h"
+#include "core/rig/templates.h"
+#include "core/volume/volume_io.h"
+
+namespace limber::cmd {
+
+namespace {
+
+struct Options {
+  std::string volume, rig, tissues, output, report;
+  std::vector<double> bones;
+  RunOptions run;
+};
+
+Armature wanted_rig(const std::string& name, const VolumeFile& file, const TissueTable& tissues, Progress& progress) {
+  if (name == "auto") {
+    const std::string suggested = suggest_template(file.volume, tissues, progress);
+    std::printf("template: %s\n", suggested.c_str());
+    return rig_template(suggested);
+  }
+  std::error_code failed;
+  if (is_rig_template(name) || !std::filesystem::exists(name, failed)) return rig_template(name);
+  ArmatureFile rig = read_armature_file(name);
+  warn(rig.warnings);
+  return std::move(rig.armature);
+}
+
+// A rig that lies in a body by its skin shows which label is bone; then bone decides.
+AutoFit fit_twice(const VolumeFile& file, const TissueTable& tissues, const Armature& rig, Progress& progress) {
+  AutoFit fitted = auto_fit(file.volume, tissues, rig, progress);
+  const auto guess = guess_bone_tissue(file.volume, tissues, fitted.armature);
+  if (!guess) return fitted;
+  const double value = tissues.find(guess->label)->file_value;
+  char text[160];
+  std::snprintf(text, sizeof text, "no table says what is bone: label %.0f, through which %.0f %% of the rig runs, is taken for it", value, 100 * guess->share_of_rig);
+  warn(std::string(text));
+  return auto_fit(file.volume, with_bones(tissues, {value}), rig, progress);
+}
+
+nlohmann::ordered_json report_of(const AutoFit& fitted) {
+  nlohmann::ordered_json report{{"schema", "limber-fit/1"}, {"misfit_mm", fitted.misfit_mm}, {"share_in_tissue", fitted.check.whole}};
+  for (size_t b = 0; b < fitted.joints.size(); ++b) {
+    const glm::dvec3& head = fitted.armature.bones[b].head;
+    report["joints"].push_back({{"name", fitted.armature.bones[b].name},
+                                {"position", {head.x, head.y, head.z}},
+                                {"found_by", std::string(to_string(fitted.joints[b].how))},
+                                {"confidence", fitted.joints[b].confidence},
+                                {"share_in_tissue", fitted.check.share[b]}});
+  }
+  for (const auto& leaving : fitted.check.leaving)
+    report["leaving"].push_back({{"bone", fitted.armature.bones[leaving.bone].name}, {"from", leaving.from}, {"to", leaving.to}, {"place", {leaving.place.x, leaving.place.y, leaving.place.z}}});
+  report["warnings"] = fitted.warnings;
+  return report;
+}
+
+void print(const AutoFit& fitted) {
+  std::printf("%-24s %-14s %10s %10s\n", "joint", "found by", "confidence", "in tissue");
+  for (size_t b = 0; b < fitted.joints.size(); ++b)
+    std::printf("%-24s %-14s %9.0f%% %9.0f%%\n", fitted.armature.bones[b].name.c_str(), std::string(to_string(fitted.joints[b].how)).c_str(),
+                100 * fitted.joints[b].confidence, 100 * fitted.check.share[b]);
+  if (fitted.misfit_mm > 0) std::printf("skin %.1f mm off the fitted body's, ", fitted.misfit_mm);
+  std::printf("%.1f %% of all bone length in tissue\n", 100 * fitted.check.whole);
+}
+
+void run(const Options& options) {
+  std::optional<ThreadCount> threads;
+  if (options.run.threads > 0) threads.emplace(options.run.threads);
+  CommandProgress progress(options.run.progress);
+  check_armature_writable(options.output);
+  check_distinct({options.output, options.report});
+  const VolumeFile file = read_volume(options.volume, progress);
+  warn(file.warnings);
+  std::optional<TissueTable> user;
+  if (!options.tissues.empty()) user = read_tissue_table(options.tissues);
+  TissueTable tissues = merge_tissue_tables(file.tissues, user ? &*user : nullptr);
+  if (!options.bones.empty()) tissues = with_bones(std::move(tissues), options.bones);
+  const Armature rig = wanted_rig(options.rig, file, tissues, progress);
+
+  const AutoFit fitted = fit_twice(file, tissues, rig, progress);
+  write_armature(fitted.armature, options.output);
+  if (!options.report.empty()) write_file_atomically(options.report, report_of(fitted).dump(1) + "\n");
+  print(fitted);
+  warn(fitted.warnings);
+}
+
+}  // namespace
+
+void add_fit_rig(CLI::App& app) {
+  auto* command = app.add_subcommand("fit-rig", "lays a rig into a volume by itself, joints found from bone or from the body's shape");
+  auto options = std::make_shared<Options>();
+  command->add_option("VOLUME", options->volume, "label volume")->required();
+  command->add_option("--template", options->rig, "arm, hand, leg, adult, child, quadruped, auto, or a rig file (JSON, Bender .vtk or .arm, BVH)")->required();
+  command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
+  command->add_option("--bones", options->bones, "labels that are bone, as in the file")->delimiter(',')->type_name("L,L");
+  command->add_option("-o,--output", options->output, "rig to write (.json keeps joint limits)")->required();
+  command->add_option("--report", options->report, "how each joint was found, as JSON");
+  add_run_options(*command, options->run);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace limber::cmd

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A rig laid into a label volume by itself. A jointed body of known shape (core/rig/body_atlas.h) is drawn onto the volume
+// from coarse to fine:
+//   1  the ends of the tissue and the ways to them give the limbs (core/rig/limb_paths.h), whatever their pose and however
+//      the body lies in the world;
+//   2  the skin gives pose and proportions (core/rig/articulated_fit.h);
+//   3  where the table says what is bone, the bones' surfaces give the joints; bones drawn as mere rods are followed along
+//      their axes instead.
+// The joints of any rig are then put where the body's joints came to lie, matched by what their names mean
+// (core/rig/joint_names.h); those between and below ride along. A rig whose names mean nothing is laid into the tissue's
+// extents.
+//
+// The same bytes come out for any number of threads.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/rig/armature.h"
+#include "core/rig/fit_check.h"
+#include "core/volume/label_volume.h"
+#include "core/volume/tissue_table.h"
+
+namespace limber {
+
+struct JointFit {
+  enum class How { Skin, BoneSurface, BoneAxis, Carried, Extents };
+  How how = How::Carried;
+  double confidence = 0;  // 0 .. 1
+};
+std::string_view to_string(JointFit::How how);  // "bone surface"
+
+struct AutoFit {
+  Armature armature;
+  std::vector<JointFit> joints;  // per bone, of its head
+  RigCheck check;                // where the rig leaves the tissue
+  double misfit_mm = 0;          // between the body that was fitted and the volume, root mean square; 0 without one
+  std::vector<std::string> warnings;  // what failed, in words
+};
+
+// The rig placed, turned and scaled to the tissue; its joint limits turn along.
+// Throws Error for a volume without tissue.
+AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Armature& rig, Progress& progress = no_progress());
+
+// The rig in the middle of the tissue, as large as it is; nothing is turned.
+Armature scaled_to_tissue(const LabelVolume& volume, const Armature& rig);
+
+// The template that suits the volume best: one of core/rig/templates.h.
+std::string suggest_template(const LabelVolume& volume, const TissueTable& tissues, Progress& progress = no_progress());
+
+}  // namespace limber

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The surface of some tissue of a label volume as points with outward normals, and the nearest of such points. The volume is
+// first reduced to cells of about one size that know which share of them the tissue fills, so points lie between voxel
+// centres where that share passes one half, whatever the voxels' shape. Where tissue is cut off by the border of the grid
+// there is no surface.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/volume/label_volume.h"
+
+namespace limber {
+
+// Cells of a reduced grid with the share of each that is filled, 0 .. 1.
+struct Occupancy {
+  Grid grid;
+  std::vector<float> share;
+
+  bool filled(const glm::ivec3& cell) const { return grid.contains(cell) && share[grid.index(cell)] >= 0.5f; }
+};
+
+//   labels   a byte per label, not 0 for those that count
+//   spacing  mm that a cell should measure along each axis at least; cells are whole numbers of voxels
+Occupancy occupancy_of(const LabelVolume& volume, const LabelSet& labels, double spacing);
+
+// Air that no way leads to from outside counts as filled; specks apart from the largest connected piece do not.
+void close_body(Occupancy& body);
+
+struct SurfacePoint {
+  glm::dvec3 place{0}, normal{0};  // world, mm; unit, out of the tissue
+};
+
+std::vector<SurfacePoint> surface_points(const Occupancy& occupancy);
+
+// One point per cube of `step` mm, the first of each.
+std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double step);
+
+// Nearest points in a k-d tree; ties go to the smaller number.
+class PointTree {
+ public:
+  explicit PointTree(const std::vector<SurfacePoint>& points);
+  // The nearest point no farther than `reach` whose normal lies within 60 degrees of `normal` (any, for zero); -1 for none.
+  int nearest(const glm::dvec3& place, const glm::dvec3& normal, double reach) const;
+
+ private:
+  void build(int begin, int end);
+  void search(int begin, int end, const glm::dvec3& place, const glm::dvec3& normal, double& squared, int& best) const;
+  std::vector<SurfacePoint> points_;
+  std::vector<std::int32_t> order_;
+  std::vector<std::uint8_t> axis_;
+};
+
+}  // namespace limber

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/rig/auto_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+#include <glm/gtc/quaternion.hpp>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/pose/pose.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/templates.h"
+#include "core/volume/phantom.h"
+#include "core/volume/volume_io.h"
+#include "tests/support/shared_data.h"
+
+namespace limber {
+
+namespace {
+
+// mm between the joints of two rigs of the same names, or of names that differ only by a leading "Right".
+std::vector<std::pair<double, std::string>> errors(const Armature& found, const Armature& truth) {
+  std::vector<std::pair<double, std::string>> result;
+  for (const Bone& bone : found.bones) {
+    auto same = truth.find(bone.name);
+    if (!same) same = truth.find("Right" + bone.name);
+    if (same) result.push_back({glm::distance(bone.head, truth.bones[*same].head), bone.name});
+  }
+  return result;
+}
+
+double largest(const std::vector<std::pair<double, std::string>>& of) {
+  double most = 0;
+  for (const auto& [error, name] : of) most = std::max(most, error);
+  return most;
+}
+
+double median_of_main(const std::vector<std::pair<double, std::string>>& of) {
+  std::vector<double> main;
+  for (const auto& [error, name] : of)
+    for (const char* part : {"UpperArm", "Forearm", "Hand", "Thigh", "Shank", "Foot", "Neck"})
+      if (name == part || name == std::string("Left") + part || name == std::string("Right") + part) main.push_back(error);
+  REQUIRE(!main.empty());
+  std::sort(main.begin(), main.end());
+  return main[main.size() / 2];
+}
+
+const Phantom& arm() {
+  static const Phantom phantom = make_arm_phantom(5);
+  return phantom;
+}
+
+// The same voxels in other places of the world.
+struct Moved {
+  LabelVolume volume;
+  Armature truth;
+};
+Moved moved(const Phantom& phantom, const glm::dmat3& by, double scale, const glm::dvec3& shift) {
+  Moved result{phantom.volume, phantom.armature};
+  Grid& grid = result.volume.grid;
+  grid.direction = by * grid.direction;
+  grid.spacing *= scale;
+  grid.origin = scale * (by * grid.origin) + shift;
+  for (Bone& bone : result.truth.bones) bone.head = scale * (by * bone.head) + shift, bone.tail = scale * (by * bone.tail) + shift;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("auto-fit: every joint of the procedural arm lies within 8 mm of the truth, with bone labels and nearly so without") {
+  const AutoFit with = auto_fit(arm().volume, arm().tissues, rig_template("arm"));
+  CHECK(largest(errors(with.armature, arm().armature)) < 8);
+  CHECK(with.check.whole == doctest::Approx(1).epsilon(0.01));
+  for (const JointFit& joint : with.joints) CHECK(joint.how == JointFit::How::BoneSurface);
+
+  TissueTable unknown = arm().tissues;
+  for (Tissue& tissue : unknown.tissues) tissue.kind = TissueKind::Unknown;
+  const AutoFit without = auto_fit(arm().volume, unknown, rig_template("arm"));
+  CHECK(median_of_main(errors(without.armature, arm().armature)) < 8);
+  CHECK(without.joints[0].how == JointFit::How::Skin);
+}
+
+TEST_CASE("auto-fit: an arm that is turned, mirrored, shifted and of another size is found as well") {
+  const glm::dmat3 oblique = glm::mat3_cast(glm::angleAxis(2.2, glm::normalize(glm::dvec3(0.5, 1, -0.3))));
+  const glm::dmat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);
+  for (const auto& [by, scale] : {std::pair(oblique, 0.8), std::pair(mirror, 1.2)}) {
+    const Moved other = moved(arm(), by, scale, {300, -200, 50});
+    const AutoFit fitted = auto_fit(other.volume, arm().tissues, rig_template("arm"));
+    CHECK(largest(errors(fitted.armature, other.truth)) < 8);
+  }
+}
+
+TEST_CASE("auto-fit: every joint of the procedural body lies within 8 mm of the truth") {
+  const Phantom body = make_body_phantom(7);
+  const AutoFit fitted = auto_fit(body.volume, body.tissues, rig_template("adult"));
+  CHECK(largest(errors(fitted.armature, body.armature)) < 8);
+  CHECK(median_of_main(errors(fitted.armature, body.armature)) < 3);
+}
+
+TEST_CASE("auto-fit: the result does not depend on the number of threads") {
+  std::vector<Armature> results;
+  for (int threads : {1, 3}) {
+    const ThreadCount count(threads);
+    results.push_back(auto_fit(arm().volume, arm().tissues, rig_template("arm")).armature);
+  }
+  CHECK(results[0] == results[1]);
+}
+
+TEST_CASE("auto-fit: a rig whose names mean nothing is laid into the tissue's extents, and says so") {
+  Armature snake;
+  for (int b = 0; b < 4; ++b) snake.bones.push_back({.name = "S" + std::to_string(b), .parent = b - 1, .head = {0, 0, 10.0 * b}, .tail = {0, 0, 10.0 * (b + 1)}});
+  const AutoFit fitted = auto_fit(arm().volume, arm().tissues, snake);
+  CHECK(fitted.joints[0].how == JointFit::How::Extents);
+  CHECK(!fitted.warnings.empty());
+  CHECK(glm::distance(fitted.armature.bones[0].head, fitted.armature.bones[3].tail) > 300);
+}
+
+TEST_CASE("auto-fit: strange volumes are refused or rigged, never fatal") {
+  LabelVolume volume{{{6, 5, 4}, {1, 1, 1}, {0, 0, 0}, glm::dmat3(1)}, std::vector<Label>(120, 0)};
+  CHECK_THROWS_AS(auto_fit(volume, {}, rig_template("adult")), Error);
+  for (const char* name : {"arm", "adult", "quadruped"}) {
+    std::fill(volume.voxels.begin(), volume.voxels.end(), 0);
+    volume.voxels[50] = 1;
+    CHECK_NOTHROW(auto_fit(volume, {}, rig_template(name)));
+    std::fill(volume.voxels.begin(), volume.voxels.end(), 1);
+    CHECK_NOTHROW(auto_fit(volume, {}, rig_template(name)));
+  }
+}
+
+TEST_CASE("auto-fit: bones drawn as rods are followed along their axes") {
+  NEEDS_SHARED("data/makehuman/body_4mm.nrrd");
+  const VolumeFile file = read_volume(test::shared_path("data/makehuman/body_4mm.nrrd"));
+  const TissueTable tissues = with_bones(merge_tissue_tables(file.tissues, nullptr), {4});
+  const Armature truth = read_armature(test::shared_path("data/makehuman/body.armature.json"));
+  const AutoFit fitted = auto_fit(file.volume, tissues, truth);
+  for (const char* name : {"LeftArm", "LeftForeArm", "LeftUpLeg", "LeftLeg", "LeftFoot", "RightArm", "RightForeArm", "RightUpLeg", "RightLeg", "RightFoot"}) {
+    CAPTURE(name);
+    const int b = require_bone(truth, name);
+    CHECK(glm::distance(fitted.armature.bones[b].head, truth.bones[b].head) < 18);
+  }
+}
+
+TEST_CASE("auto-fit: the joints of a real arm lie within a median of 15 mm") {
+  NEEDS_SHARED("data/bp3d/arm_shoulder_1mm_tissue.mha");
+  const VolumeFile file = read_volume(test::shared_path("data/bp3d/arm_shoulder_1mm_tissue.mha"));
+  const TissueTable tissues = with_bones(merge_tissue_tables(file.tissues, nullptr), {7});
+  const Armature truth = read_armature(test::shared_path("data/bp3d/arm_shoulder.armature.json"));
+  const AutoFit fitted = auto_fit(file.volume, tissues, rig_template("arm"));
+  CHECK(median_of_main(errors(fitted.armature, truth)) < 15);
+  CHECK(fitted.check.whole > 0.99);
+}
+
+}  // namespace limber
