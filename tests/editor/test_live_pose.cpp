@@ -204,12 +204,26 @@ TEST_CASE("live pose: a result is shown for its own pose, and gives way to the n
   CHECK(shown_result(*test.editor) == result);
 }
 
-TEST_CASE("live pose: an editor closed with a posed body in all its views leaves no OpenGL object") {
-  {
+TEST_CASE("live pose: an editor closed with a posed body in all its views, or with a result beside it, leaves no OpenGL object") {
+  for (const bool with_result : {false, true}) {
     LiveEditor test;
     test.turn("X", 60);
     test.play("key Return\nclick view.four\nwait 0.5\nwait-job");
     CHECK(test.scene().pose);
+    if (with_result) {
+      Document next = test.editor->document();
+      auto result = std::make_shared<Result>();
+      result->name = "Bent";
+      result->volume = std::make_shared<const LabelVolume>(*next.volume);
+      result->from_volume = next.volume;
+      result->from_pose = next.pose;
+      next.results.push_back(result);
+      commit(*test.editor, "Add result", next);
+      test.play("key Ctrl+4\nmove \"3D view/view\"\nkey 4\nwait-job");
+      CHECK(wiping(*test.editor));
+      CHECK(test.editor->views->other_scene);
+      CHECK(test.scene().volume == result->volume);
+    }
     CHECK(render::gl::live_objects() > 0);
     test.editor.reset();
     CHECK(render::gl::live_objects() == 0);
