@@ -4,6 +4,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "editor/gizmo.h"
 #include "editor/timeline.h"
 
 namespace limber::editor {
@@ -94,6 +95,7 @@ void on_press(Editor& editor, MouseButton button) {
   if (!(view || over_timeline(editor)) || editor.drag || dialog_open(editor)) return;
   if (button == MouseButton::Left && over_widget(editor)) return;
   if (view) editor.views->active = view->id;
+  if (view && button == MouseButton::Left && press_gizmo(editor)) return;
   const Modifiers modifiers = editor.input.modifiers();
   const Chord press{Chord::Kind::Press, modifiers, Key::None, button}, drag{Chord::Kind::Drag, modifiers, Key::None, button};
   if (!editor.keymap.find(drag, contexts(editor))) return run_chord(editor, press);

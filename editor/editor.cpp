@@ -8,6 +8,7 @@
 
 #include "editor/assets.h"
 #include "editor/dispatch.h"
+#include "editor/handling.h"
 #include "editor/live_pose.h"
 #include "editor/panels/panels.h"
 #include "editor/project.h"
@@ -82,7 +83,7 @@ void Dialog::escape(Editor& editor) { editor.close_dialog(); }
 Editor::Editor(Host& host, const Preferences& preferences)
     : host(host), preferences(preferences), keymap(read_keymap(asset("keymap.json"))), operators(gather_operators()),
       jobs(kJobsAtOnce, [&host] { host.wake(); }), arrangements(preferences.arrangements),
-      timeline(std::make_unique<Timeline>()) {
+      handling(std::make_unique<Handling>()), timeline(std::make_unique<Timeline>()) {
   IMGUI_CHECKVERSION();
   imgui = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();

@@ -38,6 +38,7 @@ struct ImGuiContext;
 namespace limber::editor {
 
 struct Timeline;
+struct Handling;
 
 // What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
 struct Drag {
@@ -73,7 +74,7 @@ struct RecentFacts {
 class LivePose;
 
 // What a click can do to the left button in a view.
-enum class Tool { Select, CrossHair };
+enum class Tool { Select, CrossHair, Move, Rotate, Scale, Reach, Extrude };
 
 struct Editor {
   explicit Editor(Host& host, const Preferences& preferences = {});
@@ -157,6 +158,7 @@ struct Editor {
   } edited_number;  // while it is dragged or typed; the document changes once, at the end
   std::optional<glm::vec3> edited_colour;
   Tool tool = Tool::Select;
+  std::unique_ptr<Handling> handling;  // of bones; never null
   std::string open_menu;  // of the top bar
   std::string open_popup;  // a menu of menus.h wanted at the pointer in the next frame; "" for none
   std::string shown_popup;  // the one that is open

@@ -65,7 +65,7 @@ const std::vector<std::pair<std::string, Fact>>& facts() {
       {"clip", [](const Editor& e) { return shown_clip(e) ? shown_clip(e)->name : std::string("none"); }},
       {"keys", [](const Editor& e) { return std::to_string(shown_clip(e) ? frames_of(shown_clip(e)->keys).size() : 0); }},
       {"theme", [](const Editor& e) { return e.preferences.theme; }},
-      {"tool", [](const Editor& e) { return std::string(e.tool == Tool::Select ? "select" : "cross-hair"); }},
+      {"tool", [](const Editor& e) { constexpr const char* kNames[] = {"select", "cross-hair", "move", "rotate", "scale", "reach", "extrude"}; return std::string(kNames[static_cast<int>(e.tool)]); }},
       {"selected", [](const Editor& e) { return std::to_string(e.selection.tissues.size()); }},
       {"tissue", [](const Editor& e) { return e.selection.tissue ? std::to_string(*e.selection.tissue) : std::string("none"); }},
       {"hidden", hidden},

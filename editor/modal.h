@@ -13,6 +13,7 @@
 namespace limber::editor {
 
 struct Editor;
+struct ViewPlace;
 
 // Of the status bar.
 struct KeyHint {
@@ -29,6 +30,8 @@ class Modal {
   virtual bool key(Editor&, const KeyChanged&) { return true; }
   // Once a frame, after the input.
   virtual bool frame(Editor&, double /*seconds*/) { return true; }
+  // Over a view, after its picture.
+  virtual void draw(Editor&, const ViewPlace&) {}
   virtual bool moving() const { return false; }  // draws on without input
   virtual void cancel(Editor&) {}                // what it did is undone
   virtual std::vector<KeyHint> hints(const Editor&) const { return {}; }

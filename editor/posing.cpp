@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/posing.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "core/rig/joint_limits.h"
+#include "core/rig/mirror.h"
+#include "editor/handling.h"
 #include "editor/project.h"
 #include "editor/timeline.h"
 
@@ -35,6 +38,33 @@ std::vector<int> topmost(const Armature& armature, const std::vector<int>& bones
     if (chosen[bone] && !below[bone]) top.push_back(bone);
   }
   return top;
+}
+
+int limb_of(const Armature& armature, int bone) {
+  int length = 1;
+  for (int b = bone; armature.bones[b].parent >= 0; ++length) {
+    const int parent = armature.bones[b].parent;
+    const auto children = std::count_if(armature.bones.begin(), armature.bones.end(), [&](const Bone& other) { return other.parent == parent; });
+    if (children > 1) break;
+    b = parent;
+  }
+  return length;
+}
+
+Pose mirrored_too(const Editor& editor, const Pose& before, Pose next) {
+  if (!editor.handling->x_mirror) return next;
+  const Armature& armature = *editor.document().armature;
+  const std::vector<int> pairs = mirror_pairs(armature);
+  const MirrorPlane plane = mirror_plane(armature);
+  const Pose turned = next;
+  for (int bone = 0; bone < std::ssize(pairs); ++bone) {
+    const int other = pairs[bone];
+    // Where both sides were turned, each keeps its own.
+    if (other == bone || turned.rotation[bone] == before.rotation[bone] || turned.rotation[other] != before.rotation[other]) continue;
+    next.rotation[other] = plane.rotation(turned.rotation[bone]);
+    if (editor.posing.keep_limits) next.rotation[other] = within_limits(armature.bones[other], next.rotation[other]);
+  }
+  return next;
 }
 
 Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones) {

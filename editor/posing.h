@@ -18,6 +18,12 @@ Pose shown_pose(const Editor& editor);
 std::vector<int> chosen_bones(const Editor& editor);
 std::vector<int> topmost(const Armature& armature, const std::vector<int>& bones);
 
+// So many bones from this one up to where the rig branches: an arm does not take the trunk along.
+int limb_of(const Armature& armature, int bone);
+
+// With X-mirror on, the other sides of the bones that were turned do the same in the mirror.
+Pose mirrored_too(const Editor& editor, const Pose& before, Pose next);
+
 // What a change of a pose may do at a joint's limits.
 Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones);
 

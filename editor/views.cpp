@@ -72,7 +72,7 @@ void update_scene(Views& views, const Document& document, const Selection& selec
   if (visibility && visibility->clip_box.enabled) scene.clip.box = {visibility->clip_box.low, visibility->clip_box.high};
   if (visibility && visibility->clip_plane.enabled) scene.clip.plane = {visibility->clip_plane.point, visibility->clip_plane.normal};
   scene.outlined = selection.tissue;
-  scene.armature = views.bones ? document.armature : nullptr;
+  scene.armature = !views.bones ? nullptr : views.preview_armature ? views.preview_armature : document.armature;
   scene.bones_in_front = views.display == render::Display::XRay;
   scene.bones.assign(scene.armature ? scene.armature->bones.size() : 0, {});
   for (const int bone : selection.bones)

@@ -84,6 +84,7 @@ struct Views {
   std::shared_ptr<const Visibility> preview_visibility;
   std::shared_ptr<const TissueTable> preview_tissues;
   std::shared_ptr<const Pose> preview_pose;
+  std::shared_ptr<const Armature> preview_armature;
   glm::vec2 handle_from{0};  // where the pointer pressed the handle that is dragged
   render::Scene scene;  // of the last frame
   std::optional<render::Scene> other_scene;  // what it is compared with; nothing: no comparison

@@ -121,6 +121,15 @@ Pose flipped(const Pose& pose, const Armature& armature) {
   return other;
 }
 
+Bone mirror_image(const Bone& bone, const MirrorPlane& plane) {
+  Bone image = bone;
+  image.head = plane.place(bone.head);
+  image.tail = plane.place(bone.tail);
+  image.limits = mirrored(bone.limits, plane);
+  image.roll = roll_of(image, -plane.direction(rest_axes(bone)[0]));
+  return image;
+}
+
 Armature symmetrized(const Armature& armature, const std::vector<int>& bones) {
   const MirrorPlane plane = mirror_plane(armature);
   std::vector<Bone> all = armature.bones;
@@ -134,11 +143,9 @@ Armature symmetrized(const Armature& armature, const std::vector<int>& bones) {
     const auto name = mirrored_name(all[b].name);
     if (!name) continue;
     const int found = place_of(*name);
-    Bone image = found < 0 ? Bone{.name = *name} : all[found];
-    image.head = plane.place(all[b].head);
-    image.tail = plane.place(all[b].tail);
-    image.limits = mirrored(all[b].limits, plane);
-    image.roll = roll_of(image, -plane.direction(rest_axes(all[b])[0]));
+    Bone image = mirror_image(all[b], plane);
+    image.name = *name;
+    image.parent = found < 0 ? -1 : all[found].parent;
     if (all[b].parent >= 0) {
       const auto parent = mirrored_name(all[all[b].parent].name);
       const int other = parent ? place_of(*parent) : -1;

@@ -26,6 +26,9 @@ struct MirrorPlane {
   glm::dquat rotation(const glm::dquat& q) const;  // what it looks like in the mirror
 };
 
+// Head, tail, own axes and limits in the mirror; name and parent as they are.
+Bone mirror_image(const Bone& bone, const MirrorPlane& plane);
+
 // Halfway between the pairs; where there are none, the sagittal plane through the bones.
 MirrorPlane mirror_plane(const Armature& armature);
 

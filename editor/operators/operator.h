@@ -39,6 +39,7 @@ std::vector<Operator> search_operators();
 std::vector<Operator> preferences_operators();
 std::vector<Operator> prepare_operators();
 std::vector<Operator> skin_operators();
+std::vector<Operator> rig_operators();
 std::vector<Operator> pose_operators();
 std::vector<Operator> motion_operators();
 std::vector<Operator> motion_clip_operators();

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/rig/mirror.h"
 #include "editor/form.h"
@@ -66,12 +68,6 @@ std::string needs_copy(const Editor& editor) {
   return editor.posing.copied.empty() ? "Copy a pose first" : "";
 }
 
-void begin(Editor& editor, std::unique_ptr<Modal> tool) {
-  const Rect* place = editor.layout.place_of(ViewId::Body);
-  editor.modal = std::move(tool);
-  editor.modal_wrap = place ? PointerWrap(*place, editor.look.px(2)) : PointerWrap();
-}
-
 void clear_rotation(Editor& editor) {
   Pose pose = pose_of(editor.document());
   for (int bone : chosen_bones(editor)) pose.rotation[bone] = {1, 0, 0, 0};
@@ -120,19 +116,118 @@ void flip_pose(Editor& editor) {
   commit_pose(editor, "Flip pose", limited(editor, std::move(pose), all));
 }
 
+// The pose, and the same with the chosen bones at rest.
+struct Ends {
+  Pose pose, rest;
+};
+
+Ends ends_of(const Editor& editor) {
+  const Armature& armature = *editor.document().armature;
+  Ends ends{pose_of(editor.document()), pose_of(editor.document())};
+  for (const int bone : chosen_bones(editor)) {
+    ends.rest.rotation[bone] = {1, 0, 0, 0};
+    if (armature.bones[bone].parent < 0) ends.rest.root_translation = glm::dvec3(0);
+  }
+  return ends;
+}
+
+void push(Editor& editor) {
+  const Ends ends = ends_of(editor);
+  begin_tool(editor, begin_blending(editor, {.label = "Push pose", .words = "away from rest", .from = ends.rest, .to = ends.pose, .base = 1, .most = 2}));
+}
+
+void relax(Editor& editor) {
+  const Ends ends = ends_of(editor);
+  begin_tool(editor, begin_blending(editor, {.label = "Relax pose", .words = "towards rest", .from = ends.rest, .to = ends.pose, .base = 1, .slope = -1}));
+}
+
+void break_down(Editor& editor) {
+  const Ends ends = ends_of(editor);
+  begin_tool(editor, begin_blending(editor, {.label = "Breakdown", .words = "from rest to the pose", .from = ends.rest, .to = ends.pose, .begin = 0.5}));
+}
+
+void blend_to_rest(Editor& editor) {
+  const Ends ends = ends_of(editor);
+  begin_tool(editor, begin_blending(editor, {.label = "Blend to rest", .words = "of the way to rest", .from = ends.pose, .to = ends.rest}));
+}
+
+void blend_to_copied(Editor& editor) {
+  const Armature& armature = *editor.document().armature;
+  const Pose pose = pose_of(editor.document());
+  Pose copied = pose;
+  for (const int bone : chosen_bones(editor))
+    if (const auto found = editor.posing.copied.find(armature.bones[bone].name); found != editor.posing.copied.end()) copied.rotation[bone] = found->second;
+  begin_tool(editor, begin_blending(editor, {.label = "Blend to copied pose", .words = "of the way to the copied pose", .from = pose, .to = copied}));
+}
+
+void toggle_pins(Editor& editor) {
+  auto& pins = editor.handling->pins;
+  const Armature& armature = *editor.document().armature;
+  const std::vector<int> bones = chosen_bones(editor);
+  const bool all = std::all_of(bones.begin(), bones.end(), [&](int bone) { return pins.contains(armature.bones[bone].name); });
+  for (const int bone : bones) {
+    if (all) pins.erase(armature.bones[bone].name);
+    else pins.insert(armature.bones[bone].name);
+  }
+}
+
+// Where the limb bends to now, so that nothing moves: beyond the joint in its middle.
+void toggle_pole(Editor& editor) {
+  const Armature& armature = *editor.document().armature;
+  const int bone = *editor.selection.bone;
+  auto& poles = editor.handling->poles;
+  if (poles.erase(armature.bones[bone].name) > 0) return;
+  const auto posed = posed_from_rest(armature, pose_of(editor.document()));
+  int root = bone;
+  for (int i = 1; i < limb_of(armature, bone); ++i) root = armature.bones[root].parent;
+  const glm::dvec3 begin = posed[root] * armature.bones[root].head, end = posed[bone] * armature.bones[bone].tail, middle = posed[bone] * armature.bones[bone].head;
+  const glm::dvec3 along = end - begin;
+  const double squared = glm::dot(along, along);
+  glm::dvec3 out = squared > 0 ? middle - begin - along * (glm::dot(middle - begin, along) / squared) : glm::dvec3(0);
+  // A straight limb may bend to any side: forward.
+  if (glm::length(out) < 1e-3) out = {0, -1, 0};
+  poles[armature.bones[bone].name] = middle + glm::normalize(out) * std::max(20.0, std::sqrt(squared) / 2);
+}
+
+std::string needs_limb(const Editor& editor) {
+  if (const std::string why = needs_bone(editor); !why.empty()) return why;
+  return limb_of(*editor.document().armature, *editor.selection.bone) > 1 ? "" : "A pole needs a limb of two bones or more";
+}
+
+Operator space_operator(const char* id, const char* label, const char* sentence, Space space) {
+  return {id, label, icon::kSpace, "Pose", sentence, [space](Editor& e) { e.handling->space = space; }, nullptr, [space](const Editor& e) { return e.handling->space == space; }};
+}
+
 }  // namespace
 
 std::vector<Operator> pose_operators() {
   return {
-      {"pose.rotate", "Rotate", icon::kRotate, "Pose", "Turns the chosen bones with the pointer.", [](Editor& e) { begin(e, begin_turning(e)); }, needs_bone},
+      {"pose.rotate", "Rotate", icon::kRotate, "Pose", "Turns the chosen bones with the pointer.", [](Editor& e) { begin_tool(e, begin_turning(e)); }, needs_bone},
       {"pose.move", "Reach", icon::kMove, "Pose", "The end of the chosen bone goes with the pointer and its limb follows; the root takes the body along.",
-       [](Editor& e) { begin(e, begin_dragging(e)); }, needs_bone},
+       [](Editor& e) { begin_tool(e, begin_dragging(e)); }, needs_bone},
       {"pose.clear_rotation", "Clear rotation", "", "Pose", "The chosen bones go back to rest; all bones where none is chosen.", clear_rotation, needs_pose},
       {"pose.clear_translation", "Clear translation", "", "Pose", "The body goes back to its place.", clear_translation, needs_pose},
       {"pose.copy", "Copy pose", icon::kCopy, "Pose", "Keeps the rotations of the chosen bones, or of all, for pasting.", copy_pose, needs_rig},
       {"pose.paste", "Paste pose", "", "Pose", "Bones of the same names take the copied rotations.", [](Editor& e) { paste_pose(e, false); }, needs_copy},
       {"pose.paste_flipped", "Paste flipped pose", "", "Pose", "The other side's bones take the copied rotations, as in a mirror.", [](Editor& e) { paste_pose(e, true); }, needs_copy},
       {"pose.flip", "Flip pose", icon::kMirror, "Pose", "The left side does what the right side did, and the right what the left did.", flip_pose, needs_pose},
+      {"pose.push", "Push pose", "", "Pose", "The chosen bones go further away from rest: with the pointer, or by per cent.", push, needs_pose},
+      {"pose.relax", "Relax pose", "", "Pose", "The chosen bones come nearer to rest: with the pointer, or by per cent.", relax, needs_pose},
+      {"pose.breakdown", "Breakdown", icon::kBreakdown, "Pose", "A pose between rest and the one there is: with the pointer, or by per cent.", break_down, needs_pose},
+      {"pose.blend_rest", "Blend to rest", "", "Pose", "The chosen bones go a part of the way to rest.", blend_to_rest, needs_pose},
+      {"pose.blend_copied", "Blend to copied pose", "", "Pose", "The chosen bones go a part of the way to the copied pose.", blend_to_copied, needs_copy},
+      {"pose.pin", "Pin joint", "", "Pose", "The ends of the chosen bones stay where they are while other joints are dragged; again frees them.", toggle_pins, needs_bone,
+       [](const Editor& e) { return needs_bone(e).empty() && e.handling->pins.contains(e.document().armature->bones[*e.selection.bone].name); }},
+      {"pose.pole", "Pole", "", "Pose", "The limb bends towards a point that can be dragged; again takes it away.", toggle_pole, needs_limb,
+       [](const Editor& e) { return needs_bone(e).empty() && e.handling->poles.contains(e.document().armature->bones[*e.selection.bone].name); }},
+      {"pose.auto_ik", "Auto-IK", icon::kReach, "Pose", "A dragged joint takes its whole limb along, not its bone alone.", [](Editor& e) { e.handling->auto_ik = !e.handling->auto_ik; }, nullptr,
+       [](const Editor& e) { return e.handling->auto_ik; }},
+      {"edit.x_mirror", "X-mirror", icon::kMirror, "Edit", "What is done to a bone is done to the one on the other side, in the mirror.", [](Editor& e) { e.handling->x_mirror = !e.handling->x_mirror; }, nullptr,
+       [](const Editor& e) { return e.handling->x_mirror; }},
+      space_operator("space.global", "Global axes", "Gizmos and locks go by the axes of the world.", Space::Global),
+      space_operator("space.local", "Local axes", "Gizmos and locks go by the bone's own axes.", Space::Local),
+      space_operator("space.parent", "Parent axes", "Gizmos and locks go by the axes of the bone above.", Space::Parent),
+      space_operator("space.view", "View axes", "Gizmos and locks go by the picture: right, up, towards you.", Space::View),
       {"pose.limits", "Keep to joint limits", "", "Pose", "Joints stop where their limits end.", [](Editor& e) { e.posing.keep_limits = !e.posing.keep_limits; }, nullptr,
        [](const Editor& e) { return e.posing.keep_limits; }},
       {"pose.flex", "Flex a joint...", icon::kRotate, "Pose", "Turns a bone about its hinge by an angle.", ask_flex, needs_rig},

@@ -136,6 +136,9 @@ std::vector<Operator> select_operators() {
       {"select.mirror", "Select mirrored", "", "Select", "Chooses the bones of the other side instead.", choose_mirrored, needs_bone},
       tool_operator("tool.select", "Select", icon::kSelect, "A click chooses the tissue under the pointer.", Tool::Select),
       tool_operator("tool.cross_hair", "Cross-hair", icon::kCrossHair, "A click moves the cross-hair, and the slices with it.", Tool::CrossHair),
+      tool_operator("tool.move", "Move tool", icon::kMove, "Arrows at the active bone's end move it, and its limb follows; at the root they move the body.", Tool::Move),
+      tool_operator("tool.rotate", "Rotate tool", icon::kRotate, "Rings at the active bone's joint turn it.", Tool::Rotate),
+      tool_operator("tool.reach", "Reach tool", icon::kReach, "Any joint is dragged, and its limb follows.", Tool::Reach),
   };
 }
 

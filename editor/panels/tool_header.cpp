@@ -23,12 +23,34 @@ class Header {
     x_ += px(9);
   }
 
-  void toggle(const char* id) {
+  void toggle(const char* id, const char* label = "") {
     const Operator* op = find_operator(editor_, id);
-    const ButtonLook face = face_of(*op, false);
+    ButtonLook face = face_of(*op, false);
+    if (*label) face.label = label;
     const float width = face.label.empty() ? px(30) : width_of_button(editor_, face);
     place(id, face.label, width, op->checked(editor_) ? ButtonStyle::Soft : ButtonStyle::Plain);
     x_ += px(6);
+  }
+
+  // One of several, behind a button as wide as the longest of their names.
+  void choice(const char* name, std::initializer_list<const char*> ids) {
+    const Operator* chosen = nullptr;
+    float width = 0;
+    for (const char* id : ids) {
+      const Operator* op = find_operator(editor_, id);
+      if (op->checked(editor_)) chosen = op;
+      width = std::max(width, width_of_button(editor_, {op->icon, op->label}));
+    }
+    const float height = px(26), y = std::round(bar_.centre().y - height / 2);
+    if (button(editor_, name, {{x_, y}, {x_ + width, y + height}}, {chosen->icon, chosen->label})) ImGui::OpenPopup(name);
+    x_ += width + px(6);
+    if (!ImGui::BeginPopup(name, ImGuiWindowFlags_NoMove)) return;
+    editor_.place.region = Region::Popup;
+    push_path(editor_, name);
+    for (const char* id : ids) operator_menu_item(editor_, id);
+    pop_path(editor_);
+    editor_.place.region = Region::ToolHeader;
+    ImGui::EndPopup();
   }
 
   void label(const std::string& text) {
@@ -101,9 +123,15 @@ void draw_tool_header(Editor& editor) {
   header.to_left();
   header.segments({"view.solid", "view.xray_display", "view.tissue"});
   header.line();
-  if (editor.workspace == Workspace::Pose && header.fits(170, {"resample.lbs", "resample.dqs"})) {
-    header.label("Preview");
-    header.segments({"resample.lbs", "resample.dqs"});
+  if (editor.workspace == Workspace::Pose) {
+    if (header.fits(170, {"resample.lbs", "resample.dqs"})) {
+      header.label("Preview");
+      header.segments({"resample.lbs", "resample.dqs"});
+    }
+    if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"})) header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
+    if (header.fits(90, {"pose.limits"})) header.toggle("pose.limits", "Limits");
+    for (const char* id : {"pose.auto_ik", "edit.x_mirror"})
+      if (header.fits(editor.layout.short_labels ? 36 : 110, {id})) header.toggle(id);
     header.line();
   }
   if (editor.layout.view_places.size() > 1) {

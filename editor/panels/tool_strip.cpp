@@ -12,7 +12,9 @@ void draw_tool_strip(Editor& editor) {
   begin_region(editor, Region::ToolStrip, "strip", rect, look.theme.panel);
   fill({{rect.high.x - look.line(), rect.low.y}, rect.high}, look.theme.void_);
   float y = rect.low.y + look.px(4);
-  for (const char* id : {"tool.select", "tool.cross_hair", "-", "view.clip_box", "view.clip_plane"}) {
+  std::vector<const char*> tools = {"tool.select", "tool.cross_hair", "-", "view.clip_box", "view.clip_plane"};
+  if (editor.workspace == Workspace::Pose) tools = {"tool.select", "tool.cross_hair", "-", "tool.move", "tool.rotate", "tool.reach", "-", "pose.breakdown", "-", "view.clip_box", "view.clip_plane"};
+  for (const char* id : tools) {
     if (*id == '-') {
       fill({{rect.low.x + look.px(8), y + look.px(5)}, {rect.high.x - look.px(9), y + look.px(5) + look.line()}}, look.theme.line2);
       y += look.px(11);
@@ -21,7 +23,7 @@ void draw_tool_strip(Editor& editor) {
     const Operator* op = find_operator(editor, id);
     const Rect place{{rect.low.x + look.px(4), y}, {rect.low.x + look.px(40), y + look.px(34)}};
     const Pressed pressed = press_area(editor, id, place, why_not(editor, *op).empty());
-    const bool on = op->checked(editor);
+    const bool on = op->checked && op->checked(editor);
     if (on) fill(place, look.theme.accent, look.px(5));
     else if (pressed.hovered) fill(place, look.theme.hover, look.px(5));
     const Colour colour = on ? look.theme.on_accent : why_not(editor, *op).empty() ? look.theme.text : look.theme.text3;

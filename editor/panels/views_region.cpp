@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "editor/dispatch.h"
+#include "editor/gizmo.h"
 #include "editor/icons.h"
 #include "editor/menus.h"
 #include "editor/panels/panels.h"
@@ -208,6 +209,7 @@ void draw_views_region(Editor& editor) {
     ImGui::PushClipRect(im(place.rect.low), im(place.rect.high), true);
     if (place.id == ViewId::Body) draw_body_overlay(editor, place.rect);
     else draw_slice_overlay(editor, place.id, place.rect);
+    draw_gizmo(editor, place);
     draw_wipe(editor, place.rect);
     if (editor.layout.view_places.size() > 1 && place.id == editor.views->active) outline(place.rect, look.theme.accent, 0, 2 * look.line());
     ImGui::PopClipRect();

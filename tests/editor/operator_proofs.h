@@ -72,6 +72,7 @@ std::vector<Proof> proofs_of_posing();
 std::vector<Proof> proofs_of_comparing();
 std::vector<Proof> proofs_of_motion();
 std::vector<Proof> proofs_of_clips();
+std::vector<Proof> proofs_of_handling();
 
 void prove(Stage& stage, const std::vector<Proof>& proofs);
 

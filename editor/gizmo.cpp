@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/gizmo.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/dispatch.h"
+#include "editor/gizmo_painter.h"
+#include "editor/paint.h"
+#include "editor/posing.h"
+#include "editor/tools/pose_tools.h"
+
+namespace limber::editor {
+
+namespace {
+
+// Pixels at scale 1.
+constexpr double kRing = 86, kViewRing = 108, kTrackball = 78, kHit = 7;
+constexpr double kArrowBegin = 16, kArrowEnd = 80, kCone = 12, kSquareAt = 28, kSquare = 12, kCentre = 9;
+constexpr double kJointHit = 10;
+constexpr double kHidden = 0.0698, kEdgeOn = 0.1392;  // sines of 4 and 8 degrees: from where a ring fades, until where it is gone
+constexpr int kSteps = 96;
+
+double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b, double& share) {
+  const glm::dvec2 along = b - a;
+  const double squared = glm::dot(along, along);
+  share = squared > 0 ? glm::clamp(glm::dot(p - a, along) / squared, 0.0, 1.0) : 0;
+  return glm::distance(p, a + share * along);
+}
+
+// How steeply a plane is seen: the sine of its angle with the line of sight.
+double steepness(const Gizmo& gizmo, const SeenFrom& view, int axis) { return std::abs(glm::dot(gizmo.axes[axis], view.direction_to_eye(gizmo.centre))); }
+float ring_alpha(const Gizmo& gizmo, const SeenFrom& view, int axis) { return static_cast<float>(glm::clamp((steepness(gizmo, view, axis) - kHidden) / (kEdgeOn - kHidden), 0.0, 1.0)); }
+// An arrow that points at the eye cannot be drawn along.
+float arrow_alpha(const Gizmo& gizmo, const SeenFrom& view, int axis) {
+  const double s = steepness(gizmo, view, axis), across = std::sqrt(std::max(0.0, 1 - s * s));
+  return static_cast<float>(glm::clamp((across - kHidden) / (kEdgeOn - kHidden), 0.0, 1.0));
+}
+
+// How near the eye the visible part of a ring is where the pixel touches it; nothing where it does not.
+std::optional<double> touched(const Ring& ring, const SeenFrom& view, const glm::dvec2& pixel, double reach) {
+  const glm::dvec3 to_eye = view.direction_to_eye(ring.centre);
+  const auto [begin, by] = ring.front(view);
+  double best = reach;
+  std::optional<double> nearness;
+  glm::dvec3 from = ring.at(begin);
+  auto from_pixel = view.pixel_of(from);
+  for (int i = 1; i <= kSteps; ++i) {
+    const glm::dvec3 to = ring.at(begin + by * i / kSteps);
+    const auto to_pixel = view.pixel_of(to);
+    double share = 0;
+    if (from_pixel && to_pixel)
+      if (const double distance = distance_to_segment(pixel, *from_pixel, *to_pixel, share); distance <= best) {
+        best = distance;
+        nearness = glm::dot(glm::mix(from, to, share) - ring.centre, to_eye);
+      }
+    from = to;
+    from_pixel = to_pixel;
+  }
+  return nearness;
+}
+
+std::optional<GizmoPart> rotating_part(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel, const glm::dvec2& centre) {
+  std::optional<GizmoPart> found;
+  double nearest = -1e300;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (steepness(gizmo, view, axis) < kEdgeOn) continue;
+    const auto nearness = touched(ring_of(view, scale, gizmo.centre, gizmo.axes[axis], kRing), view, pixel, kHit * scale);
+    if (nearness && *nearness > nearest) {
+      nearest = *nearness;
+      found = GizmoPart{GizmoPart::Kind::Ring, axis};
+    }
+  }
+  if (found) return found;
+  const double distance = glm::distance(pixel, centre) / scale;
+  if (std::abs(distance - kViewRing) <= kHit) return GizmoPart{GizmoPart::Kind::ViewRing};
+  if (distance <= kTrackball) return GizmoPart{GizmoPart::Kind::Trackball};
+  return std::nullopt;
+}
+
+glm::dvec3 middle_of_square(const Gizmo& gizmo, int axis, double unit) { return gizmo.centre + (gizmo.axes[(axis + 1) % 3] + gizmo.axes[(axis + 2) % 3]) * (kSquareAt * unit); }
+
+std::optional<GizmoPart> moving_part(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel, const glm::dvec2& centre) {
+  if (glm::distance(pixel, centre) <= (kCentre + kHit / 2) * scale) return GizmoPart{GizmoPart::Kind::Centre};
+  const double unit = view.millimetres_per_pixel(gizmo.centre) * scale;
+  const glm::dvec3 to_eye = view.direction_to_eye(gizmo.centre);
+  std::optional<GizmoPart> found;
+  double nearest = -1e300;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto begin = view.pixel_of(gizmo.centre + gizmo.axes[axis] * (kArrowBegin * unit)), end = view.pixel_of(gizmo.centre + gizmo.axes[axis] * ((kArrowEnd + kCone) * unit));
+    double share;
+    if (begin && end && arrow_alpha(gizmo, view, axis) >= 1 && distance_to_segment(pixel, *begin, *end, share) <= kHit * scale)
+      if (const double nearness = glm::dot(gizmo.axes[axis], to_eye) * share; nearness > nearest) {
+        nearest = nearness;
+        found = GizmoPart{GizmoPart::Kind::Arrow, axis};
+      }
+  }
+  if (found || gizmo.tool == Tool::Scale) return found;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto middle = view.pixel_of(middle_of_square(gizmo, axis, unit));
+    if (middle && steepness(gizmo, view, axis) >= kEdgeOn && glm::distance(pixel, *middle) <= kSquare * scale * 0.8) return GizmoPart{GizmoPart::Kind::Plane, axis};
+  }
+  return std::nullopt;
+}
+
+// The tail nearest to the pointer, else the bone under it.
+std::optional<int> joint_at(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
+  const Armature& armature = *editor.document().armature;
+  const auto posed = posed_from_rest(armature, shown_pose(editor));
+  std::optional<int> found;
+  double nearest = kJointHit * editor.look.scale;
+  for (int bone = 0; bone < std::ssize(armature.bones); ++bone)
+    if (const auto tail = view.pixel_of(posed[bone] * armature.bones[bone].tail); tail && glm::distance(*tail, pixel) <= nearest) {
+      nearest = glm::distance(*tail, pixel);
+      found = bone;
+    }
+  if (!found) found = editor.views->body.picture->pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low)));
+  return found;
+}
+
+void choose_bone(Editor& editor, int bone) {
+  editor.selection = {};
+  editor.selection.bone = bone;
+  editor.selection.bones = {bone};
+}
+
+bool press_joint(Editor& editor, const SeenFrom& view) {
+  const auto bone = joint_at(editor, view, glm::dvec2(editor.input.pointer));
+  if (!bone) return false;
+  choose_bone(editor, *bone);
+  begin_tool(editor, begin_dragging(editor, {.held = MouseButton::Left}));
+  return true;
+}
+
+void draw_rotating(const Gizmo& gizmo, const SeenFrom& view, const Editor& editor, const GizmoPainter& painter, const std::optional<GizmoPart>& hovered) {
+  const Theme& theme = editor.look.theme;
+  const float scale = editor.look.scale;
+  const auto over = [&](GizmoPart::Kind kind, int axis = -1) { return hovered && *hovered == GizmoPart{kind, axis}; };
+  const auto centre = view.pixel_of(gizmo.centre);
+  if (centre && over(GizmoPart::Kind::Trackball))
+    ImGui::GetWindowDrawList()->AddCircleFilled({static_cast<float>(centre->x), static_cast<float>(centre->y)}, static_cast<float>(kTrackball) * scale, with_alpha(0xFFFFFFFF, 0.06f), 64);
+  const bool seen = over(GizmoPart::Kind::ViewRing);
+  painter.ring(ring_of(view, scale, gizmo.centre, view.towards_eye, kViewRing), with_alpha(theme.view_text, seen ? 1 : 0.55f), seen ? 2.5f : 1.5f, GizmoPainter::Part::Whole);
+  // The one turned away most lies behind the others.
+  int order[] = {0, 1, 2};
+  std::sort(order, order + 3, [&](int a, int b) { return steepness(gizmo, view, a) > steepness(gizmo, view, b); });
+  for (const int axis : order) {
+    const bool on = over(GizmoPart::Kind::Ring, axis);
+    const float alpha = ring_alpha(gizmo, view, axis);
+    if (alpha > 0) painter.ring(ring_of(view, scale, gizmo.centre, gizmo.axes[axis], kRing), with_alpha(theme.axis[axis], alpha * (on ? 1 : 0.8f)), on ? 3.5f : 2.5f, GizmoPainter::Part::Front);
+  }
+}
+
+void draw_moving(const Gizmo& gizmo, const SeenFrom& view, const Editor& editor, const GizmoPainter& painter, const std::optional<GizmoPart>& hovered) {
+  const Theme& theme = editor.look.theme;
+  const float scale = editor.look.scale;
+  const double unit = view.millimetres_per_pixel(gizmo.centre) * scale;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool on = hovered && *hovered == GizmoPart{GizmoPart::Kind::Arrow, axis};
+    if (const float alpha = arrow_alpha(gizmo, view, axis); alpha > 0)
+      painter.arrow(gizmo.centre, gizmo.axes[axis], with_alpha(theme.axis[axis], alpha * (on ? 1 : 0.85f)), kArrowBegin, kArrowEnd, on ? 3.5f : 2.5f, gizmo.tool == Tool::Scale);
+    if (gizmo.tool == Tool::Scale || steepness(gizmo, view, axis) < kEdgeOn) continue;
+    painter.square(middle_of_square(gizmo, axis, unit), gizmo.axes[(axis + 1) % 3] * (kSquare / 2 * unit), gizmo.axes[(axis + 2) % 3] * (kSquare / 2 * unit),
+                   with_alpha(theme.axis[axis], hovered && *hovered == GizmoPart{GizmoPart::Kind::Plane, axis} ? 1 : 0.6f));
+  }
+  painter.circle(gizmo.centre, with_alpha(0xFFFFFFFF, hovered && *hovered == GizmoPart{GizmoPart::Kind::Centre} ? 1 : 0.85f), kCentre, 1.6f);
+}
+
+// The end of a limb and its pole, posed.
+struct Pole {
+  int bone;
+  glm::dvec3 middle, point;
+};
+
+std::vector<Pole> poles_of(const Editor& editor) {
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  if (editor.workspace != Workspace::Pose || !armature || !editor.views->bones) return {};
+  std::vector<Pole> poles;
+  const auto posed = posed_from_rest(*armature, shown_pose(editor));
+  for (const auto& [name, point] : editor.handling->poles)
+    if (const auto bone = armature->find(name)) poles.push_back({*bone, posed[*bone] * armature->bones[*bone].head, point});
+  return poles;
+}
+
+std::optional<int> pole_at(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
+  for (const Pole& pole : poles_of(editor))
+    if (const auto seen = view.pixel_of(pole.point); seen && glm::distance(*seen, pixel) <= kJointHit * editor.look.scale) return pole.bone;
+  return std::nullopt;
+}
+
+// Pinned joints and poles.
+void draw_marks(Editor& editor, const SeenFrom& view) {
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !armature || !editor.views->bones) return;
+  const GizmoPainter painter(editor, view);
+  const Theme& theme = editor.look.theme;
+  if (!editor.handling->pins.empty()) {
+    const auto posed = posed_from_rest(*armature, shown_pose(editor));
+    for (const std::string& name : editor.handling->pins)
+      if (const auto bone = armature->find(name)) painter.diamond(posed[*bone] * armature->bones[*bone].tail, theme.accent_text, 12);
+  }
+  for (const Pole& pole : poles_of(editor)) {
+    painter.line(pole.middle, pole.point, theme.accent_text, 1, true);
+    painter.dot(pole.point, theme.accent_text, 0xFF1A1614, 5);
+  }
+}
+
+}  // namespace
+
+std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view) {
+  if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !editor.document().volume || !editor.views->bones) return std::nullopt;
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  const auto bone = editor.selection.bone;
+  if (!armature || !bone || *bone >= std::ssize(armature->bones)) return std::nullopt;
+  if (editor.tool != Tool::Rotate && editor.tool != Tool::Move) return std::nullopt;
+  const Pose pose = shown_pose(editor);
+  const Bone& b = armature->bones[*bone];
+  const bool at_head = editor.tool == Tool::Rotate || b.parent < 0;
+  return Gizmo{editor.tool, posed_from_rest(*armature, pose)[*bone] * (at_head ? b.head : b.tail), axes_of(editor.handling->space, *armature, pose, *bone, view)};
+}
+
+std::optional<GizmoPart> part_at(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel) {
+  const auto centre = view.pixel_of(gizmo.centre);
+  if (!centre) return std::nullopt;
+  return gizmo.tool == Tool::Rotate ? rotating_part(gizmo, view, scale, pixel, *centre) : moving_part(gizmo, view, scale, pixel, *centre);
+}
+
+bool press_gizmo(Editor& editor) {
+  const ViewPlace* place = hovered_view(editor);
+  if (!place || editor.input.down(Key::Alt)) return false;
+  const SeenFrom view(editor, *place);
+  if (const auto pole = place->id == ViewId::Body ? pole_at(editor, view, glm::dvec2(editor.input.pointer)) : std::nullopt) {
+    choose_bone(editor, *pole);
+    begin_tool(editor, begin_dragging_pole(editor, {.held = MouseButton::Left}));
+    return true;
+  }
+  if (editor.tool == Tool::Reach && editor.workspace == Workspace::Pose && place->id == ViewId::Body && editor.document().armature) return press_joint(editor, view);
+  const auto gizmo = gizmo_in(editor, view);
+  const auto part = gizmo ? part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer)) : std::nullopt;
+  if (!part) return false;
+  const Grip grip{.lock = {part->axis, editor.handling->space, part->kind == GizmoPart::Kind::Plane}, .held = MouseButton::Left, .trackball = part->kind == GizmoPart::Kind::Trackball};
+  begin_tool(editor, gizmo->tool == Tool::Rotate ? begin_turning(editor, grip) : begin_dragging(editor, grip));
+  return true;
+}
+
+void draw_gizmo(Editor& editor, const ViewPlace& place) {
+  const SeenFrom view(editor, place);
+  draw_marks(editor, view);
+  if (editor.modal) return editor.modal->draw(editor, place);
+  const auto gizmo = gizmo_in(editor, view);
+  if (!gizmo) return;
+  const GizmoPainter painter(editor, view);
+  const ViewPlace* under = editor.drag || editor.dialog ? nullptr : hovered_view(editor);
+  std::optional<GizmoPart> hovered;
+  if (under && under->id == place.id) hovered = part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer));
+  if (gizmo->tool == Tool::Rotate) draw_rotating(*gizmo, view, editor, painter, hovered);
+  else draw_moving(*gizmo, view, editor, painter, hovered);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How bones are taken hold of: the axes that gizmos and locks go by, what a transform snaps to, which joints stay in place.
+// Not a part of the document: changing it is no edit.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include <glm/glm.hpp>
+
+#include "core/pose/pose.h"
+#include "editor/seen_from.h"
+
+namespace limber::editor {
+
+enum class Space { Global, Local, Parent, View };
+const char* name_of(Space space);  // "Global"
+
+enum class Snap { Steps, Joint, BoneMiddle };
+
+struct Handling {
+  enum class Part { Whole, Head, Tail };
+
+  Space space = Space::Global;
+  bool auto_ik = true;                      // a dragged joint takes its limb along
+  bool x_mirror = false;                    // the other side does the same, mirrored
+  Part part = Part::Whole;                  // of the active bone, in the rig
+  Snap snap = Snap::Steps;
+  bool snapping = false;                    // always; Ctrl then leaves it
+  std::set<std::string> pins;               // bones whose tails stay where they are while others are dragged
+  std::map<std::string, glm::dvec3> poles;  // world points that the limb ending in that bone bends towards
+};
+
+// Columns x, y, z of a space for a bone of a posed rig. A root's parent is the world.
+glm::dmat3 axes_of(Space space, const Armature& armature, const Pose& pose, int bone, const SeenFrom& view);
+
+}  // namespace limber::editor

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What moving, turning and scaling share: the view they act in, the lock to an axis or plane, the number that is typed,
+// snapping, confirming and dropping.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "editor/editor.h"
+#include "editor/handling.h"
+#include "editor/tools/typed_number.h"
+
+namespace limber::editor {
+
+// What a tool is held to: along or about an axis of a space, or in the plane across it.
+struct AxisLock {
+  int axis = -1;  // 0 .. 2; -1: none
+  Space space = Space::Global;
+  bool plane = false;
+};
+
+// How a tool begins.
+struct Grip {
+  AxisLock lock = {};
+  std::optional<MouseButton> held = {};  // the button whose release ends it; a release in place picks what lies below instead
+  bool trackball = false;
+};
+
+class TransformTool : public Modal {
+ public:
+  TransformTool(Editor& editor, const Grip& grip);
+
+  bool moved(Editor& editor, const glm::vec2& pixels) override;
+  bool button(Editor& editor, const ButtonChanged& event) override;
+  bool key(Editor& editor, const KeyChanged& event) override;
+
+  const SeenFrom& view() const { return view_; }
+
+ protected:
+  virtual void follow(Editor&, const glm::dvec2& /*from*/, const glm::dvec2& /*to*/) {}  // the pointer, slowed
+  virtual void show(Editor& editor) = 0;
+  virtual void keep(Editor& editor) = 0;
+  virtual glm::dmat3 axes(Space space) const = 0;
+  virtual void locked(Editor&) {}  // by a key
+  virtual bool own_key(Editor&, Key) { return false; }
+
+  void lock_to_way(Editor& editor);
+  bool confirm(Editor& editor);
+  bool drop(Editor& editor);
+  double snapped(const Editor& editor, double value, double step, double fine) const;
+  // Of the lock, in the world; zero where there is none.
+  glm::dvec3 lock_axis() const;
+  std::string lock_text(const char* word) const;  // " about local X"
+  std::vector<KeyHint> shared_hints() const;
+  // Where a point goes that the pointer takes along from `from`, held by the lock; `step`, `fine` in mm.
+  glm::dvec3 dragged(const Editor& editor, const glm::dvec3& from, double step, double fine) const;
+
+  SeenFrom view_;
+  AxisLock lock_;
+  std::optional<MouseButton> held_;
+  TypedNumber number_;
+  glm::dvec2 pointer_, start_;  // of the window, as if nothing stopped or slowed it
+  double travelled_ = 0;        // pixels, the furthest from the start
+};
+
+// Takes the input; the pointer that leaves the tool's view comes in again at its other side.
+void begin_tool(Editor& editor, std::unique_ptr<TransformTool> tool);
+
+std::string text_of_number(const char* format, double value);
+
+}  // namespace limber::editor
