@@ -5,6 +5,7 @@
 #include <imgui_internal.h>
 
 #include "editor/gizmo.h"
+#include "editor/rigging.h"
 #include "editor/timeline.h"
 
 namespace limber::editor {
@@ -39,7 +40,8 @@ void on_key(Editor& editor, const KeyChanged& event) {
   if (editor.modal) return end_modal(editor, editor.modal->key(editor, event));
   if (!event.down || event.key >= Key::Ctrl) return;
   if (event.key == Key::Escape) {
-    if (editor.views->preview_visibility || editor.views->preview_tissues) {
+    if (editor.views->preview_visibility || editor.views->preview_tissues || editor.views->preview_armature) {
+      editor.views->preview_armature.reset();
       editor.views->preview_visibility.reset();
       editor.views->preview_tissues.reset();
     } else if (editor.drag) {
@@ -168,6 +170,7 @@ std::vector<std::string> contexts(const Editor& editor) {
 
 void dispatch(Editor& editor, const std::vector<Event>& events, InputState before) {
   const InputState after = editor.input;
+  drop_missing_bones(editor);
   for (const Event& event : events) {
     const glm::vec2 from = before.pointer;
     before.apply(event);

@@ -8,7 +8,9 @@
 #include "editor/gizmo_painter.h"
 #include "editor/paint.h"
 #include "editor/posing.h"
+#include "editor/rigging.h"
 #include "editor/tools/pose_tools.h"
+#include "editor/tools/rig_tools.h"
 
 namespace limber::editor {
 
@@ -18,6 +20,7 @@ namespace {
 constexpr double kRing = 86, kViewRing = 108, kTrackball = 78, kHit = 7;
 constexpr double kArrowBegin = 16, kArrowEnd = 80, kCone = 12, kSquareAt = 28, kSquare = 12, kCentre = 9;
 constexpr double kJointHit = 10;
+constexpr double kSliceDepth = 20;  // mm
 constexpr double kHidden = 0.0698, kEdgeOn = 0.1392;  // sines of 4 and 8 degrees: from where a ring fades, until where it is gone
 constexpr int kSteps = 96;
 
@@ -166,6 +169,69 @@ void draw_moving(const Gizmo& gizmo, const SeenFrom& view, const Editor& editor,
   painter.circle(gizmo.centre, with_alpha(0xFFFFFFFF, hovered && *hovered == GizmoPart{GizmoPart::Kind::Centre} ? 1 : 0.85f), kCentre, 1.6f);
 }
 
+// What lies this near to a slice is seen and taken hold of in it.
+bool in_slice(const SeenFrom& view, const glm::dvec3& point) {
+  return view.place.id == ViewId::Body || std::abs(glm::dot(point - view.slice.centre, view.towards_eye)) <= kSliceDepth;
+}
+
+struct BonePart {
+  int bone;
+  Handling::Part part;
+};
+
+// The joint nearest to the pointer, the active bone's before others'; else the bone under it.
+std::optional<BonePart> bone_part_at(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
+  const std::shared_ptr<const Armature> rig = shown_rig(editor);
+  if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return std::nullopt;
+  std::optional<BonePart> found;
+  double nearest = kJointHit * editor.look.scale;
+  for (int bone = 0; bone < std::ssize(rig->bones); ++bone)
+    for (const bool tail : {false, true}) {
+      const glm::dvec3& place = place_of(*rig, {bone, tail});
+      const auto seen = in_slice(view, place) ? view.pixel_of(place) : std::nullopt;
+      // A tail before the heads that lie on it.
+      const double distance = seen ? glm::distance(*seen, pixel) - (editor.selection.bone == bone ? 1e-3 : 0) - (tail ? 5e-4 : 0) : 1e9;
+      if (distance > nearest) continue;
+      nearest = distance;
+      found = BonePart{bone, tail ? Handling::Part::Tail : Handling::Part::Head};
+    }
+  if (found || view.place.id != ViewId::Body) return found;
+  if (const auto bone = editor.views->body.picture->pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low)))) return BonePart{*bone, Handling::Part::Whole};
+  return std::nullopt;
+}
+
+// In slices as lines, fainter away from them; the chosen joint in every view.
+void draw_rig(Editor& editor, const SeenFrom& view) {
+  const std::shared_ptr<const Armature> rig = shown_rig(editor);
+  if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return;
+  const GizmoPainter painter(editor, view);
+  const Theme& theme = editor.look.theme;
+  if (view.place.id != ViewId::Body)
+    for (int bone = 0; bone < std::ssize(rig->bones); ++bone) {
+      const Bone& b = rig->bones[bone];
+      const bool chosen = editor.selection.bones.contains(bone);
+      const float alpha = in_slice(view, b.head) || in_slice(view, b.tail) ? 0.9f : 0.25f;
+      const Colour colour = with_alpha(chosen ? theme.select : theme.view_text, alpha);
+      painter.line(b.head, b.tail, colour, 2);
+      for (const glm::dvec3& end : {b.head, b.tail}) painter.dot(end, colour, with_alpha(0xFF1A1614, alpha), 4);
+    }
+  const auto bone = editor.selection.bone;
+  if (editor.handling->part == Handling::Part::Whole || !bone || *bone >= std::ssize(rig->bones)) return;
+  const glm::dvec3& place = place_of(*rig, {*bone, editor.handling->part == Handling::Part::Tail});
+  if (in_slice(view, place)) painter.dot(place, theme.select_light, theme.select, 5);
+}
+
+// Moves what is pressed, or draws a bone out of it.
+bool press_rig(Editor& editor, const SeenFrom& view) {
+  if (editor.tool != Tool::Move && editor.tool != Tool::Extrude) return false;
+  const auto part = bone_part_at(editor, view, glm::dvec2(editor.input.pointer));
+  if (!part) return false;
+  choose_bone(editor, part->bone);
+  editor.handling->part = part->part;
+  begin_tool(editor, begin_rig_change(editor, editor.tool == Tool::Move ? chosen_change(editor, RigChange::Kind::Move) : extrusion(editor), {.held = MouseButton::Left}));
+  return true;
+}
+
 // The end of a limb and its pole, posed.
 struct Pole {
   int bone;
@@ -208,10 +274,16 @@ void draw_marks(Editor& editor, const SeenFrom& view) {
 }  // namespace
 
 std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view) {
-  if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !editor.document().volume || !editor.views->bones) return std::nullopt;
-  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  if (!editor.document().volume || !editor.views->bones) return std::nullopt;
+  const std::shared_ptr<const Armature> armature = shown_rig(editor);
   const auto bone = editor.selection.bone;
   if (!armature || !bone || *bone >= std::ssize(armature->bones)) return std::nullopt;
+  if (editor.workspace == Workspace::Rig && (editor.tool == Tool::Move || editor.tool == Tool::Rotate || editor.tool == Tool::Scale)) {
+    const glm::dvec3& place = place_of(*armature, {*bone, editor.tool == Tool::Move && editor.handling->part == Handling::Part::Tail});
+    if (!in_slice(view, place)) return std::nullopt;
+    return Gizmo{editor.tool, place, axes_of(editor.handling->space, *armature, rest_pose(*armature), *bone, view)};
+  }
+  if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body) return std::nullopt;
   if (editor.tool != Tool::Rotate && editor.tool != Tool::Move) return std::nullopt;
   const Pose pose = shown_pose(editor);
   const Bone& b = armature->bones[*bone];
@@ -237,14 +309,31 @@ bool press_gizmo(Editor& editor) {
   if (editor.tool == Tool::Reach && editor.workspace == Workspace::Pose && place->id == ViewId::Body && editor.document().armature) return press_joint(editor, view);
   const auto gizmo = gizmo_in(editor, view);
   const auto part = gizmo ? part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer)) : std::nullopt;
+  // The ball of the rings hides no bone here.
+  if (editor.workspace == Workspace::Rig && (!part || part->kind == GizmoPart::Kind::Trackball)) return press_rig(editor, view);
   if (!part) return false;
   const Grip grip{.lock = {part->axis, editor.handling->space, part->kind == GizmoPart::Kind::Plane}, .held = MouseButton::Left, .trackball = part->kind == GizmoPart::Kind::Trackball};
+  if (editor.workspace == Workspace::Rig) {
+    const RigChange::Kind kind = gizmo->tool == Tool::Rotate ? RigChange::Kind::Turn : gizmo->tool == Tool::Scale ? RigChange::Kind::Scale : RigChange::Kind::Move;
+    begin_tool(editor, begin_rig_change(editor, chosen_change(editor, kind), grip));
+    return true;
+  }
   begin_tool(editor, gizmo->tool == Tool::Rotate ? begin_turning(editor, grip) : begin_dragging(editor, grip));
+  return true;
+}
+
+bool pick_bone_part(Editor& editor) {
+  const ViewPlace* place = hovered_view(editor);
+  const auto part = place ? bone_part_at(editor, SeenFrom(editor, *place), glm::dvec2(editor.input.pointer)) : std::nullopt;
+  if (!part) return false;
+  choose_bone(editor, part->bone);
+  editor.handling->part = part->part;
   return true;
 }
 
 void draw_gizmo(Editor& editor, const ViewPlace& place) {
   const SeenFrom view(editor, place);
+  draw_rig(editor, view);
   draw_marks(editor, view);
   if (editor.modal) return editor.modal->draw(editor, place);
   const auto gizmo = gizmo_in(editor, view);

@@ -31,6 +31,9 @@ std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view);
 // What of it lies under the pixel.
 std::optional<GizmoPart> part_at(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel);
 
+// In the Rig workspace: chooses the joint or bone under the pointer, in any view; false where there is none.
+bool pick_bone_part(Editor& editor);
+
 // Begins a tool when the pointer is over a part, or over a joint that the reach tool drags; false when it is over none.
 bool press_gizmo(Editor& editor);
 // Over a view, after its picture.

@@ -12,12 +12,17 @@ std::string nothing_to_redo(const Editor& editor) { return editor.history.can_re
 
 // The row that the keyboard is in is renamed by the list itself; this is for what is chosen, from anywhere.
 std::string nothing_to_rename(const Editor& editor) {
-  return editor.shown_popup == "Result" || editor.selection.tissue || shown_result(editor) ? "" : "Choose a tissue or show a result first";
+  return editor.shown_popup == "Result" || editor.selection.tissue || needs_bone(editor).empty() || shown_result(editor) ? "" : "Choose a tissue or a bone, or show a result first";
 }
 
 void rename(Editor& editor) {
   editor.arrangement().sidebar = true;
   const auto result = shown_result(editor);
+  if (editor.shown_popup != "Result" && needs_bone(editor).empty()) {
+    const std::string& name = editor.document().armature->bones[*editor.selection.bone].name;
+    editor.open_sections["Outliner"] = editor.outliner.open["armature"] = true;
+    return begin_renaming(editor, "outlinerbone " + name, name);
+  }
   const bool of_result = result && (!editor.selection.tissue || editor.shown_popup == "Result");
   if (of_result) {
     editor.open_sections["Outliner"] = editor.outliner.open["results"] = true;
@@ -35,7 +40,7 @@ std::vector<Operator> edit_operators() {
   return {
       {"edit.undo", "Undo", icon::kUndo, "Edit", "Takes the last edit back.", [](Editor& e) { e.history.undo(); }, nothing_to_undo},
       {"edit.redo", "Redo", icon::kRedo, "Edit", "Does the edit again that was taken back.", [](Editor& e) { e.history.redo(); }, nothing_to_redo},
-      {"edit.rename", "Rename", icon::kRename, "Edit", "Gives the chosen tissue, or the result that is shown, another name.", rename, nothing_to_rename},
+      {"edit.rename", "Rename", icon::kRename, "Edit", "Gives the chosen tissue or bone, or the result that is shown, another name.", rename, nothing_to_rename},
       {"edit.history", "History", icon::kHistory, "Edit", "Opens the list of edits in the sidebar.",
        [](Editor& e) {
          e.arrangement().sidebar = true;

@@ -2,6 +2,8 @@
 #include <algorithm>
 
 #include "core/rig/mirror.h"
+#include "editor/gizmo.h"
+#include "editor/handling.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
 #include "editor/results.h"
@@ -19,6 +21,8 @@ std::optional<int> bone_here(const Editor& editor) {
 
 void pick(Editor& editor) {
   if (editor.tool == Tool::CrossHair) return run(editor, "view.place_cross_hair");
+  editor.handling->part = Handling::Part::Whole;
+  if (pick_bone_part(editor)) return;
   if (const auto bone = bone_here(editor)) {
     editor.selection = {};
     editor.selection.bone = bone;
@@ -31,6 +35,7 @@ void pick(Editor& editor) {
 }
 
 void extend(Editor& editor) {
+  editor.handling->part = Handling::Part::Whole;
   if (const auto bone = bone_here(editor)) {
     // The active one pressed again is given up.
     if (editor.selection.bone == bone) {
@@ -107,7 +112,7 @@ void choose_mirrored(Editor& editor) {
 
 void choose_all(Editor& editor) {
   const Document& document = editor.document();
-  if (editor.workspace == Workspace::Pose && document.armature) {
+  if (document.armature && (editor.workspace == Workspace::Pose || (editor.workspace == Workspace::Rig && editor.selection.bone))) {
     for (int b = 0; b < std::ssize(document.armature->bones); ++b) editor.selection.bones.insert(b);
     if (!editor.selection.bone) editor.selection.bone = 0;
     return;
@@ -138,6 +143,8 @@ std::vector<Operator> select_operators() {
       tool_operator("tool.cross_hair", "Cross-hair", icon::kCrossHair, "A click moves the cross-hair, and the slices with it.", Tool::CrossHair),
       tool_operator("tool.move", "Move tool", icon::kMove, "Arrows at the active bone's end move it, and its limb follows; at the root they move the body.", Tool::Move),
       tool_operator("tool.rotate", "Rotate tool", icon::kRotate, "Rings at the active bone's joint turn it.", Tool::Rotate),
+      tool_operator("tool.scale", "Scale tool", icon::kScale, "Boxes at the active bone's head lengthen and shorten it.", Tool::Scale),
+      tool_operator("tool.extrude", "Extrude tool", icon::kExtrude, "A new bone grows from the joint that is dragged.", Tool::Extrude),
       tool_operator("tool.reach", "Reach tool", icon::kReach, "Any joint is dragged, and its limb follows.", Tool::Reach),
   };
 }

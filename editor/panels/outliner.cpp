@@ -12,6 +12,7 @@
 #include "editor/panels/panels.h"
 #include "editor/prepare.h"
 #include "editor/results.h"
+#include "editor/rigging.h"
 #include "editor/tissues.h"
 
 namespace limber::editor {
@@ -154,10 +155,11 @@ void choose(Editor& editor, const Row& row, bool extended) {
   selection.bones.insert(row.index);
 }
 
-bool can_rename(const Row& row) { return row.kind == Row::Kind::Tissue || row.kind == Row::Kind::Result; }
+bool can_rename(const Row& row) { return row.kind == Row::Kind::Tissue || row.kind == Row::Kind::Result || row.kind == Row::Kind::Bone; }
 
 void rename(Editor& editor, const Row& row, const std::string& name) {
   if (row.kind == Row::Kind::Tissue) rename_tissue(editor, editor.document().tissues->tissues[row.index].label, name);
+  if (row.kind == Row::Kind::Bone) rename_bone(editor, row.index, name);
   if (row.kind == Row::Kind::Result) rename_result(editor, editor.document().results[row.index], name);
 }
 

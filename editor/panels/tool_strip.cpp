@@ -14,6 +14,8 @@ void draw_tool_strip(Editor& editor) {
   float y = rect.low.y + look.px(4);
   std::vector<const char*> tools = {"tool.select", "tool.cross_hair", "-", "view.clip_box", "view.clip_plane"};
   if (editor.workspace == Workspace::Pose) tools = {"tool.select", "tool.cross_hair", "-", "tool.move", "tool.rotate", "tool.reach", "-", "pose.breakdown", "-", "view.clip_box", "view.clip_plane"};
+  if (editor.workspace == Workspace::Rig)
+    tools = {"tool.select", "tool.cross_hair", "-", "tool.move", "tool.rotate", "tool.scale", "-", "rig.add", "tool.extrude", "-", "view.clip_box", "view.clip_plane"};
   for (const char* id : tools) {
     if (*id == '-') {
       fill({{rect.low.x + look.px(8), y + look.px(5)}, {rect.high.x - look.px(9), y + look.px(5) + look.line()}}, look.theme.line2);

@@ -73,6 +73,7 @@ std::vector<Proof> proofs_of_comparing();
 std::vector<Proof> proofs_of_motion();
 std::vector<Proof> proofs_of_clips();
 std::vector<Proof> proofs_of_handling();
+std::vector<Proof> proofs_of_rigging();
 
 void prove(Stage& stage, const std::vector<Proof>& proofs);
 

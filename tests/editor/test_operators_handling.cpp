@@ -40,7 +40,8 @@ Effect bent(const char* edit, double degrees) {
 std::vector<Proof> proofs_of_handling() {
   return {
       {"tool.rotate", "click \"strip/tool.rotate\"", tool_is("rotate"), Shows::Nothing, "", choose_fore},
-      {"tool.move", "click \"strip/tool.move\"", tool_is("move")},
+      {"tool.extrude", "click \"strip/tool.extrude\"", tool_is("extrude"), Shows::Nothing, "key Ctrl+1\n wait-idle"},
+      {"tool.move", "click \"strip/tool.move\"", tool_is("move"), Shows::Nothing, "", choose_fore},
       {"tool.reach", "click \"strip/tool.reach\"", tool_is("reach")},
       {"space.local", "click \"Edit/Axes/Local axes\"", space_is(Space::Local)},
       {"space.parent", "click \"Edit/Axes/Parent axes\"", space_is(Space::Parent)},

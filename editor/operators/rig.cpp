@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Edits of the rig at rest.
+#include "core/rig/mirror.h"
+#include "editor/handling.h"
+#include "editor/icons.h"
+#include "editor/operators/polls.h"
+#include "editor/rigging.h"
+#include "editor/tools/rig_tools.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string needs_rig_workspace(const Editor& editor) { return editor.workspace == Workspace::Rig ? "" : "Works in the Rig workspace"; }
+
+std::string needs_rig_bone(const Editor& editor) {
+  const std::string why = needs_rig_workspace(editor);
+  return why.empty() ? needs_bone(editor) : why;
+}
+
+std::string needs_place(const Editor& editor) {
+  const std::string why = needs_rig_workspace(editor);
+  return why.empty() ? needs_volume(editor) : why;
+}
+
+std::string needs_two(const Editor& editor) {
+  if (const std::string why = needs_rig_bone(editor); !why.empty()) return why;
+  return editor.selection.bones.size() > 1 ? "" : "Choose the children first, then the parent";
+}
+
+void transform(Editor& editor, RigChange::Kind kind) { begin_tool(editor, begin_rig_change(editor, chosen_change(editor, kind))); }
+
+void extrude(Editor& editor) {
+  const RigChange change = extrusion(editor);
+  editor.handling->part = Handling::Part::Tail;
+  begin_tool(editor, begin_rig_change(editor, change));
+}
+
+// At the cross-hair, upward, an eighth of the volume long.
+void add(Editor& editor) {
+  const Armature armature = editor.document().armature ? *editor.document().armature : Armature{};
+  const Box box = world_box(editor.document());
+  const glm::dvec3 head = editor.views->cross_hair, tail = head + glm::dvec3(0, 0, (box.high.z - box.low.z) / 8);
+  commit_rig(editor, "Add bone", with_bone(armature, "Bone", -1, head, tail), {static_cast<int>(armature.bones.size())});
+  editor.handling->part = Handling::Part::Tail;
+}
+
+void duplicate(Editor& editor) {
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  const std::vector<int> bones = bones_chosen_last(editor);
+  RigChange change{RigChange::Kind::Move, naming_chosen(editor, "Duplicate"), duplicated(*armature, bones), {}, {}};
+  // The copies stand in the order of their numbers.
+  for (int copy = static_cast<int>(armature->bones.size()); copy < std::ssize(change.start.bones); ++copy) {
+    change.ends.insert(change.ends.end(), {{copy, false}, {copy, true}});
+    change.chosen.push_back(copy);
+    // Loose, so that what they are copies of stays.
+    if (is_connected(change.start, copy) && change.start.bones[copy].parent < std::ssize(armature->bones)) change.start.bones[copy].parent = -1;
+  }
+  editor.handling->part = Handling::Part::Whole;
+  begin_tool(editor, begin_rig_change(editor, change));
+}
+
+// What stays chosen of `bones` in a rig made from the document's: those of the same names.
+std::vector<int> still(const Armature& before, const Armature& after, const std::vector<int>& bones) {
+  std::vector<int> found;
+  for (const int bone : bones)
+    if (const auto place = after.find(before.bones[bone].name)) found.push_back(*place);
+  return found;
+}
+
+template <class Edit>
+void edit(Editor& editor, const char* verb, const Edit& change) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  const std::vector<int> bones = bones_chosen_last(editor);
+  Armature next = change(*before, bones);
+  const std::vector<int> left = still(*before, next, bones);
+  editor.handling->part = Handling::Part::Whole;
+  commit_rig(editor, naming_chosen(editor, verb), std::move(next), left);
+}
+
+void hang(Editor& editor, Join join) {
+  edit(editor, join == Join::Connected ? "Connect" : "Parent", [&](const Armature& rig, std::vector<int> bones) {
+    const int parent = bones.back();
+    bones.pop_back();
+    return parented(rig, bones, parent, join);
+  });
+}
+
+void symmetrize(Editor& editor) {
+  edit(editor, "Symmetrize", [](const Armature& rig, const std::vector<int>& bones) { return symmetrized(rig, bones); });
+}
+
+Operator edit_operator(const char* id, const char* label, const char* icon, const char* sentence, const char* verb, Armature (*change)(const Armature&, const std::vector<int>&)) {
+  return {id, label, icon, "Bone", sentence, [verb, change](Editor& e) { edit(e, verb, change); }, needs_rig_bone};
+}
+
+Operator snap_operator(const char* id, const char* label, const char* sentence, Snap snap) {
+  return {id, label, icon::kSnap, "Bone", sentence, [snap](Editor& e) { e.handling->snap = snap; }, nullptr, [snap](const Editor& e) { return e.handling->snap == snap; }};
+}
+
+}  // namespace
+
+std::vector<Operator> rig_operators() {
+  return {
+      {"rig.move", "Move", icon::kMove, "Bone", "The chosen joint or bones go with the pointer; what is connected follows.", [](Editor& e) { transform(e, RigChange::Kind::Move); }, needs_rig_bone},
+      {"rig.rotate", "Rotate", icon::kRotate, "Bone", "Turns the chosen bones about the active one's head.", [](Editor& e) { transform(e, RigChange::Kind::Turn); }, needs_rig_bone},
+      {"rig.scale", "Scale", icon::kScale, "Bone", "Lengthens or shortens the chosen bones from the active one's head.", [](Editor& e) { transform(e, RigChange::Kind::Scale); }, needs_rig_bone},
+      {"rig.roll", "Roll", "", "Bone", "Turns the chosen bones about themselves.", [](Editor& e) { transform(e, RigChange::Kind::Roll); }, needs_rig_bone},
+      {"rig.add", "Add bone", icon::kAdd, "Bone", "A new bone at the cross-hair.", add, needs_place},
+      {"rig.extrude", "Extrude", icon::kExtrude, "Bone", "A new bone grows from the chosen joint with the pointer.", extrude, needs_rig_bone},
+      {"rig.duplicate", "Duplicate", icon::kDuplicate, "Bone", "Copies of the chosen bones go with the pointer.", duplicate, needs_rig_bone},
+      edit_operator("rig.subdivide", "Subdivide", "", "Each chosen bone becomes two.", "Subdivide", subdivided),
+      edit_operator("rig.delete", "Delete", icon::kTrash, "Takes the chosen bones away; what hung on them hangs on the next one above.", "Delete", without_bones),
+      edit_operator("rig.dissolve", "Dissolve", "", "Takes the chosen bones away and lengthens those above, so that the chain stays whole.", "Dissolve", dissolved),
+      edit_operator("rig.separate", "Separate", icon::kCut, "Cuts the chosen bones loose from the others.", "Separate", separated),
+      {"rig.parent", "Make parent", "", "Bone", "The chosen bones hang on the active one, where they are.", [](Editor& e) { hang(e, Join::KeepOffset); }, needs_two},
+      {"rig.connect", "Connect to parent", icon::kLinkViews, "Bone", "The chosen bones hang on the active one and move to its tail.", [](Editor& e) { hang(e, Join::Connected); }, needs_two},
+      edit_operator("rig.clear_parent", "Clear parent", "", "The chosen bones hang on nothing.", "Clear parent of", unparented),
+      edit_operator("rig.flip_direction", "Flip direction", "", "Head and tail of the chosen bones change places; a chain runs the other way.", "Flip direction of", with_flipped_direction),
+      edit_operator("rig.mirror", "Mirror", icon::kMirror, "The chosen bones go to the other side.", "Mirror", mirrored_bones),
+      {"rig.symmetrize", "Symmetrize", icon::kMirror, "Bone", "The other side of the chosen bones becomes their mirror image; what is missing there is added.", symmetrize, needs_rig_bone},
+      {"rig.recalculate_roll", "Recalculate roll", "", "Bone", "The chosen bones' own z axes look forward.",
+       [](Editor& e) { edit(e, "Recalculate roll of", [](const Armature& rig, const std::vector<int>& bones) { return with_z_towards(rig, bones, {0, -1, 0}); }); }, needs_rig_bone},
+      {"rig.snap", "Snap", icon::kSnap, "Bone", "Transforms snap without Ctrl, and with Ctrl they do not.", [](Editor& e) { e.handling->snapping = !e.handling->snapping; }, nullptr,
+       [](const Editor& e) { return e.handling->snapping; }},
+      snap_operator("snap.steps", "Snap to steps", "Of 5 mm, 5 degrees or a tenth; with Shift finer.", Snap::Steps),
+      snap_operator("snap.joint", "Snap to joints", "A moved joint goes where another one is.", Snap::Joint),
+      snap_operator("snap.bone_middle", "Bone middle", "A moved joint goes to the middle of the bone tissue under the pointer.", Snap::BoneMiddle),
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/rigging.h"
+
+#include "core/skin/carry_weights.h"
+#include "editor/handling.h"
+#include "editor/project.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::vector<std::string> names_of(const Armature& armature) {
+  std::vector<std::string> names;
+  for (const Bone& bone : armature.bones) names.push_back(bone.name);
+  return names;
+}
+
+// For each old bone the one that takes over its weight: itself, or the next above that stays.
+std::vector<int> heirs(const Armature& before, const std::vector<int>& from) {
+  std::vector<int> to(before.bones.size(), -1);
+  for (int bone = 0; bone < std::ssize(from); ++bone)
+    if (from[bone] >= 0) to[from[bone]] = bone;
+  for (std::size_t bone = 0; bone < to.size(); ++bone)
+    if (const int parent = before.bones[bone].parent; to[bone] < 0 && parent >= 0) to[bone] = to[parent];
+  return to;
+}
+
+//   from  #bones of `next`: which one it was, -1 for a new one
+void commit_followed(Editor& editor, const std::string& label, Armature next, const std::vector<int>& from, const std::vector<int>& chosen) {
+  drop_shown_rig(editor);
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  if (before && next == *before) return;
+  check_armature(next, "rig");
+  Document document = editor.document();
+  const std::string lost = "The weights belonged to bones that are gone: compute them again";
+  bool weights_lost = false;
+  if (before && document.pose) document.pose = std::make_shared<const Pose>(carried(*document.pose, from));
+  if (before && document.weights) {
+    const bool fits = document.weights->bones().size() == before->bones.size();
+    const auto weights = fits ? carried(*document.weights, heirs(*before, from), names_of(next)) : std::nullopt;
+    weights_lost = !weights;
+    document.weights = weights ? std::make_shared<const SkinWeights>(*weights) : nullptr;
+  }
+  document.armature = std::make_shared<const Armature>(std::move(next));
+  commit(editor, label, std::move(document));
+  if (weights_lost) editor.messages.info(label, lost);
+  editor.selection = {};
+  for (const int bone : chosen) {
+    editor.selection.bone = bone;
+    editor.selection.bones.insert(bone);
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const Armature> shown_rig(const Editor& editor) { return editor.views->preview_armature ? editor.views->preview_armature : editor.document().armature; }
+
+void show_rig(Editor& editor, Armature armature) {
+  editor.views->preview_armature = std::make_shared<const Armature>(std::move(armature));
+  editor.touch();
+}
+
+void drop_shown_rig(Editor& editor) {
+  editor.views->preview_armature.reset();
+  editor.touch();
+}
+
+Armature mirrored_too(const Editor& editor, Armature next) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  return before && editor.handling->x_mirror ? with_mirrored_changes(*before, next) : next;
+}
+
+void commit_rig(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  const std::vector<int> from = before ? bones_of(*before, next) : std::vector<int>(next.bones.size(), -1);
+  commit_followed(editor, label, std::move(next), from, chosen);
+}
+
+void rename_bone(Editor& editor, int bone, const std::string& name) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  Armature next = renamed(*before, bone, name);
+  std::vector<int> from(before->bones.size());
+  for (int b = 0; b < std::ssize(from); ++b) from[b] = b;
+  const std::string old = before->bones[bone].name, given = next.bones[bone].name;
+  commit_followed(editor, "Rename " + old, std::move(next), from, {bone});
+  Handling& handling = *editor.handling;
+  if (handling.pins.erase(old) > 0) handling.pins.insert(given);
+  if (auto pole = handling.poles.extract(old)) {
+    pole.key() = given;
+    handling.poles.insert(std::move(pole));
+  }
+}
+
+void drop_missing_bones(Editor& editor) {
+  const int count = editor.document().armature ? static_cast<int>(editor.document().armature->bones.size()) : 0;
+  Selection& selection = editor.selection;
+  std::erase_if(selection.bones, [&](int bone) { return bone >= count; });
+  if (selection.bone && *selection.bone >= count) selection.bone.reset();
+}
+
+}  // namespace limber::editor

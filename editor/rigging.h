@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The rig that is worked on: the document's, or what is shown in its place while a tool changes it. An edit takes pose and
+// weights along: bones are known again by their names, the weight of a removed bone goes to the one above it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/rig/edit_armature.h"
+#include "editor/editor.h"
+
+namespace limber::editor {
+
+// Null for none.
+std::shared_ptr<const Armature> shown_rig(const Editor& editor);
+void show_rig(Editor& editor, Armature armature);
+void drop_shown_rig(Editor& editor);
+
+// With X-mirror on, the other sides of the bones that differ from the document's change likewise.
+Armature mirrored_too(const Editor& editor, Armature next);
+
+// One edit; none where nothing changed.
+//   chosen  bones of the new rig, the last of them active
+void commit_rig(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen);
+// The same for a bone that only changes its name.
+void rename_bone(Editor& editor, int bone, const std::string& name);
+
+// Bones that are still there: after an undo the choice may speak of others.
+void drop_missing_bones(Editor& editor);
+
+}  // namespace limber::editor

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/tools/rig_tools.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/rigging.h"
+#include "editor/tissues.h"
+#include "editor/tools/angle_drag.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kSnapMillimetres = 5, kSnapFineMillimetres = 1, kSnapDegrees = 5, kSnapFine = 1, kSnapScale = 0.1, kSnapScaleFine = 0.01;
+constexpr double kSnapPixels = 14;  // at scale 1: so near the pointer a joint is snapped to
+constexpr double kLeastScale = 1e-3;
+
+bool is_bone(const Document& document, Label label) {
+  const Tissue* tissue = label && document.tissues ? document.tissues->find(label) : nullptr;
+  return tissue && (tissue->kind == TissueKind::CorticalBone || tissue->kind == TissueKind::CancellousBone || tissue->kind == TissueKind::Marrow || tissue->kind == TissueKind::Bone);
+}
+
+class RigTool final : public TransformTool {
+ public:
+  RigTool(Editor& editor, RigChange change, const Grip& grip)
+      : TransformTool(editor, grip), change_(std::move(change)), pivot_(place_of(change_.start, change_.ends.front())),
+        angle_(view_, editor.look.scale, pivot_, grip.held && grip.lock.axis >= 0) {
+    angle_.about(axis(), start_, pointer_);
+    show(editor);
+  }
+
+  std::string title() const override { return change_.label + " " + number(true) + lock_text(turns() ? "about" : "along") + (snapped_to_.empty() ? "" : ", " + snapped_to_); }
+  std::vector<KeyHint> hints(const Editor&) const override { return shared_hints(); }
+  void cancel(Editor& editor) override { drop_shown_rig(editor); }
+
+  void draw(Editor& editor, const ViewPlace& place) override {
+    if (place.id != view_.place.id) return;
+    const GizmoPainter painter(editor, view_);
+    const Theme& theme = editor.look.theme;
+    if (turns()) angle_.draw(painter, theme, shown_);
+    else if (lock_.axis >= 0 && !lock_.plane) {
+      const double far = view_.millimetres_per_pixel(pivot_) * 2000;
+      painter.line(pivot_ - far * lock_axis(), pivot_ + far * lock_axis(), with_alpha(theme.axis[lock_.axis], 0.6f), 1);
+    }
+    const glm::dvec3 at = change_.kind == RigChange::Kind::Move ? target_ : pivot_;
+    if (change_.kind == RigChange::Kind::Move) painter.circle(at, 0xFFFFFFFF, 9, 1.6f);
+    const Bone& bone = change_.start.bones[change_.ends.front().bone];
+    const std::string lock = lock_text(turns() ? "about" : "along");
+    painter.read_out(at, number(true), lock.empty() ? "" : lock.substr(1), snapped_to_.empty() ? bone.name : "snap: " + snapped_to_, theme.view_text2);
+  }
+
+ private:
+  glm::dmat3 axes(Space space) const override { return axes_of(space, change_.start, rest_pose(change_.start), change_.ends.front().bone, view_); }
+  bool turns() const { return change_.kind == RigChange::Kind::Turn || change_.kind == RigChange::Kind::Roll; }
+  glm::dvec3 axis() const {
+    const Bone& bone = change_.start.bones[change_.ends.front().bone];
+    if (change_.kind == RigChange::Kind::Roll) return rest_axes(bone)[1];
+    const glm::dvec3 locked = lock_axis();
+    return locked == glm::dvec3(0) ? view_.towards_eye : locked;
+  }
+
+  void follow(Editor&, const glm::dvec2& from, const glm::dvec2& to) override { angle_.follow(from, to); }
+  void locked(Editor&) override {
+    angle_.leave_ring();
+    angle_.about(axis(), start_, pointer_);
+  }
+
+  std::string number(bool unit) const {
+    const char* units[] = {" mm", "\u00b0", "", "\u00b0"};
+    const char* formats[] = {"%.1f", "%+.1f", "%.3f", "%+.1f"};
+    const int kind = static_cast<int>(change_.kind);
+    return (number_.typed() ? number_.text() : text_of_number(formats[kind], shown_)) + (unit ? units[kind] : "");
+  }
+
+  bool is_moved(int bone, bool tail) const {
+    for (const BoneEnd& end : change_.ends)
+      for (const BoneEnd& one : joint_of(change_.start, end))
+        if (one == BoneEnd{bone, tail}) return true;
+    return false;
+  }
+
+  std::optional<glm::dvec3> joint_below(const Editor& editor) const {
+    double nearest = kSnapPixels * editor.look.scale;
+    std::optional<glm::dvec3> found;
+    for (int bone = 0; bone < std::ssize(change_.start.bones); ++bone)
+      for (const bool tail : {false, true}) {
+        const glm::dvec3 place = place_of(change_.start, {bone, tail});
+        const auto pixel = view_.pixel_of(place);
+        if (!pixel || is_moved(bone, tail) || glm::distance(*pixel, pointer_) > nearest) continue;
+        nearest = glm::distance(*pixel, pointer_);
+        found = place;
+      }
+    return found;
+  }
+
+  glm::dvec3 moved_to(const Editor& editor) {
+    snapped_to_.clear();
+    const Snap snap = editor.handling->snap;
+    if (snap != Snap::Steps && editor.input.down(Key::Ctrl) != editor.handling->snapping && !number_.typed()) {
+      const auto place = snap == Snap::Joint ? joint_below(editor) : middle_of_bone(editor, view_, pointer_);
+      if (place) {
+        snapped_to_ = snap == Snap::Joint ? "joint" : "middle of bone tissue";
+        const glm::dvec3 axis = lock_axis();
+        if (axis == glm::dvec3(0)) return *place;
+        const double along = glm::dot(*place - pivot_, axis);
+        return lock_.plane ? *place - along * axis : pivot_ + along * axis;
+      }
+    }
+    return dragged(editor, pivot_, kSnapMillimetres, kSnapFineMillimetres);
+  }
+
+  Armature changed(Editor& editor) {
+    switch (change_.kind) {
+      case RigChange::Kind::Move: {
+        target_ = moved_to(editor);
+        const glm::dvec3 by = target_ - pivot_;
+        shown_ = glm::length(by);
+        return with_moved_ends(change_.start, change_.ends, [&](const glm::dvec3& p) { return p + by; });
+      }
+      case RigChange::Kind::Roll:
+      case RigChange::Kind::Turn: {
+        shown_ = number_.typed() ? number_.value() : snapped(editor, angle_.degrees(), kSnapDegrees, kSnapFine);
+        if (change_.kind == RigChange::Kind::Roll) return rolled(change_.start, change_.chosen, glm::radians(shown_));
+        const glm::dquat turn = glm::angleAxis(glm::radians(shown_), axis());
+        return with_moved_ends(change_.start, change_.ends, [&](const glm::dvec3& p) { return pivot_ + turn * (p - pivot_); });
+      }
+      case RigChange::Kind::Scale: {
+        const glm::dvec2 centre = view_.pixel_of(pivot_).value_or(start_);
+        const double before = std::max(1.0, glm::distance(start_, centre));
+        shown_ = number_.typed() ? number_.value() : std::max(kLeastScale, snapped(editor, glm::distance(pointer_, centre) / before, kSnapScale, kSnapScaleFine));
+        const glm::dvec3 axis = lock_axis();
+        return with_moved_ends(change_.start, change_.ends, [&](const glm::dvec3& p) {
+          const glm::dvec3 off = p - pivot_, along = axis * glm::dot(off, axis);
+          if (axis == glm::dvec3(0)) return pivot_ + off * shown_;
+          return lock_.plane ? pivot_ + along + (off - along) * shown_ : pivot_ + off + along * (shown_ - 1);
+        });
+      }
+    }
+    return change_.start;
+  }
+
+  void show(Editor& editor) override { show_rig(editor, mirrored_too(editor, changed(editor))); }
+  void keep(Editor& editor) override {
+    Armature next = mirrored_too(editor, changed(editor));
+    // A bone drawn out by nothing is none.
+    const bool nothing = std::any_of(change_.chosen.begin(), change_.chosen.end(), [&](int bone) { return next.bones[bone].head == next.bones[bone].tail; });
+    if (nothing) return drop_shown_rig(editor);
+    commit_rig(editor, change_.label, std::move(next), change_.chosen);
+  }
+
+  RigChange change_;
+  glm::dvec3 pivot_, target_ = pivot_;
+  AngleDrag angle_;
+  double shown_ = 0;  // mm, degrees or a factor
+  std::string snapped_to_;
+};
+
+}  // namespace
+
+std::unique_ptr<TransformTool> begin_rig_change(Editor& editor, const RigChange& change, const Grip& grip) { return std::make_unique<RigTool>(editor, change, grip); }
+
+std::vector<int> bones_chosen_last(const Editor& editor) {
+  const int active = *editor.selection.bone;
+  std::vector<int> bones;
+  for (const int bone : editor.selection.bones)
+    if (bone != active && bone < std::ssize(editor.document().armature->bones)) bones.push_back(bone);
+  bones.push_back(active);
+  return bones;
+}
+
+std::string naming_chosen(const Editor& editor, const std::string& verb) {
+  const std::vector<int> bones = bones_chosen_last(editor);
+  return verb + " " + (bones.size() == 1 ? editor.document().armature->bones[bones[0]].name : std::to_string(bones.size()) + " bones");
+}
+
+RigChange chosen_change(const Editor& editor, RigChange::Kind kind) {
+  constexpr const char* kVerbs[] = {"Move", "Rotate", "Scale", "Roll"};
+  RigChange change{kind, naming_chosen(editor, kVerbs[static_cast<int>(kind)]), *editor.document().armature, {}, bones_chosen_last(editor)};
+  const Handling::Part part = editor.handling->part;
+  if (kind == RigChange::Kind::Move && part != Handling::Part::Whole) change.ends = {{change.chosen.back(), part == Handling::Part::Tail}};
+  // The active one first.
+  else
+    for (auto bone = change.chosen.rbegin(); bone != change.chosen.rend(); ++bone) change.ends.insert(change.ends.end(), {{*bone, false}, {*bone, true}});
+  return change;
+}
+
+RigChange extrusion(const Editor& editor) {
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  const BoneEnd from{*editor.selection.bone, editor.handling->part != Handling::Part::Head};
+  const int added = static_cast<int>(armature->bones.size());
+  return {RigChange::Kind::Move, "Extrude " + armature->bones[from.bone].name, extruded(*armature, from, place_of(*armature, from)), {{added, true}}, {added}};
+}
+
+std::optional<glm::dvec3> middle_of_bone(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
+  const std::shared_ptr<const LabelVolume> volume = editor.document().volume;
+  if (!volume) return std::nullopt;
+  const Document& document = editor.document();
+  const AffineTransform voxel = voxel_from_world(volume->grid);
+  const double step = std::min({volume->grid.spacing.x, volume->grid.spacing.y, volume->grid.spacing.z}) / 2;
+  const double reach = glm::length(volume->grid.spacing * glm::dvec3(volume->grid.size));
+  const auto bone_at = [&](const glm::dvec3& point) { return is_bone(document, volume->at_or_air(glm::ivec3(glm::round(voxel * point)))); };
+  // The middle of the run of bone through a point, along a direction.
+  const auto middle_of_run = [&](const glm::dvec3& point, const glm::dvec3& direction) {
+    double low = 0, high = 0;
+    while (low > -reach && bone_at(point + direction * (low - step))) low -= step;
+    while (high < reach && bone_at(point + direction * (high + step))) high += step;
+    return point + direction * ((low + high) / 2);
+  };
+  if (view.place.id != ViewId::Body) {
+    glm::dvec3 point = view.ray(pixel).origin;
+    if (!bone_at(point)) return std::nullopt;
+    for (int i = 0; i < 4; ++i) point = middle_of_run(middle_of_run(point, view.right), view.up);
+    return point;
+  }
+  const render::Ray sight = view.ray(pixel);
+  const glm::dvec3 middle = world_from_voxel(volume->grid) * ((glm::dvec3(volume->grid.size) - 1.0) * 0.5);
+  const double depth = glm::dot(middle - sight.origin, sight.direction);
+  for (double t = std::max(0.0, depth - reach); t < depth + reach; t += step)
+    if (bone_at(sight.origin + t * sight.direction)) {
+      // From the first hit through to the other side; then across, so that the pointer need not be quite in the middle.
+      glm::dvec3 point = middle_of_run(sight.origin + t * sight.direction, sight.direction);
+      if (!bone_at(point)) return point;
+      for (int i = 0; i < 2; ++i) point = middle_of_run(middle_of_run(point, view.right), view.up);
+      return bone_at(point) ? middle_of_run(point, sight.direction) : point;
+    }
+  return std::nullopt;
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cmath>
+
+#include "editor/handling.h"
+#include "editor/rigging.h"
+#include "editor/seen_from.h"
+#include "editor/tools/rig_tools.h"
+#include "tests/editor/small_limb.h"
+
+using namespace limber;
+using namespace limber::editor;
+using limber::test::LimbEditor;
+
+namespace {
+
+struct RiggingEditor : LimbEditor {
+  explicit RiggingEditor(const glm::ivec2& size = {900, 600}) : LimbEditor(size) {
+    editor->preferences.reduce_motion = true;
+    play("key Ctrl+1\nkey Num1\nkey Num5\nwait-idle");
+    choose(1);
+  }
+  void choose(int bone) {
+    editor->selection = {};
+    editor->selection.bone = bone;
+    editor->selection.bones = {bone};
+  }
+  SeenFrom view(ViewId id = ViewId::Body) const { return SeenFrom(*editor, {id, *editor->layout.place_of(id)}); }
+  void drag(const SeenFrom& view, const glm::dvec3& from, const glm::dvec3& to) {
+    pointer_to(view.pixel_of(from).value());
+    host->events.push(ButtonChanged{MouseButton::Left, true});
+    player.settle();
+    pointer_to((view.pixel_of(from).value() + view.pixel_of(to).value()) / 2.0);
+    pointer_to(view.pixel_of(to).value());
+    host->events.push(ButtonChanged{MouseButton::Left, false});
+    player.settle();
+  }
+  void pointer_to(const glm::dvec2& pixel) { play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y)); }
+  const Armature& rig() const { return *editor->document().armature; }
+};
+
+}  // namespace
+
+TEST_CASE("rigging: a joint is dragged in the 3D view and in a slice, and what is connected follows") {
+  RiggingEditor test;
+  test.editor->tool = Tool::Move;
+  test.editor->selection = {};
+  test.drag(test.view(), {0, 0, -36}, {10, 0, -30});
+  CHECK(test.editor->selection.bone == 1);
+  CHECK(test.editor->handling->part == Handling::Part::Tail);
+  CHECK(glm::distance(test.rig().bones[1].tail, glm::dvec3(10, 0, -30)) < 0.05);
+  test.play("key Ctrl+Z\nclick view.split\nwait-idle");
+  test.editor->views->cross_hair = {0, 0, 0};
+  test.editor->selection = {};
+  test.play("wait-idle");
+  const ViewId slice = test.editor->layout.place_of(ViewId::Coronal) ? ViewId::Coronal : ViewId::Sagittal;
+  const glm::dvec3 to = slice == ViewId::Coronal ? glm::dvec3(7, 0, 4) : glm::dvec3(0, 7, 4);
+  test.drag(test.view(slice), {0, 0, 0}, to);
+  CHECK(glm::distance(test.rig().bones[0].tail, to) < 0.1);
+  CHECK(test.rig().bones[1].head == test.rig().bones[0].tail);
+  test.play("key Ctrl+Z");
+  CHECK(test.rig() == *limber::test::small_limb().armature);
+}
+
+TEST_CASE("rigging: Escape leaves the rig as it was, and an extrusion of no length makes no bone") {
+  RiggingEditor test;
+  const auto position = test.editor->history.position();
+  test.play("move \"3D view/view\"\nkey E\nkey Z\nkey 9");
+  CHECK(shown_rig(*test.editor)->bones.size() == 3);
+  test.play("key Escape\nkey E\nkey Return");
+  CHECK(test.rig().bones.size() == 2);
+  CHECK(shown_rig(*test.editor)->bones.size() == 2);
+  CHECK(test.editor->history.position() == position);
+}
+
+TEST_CASE("rigging: with Ctrl a joint snaps to steps, to another joint, or to the middle of the bone tissue below") {
+  RiggingEditor test;
+  test.play("move \"3D view/view\"\nkey G\nkey X\nkey-down Ctrl");
+  test.pointer_to(glm::dvec2(test.editor->input.pointer) + glm::dvec2(23, 0));
+  test.play("key Return\nkey-up Ctrl");
+  const double by = test.rig().bones[1].tail.x;
+  CHECK(by > 1);
+  CHECK(std::abs(by / 5 - std::round(by / 5)) < 1e-9);
+  test.play("key Ctrl+Z");
+
+  // The ball's core is bone, 12 mm large about the middle of the world.
+  test.editor->handling->snap = Snap::BoneMiddle;
+  const SeenFrom view = test.view();
+  const auto middle = middle_of_bone(*test.editor, view, view.pixel_of({3, 0, 4}).value());
+  REQUIRE(middle);
+  CHECK(glm::length(*middle) < 5);
+  CHECK(!middle_of_bone(*test.editor, view, view.pixel_of({30, 0, 20}).value()));
+}
+
+TEST_CASE("rigging: pose, weights and names follow an edit, and come back with undo") {
+  RiggingEditor test;
+  Document next = test.editor->document();
+  Pose pose = rest_pose(*next.armature);
+  pose.rotation[1] = glm::angleAxis(0.5, glm::dvec3(1, 0, 0));
+  next.pose = std::make_shared<const Pose>(pose);
+  next.weights = std::make_shared<const SkinWeights>(std::vector<std::string>{"Upper", "Fore"}, TissueVoxels(*next.volume));
+  test.editor->history.commit("Weights", next);
+
+  rename_bone(*test.editor, 1, "Forearm");
+  CHECK(test.editor->document().weights->bones()[1] == "Forearm");
+  CHECK(test.editor->document().pose->rotation[1] == pose.rotation[1]);
+  // Weight of the removed bone goes to the one above; of a root there is none to go to.
+  test.choose(1);
+  test.play("move \"3D view/view\"\nkey X");
+  CHECK(test.editor->document().weights->bones() == std::vector<std::string>{"Upper"});
+  CHECK(test.editor->document().pose->rotation.size() == 1);
+  test.play("key Ctrl+Z");
+  CHECK(test.rig().bones[1].name == "Forearm");
+  test.choose(0);
+  test.play("key X");
+  CHECK(test.editor->document().weights == nullptr);
+  CHECK(test.fact("toast") != "none");
+  test.play("key Ctrl+Z");
+  CHECK(test.editor->document().weights);
+}
+
+TEST_CASE("rigging: the sidebar's numbers move ends, lengthen and roll, and F2 renames in the outliner") {
+  RiggingEditor test({1240, 700});
+  test.play("double-click \"Bone/Tail X\"\nkey Ctrl+A\ntype \"4\"\nkey Return\nwait-idle");
+  CHECK(test.rig().bones[1].tail.x == doctest::Approx(4));
+  test.play("move \"3D view/view\"\nkey F2\nkey Ctrl+A\ntype \"Lower\"\nkey Return\nwait-idle");
+  CHECK(test.rig().bones[1].name == "Lower");
+}
