@@ -2,6 +2,7 @@
 #include "core/resample/part_bones.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <unordered_map>
@@ -40,16 +41,20 @@ class Parting {
   std::int64_t part(Label label) {
     find_fused(label);
     std::int64_t changed = 0;
-    for (int round = 0; round < kRounds; ++round) {
-      std::int64_t contacts = 0;
-      for (const glm::ivec3& v : fused_) {
+    // Giving only ends contacts: where there was none there will be none.
+    std::vector<glm::ivec3> touching = std::move(fused_);
+    for (int round = 0; round < kRounds && !touching.empty(); ++round) {
+      std::vector<glm::ivec3> still;
+      for (const glm::ivec3& v : touching) {
         if (posed_.at(v) != label) continue;
         const int other = touched_part(label, v);
         if (other < 0) continue;
-        ++contacts;
-        if (round > 0 || gives(part_of(v), other)) changed += give(v, label);
+        if ((round > 0 || gives(part_of(v), other)) && give(v, label))
+          ++changed;
+        else
+          still.push_back(v);
       }
-      if (contacts == 0) break;
+      touching = std::move(still);
     }
     return changed;
   }
@@ -100,8 +105,16 @@ class Parting {
 
   // The large rest part that a voxel of the present label comes from, -1 when there is none.
   int part_of(const glm::ivec3& v) const {
-    const std::int64_t run = run_at(of_posed_, posed_, v);
-    if (run == std::ssize(of_posed_.runs) || first_of_run_[run] < 0 || of_posed_.runs[run].begin > v.x) return -1;
+    // Voxels are asked along rows.
+    const std::int64_t row = v.y + std::int64_t{posed_.grid.size.y} * v.z;
+    LastRun& last = last_runs_[(v.y & 3) + 4 * (v.z & 3)];
+    if (last.row != row || of_posed_.runs[last.run].begin > v.x || of_posed_.runs[last.run].end <= v.x) {
+      const std::int64_t found = run_at(of_posed_, posed_, v);
+      if (found == std::ssize(of_posed_.runs)) return -1;
+      last = {row, found};
+    }
+    const std::int64_t run = last.run;
+    if (first_of_run_[run] < 0 || of_posed_.runs[run].begin > v.x) return -1;
     return part_of_[first_of_run_[run] + v.x - of_posed_.runs[run].begin];
   }
 
@@ -172,6 +185,10 @@ class Parting {
   const Components& of_rest_;
   const LabelSet& soft_;
   const RestPoint& rest_point_;
+  struct LastRun {
+    std::int64_t row = -1, run = 0;
+  };
+  mutable std::array<LastRun, 16> last_runs_;
   std::vector<std::int64_t> first_of_run_;         // place in part_of_, -1 for runs that are not of the present label's large parts
   std::vector<int> part_of_;
   std::vector<glm::ivec3> fused_;
