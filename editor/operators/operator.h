@@ -38,6 +38,7 @@ std::vector<Operator> select_operators();
 std::vector<Operator> search_operators();
 std::vector<Operator> preferences_operators();
 std::vector<Operator> prepare_operators();
+std::vector<Operator> rig_fit_operators();
 std::vector<Operator> skin_operators();
 std::vector<Operator> rig_operators();
 std::vector<Operator> pose_operators();

@@ -33,7 +33,7 @@ Step prepare_step(const Editor& editor) {
 }
 
 Step rig_step(const Editor& editor) {
-  Step step{"Rig", StepState::Later, "No skeleton yet", "file.import_rig", "Import...", {}};
+  Step step{"Rig", StepState::Later, "No skeleton yet", "rig.auto_fit", "Auto-fit", {"rig.auto_fit", "rig.templates", "file.import_rig"}};
   if (!editor.document().armature) return step;
   step.state = StepState::Done;
   const std::size_t bones = editor.document().armature->bones.size();

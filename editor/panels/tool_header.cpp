@@ -53,6 +53,20 @@ class Header {
     ImGui::EndPopup();
   }
 
+  // What the workspace is for.
+  void action(const char* id) {
+    const Operator* op = find_operator(editor_, id);
+    const ButtonLook face{op->icon, op->label};
+    place(id, face.label, width_of_button(editor_, face), why_not(editor_, *op).empty() ? ButtonStyle::Primary : ButtonStyle::Plain);
+    x_ += px(6);
+  }
+
+  void plain(const char* id) {
+    const Operator* op = find_operator(editor_, id);
+    place(id, op->label, width_of_button(editor_, {op->icon, op->label}), ButtonStyle::Plain);
+    x_ += px(6);
+  }
+
   void label(const std::string& text) {
     const float width = text_size(editor_.look.fonts.regular, text).x;
     put_text(editor_, editor_.look.fonts.regular, editor_.look.theme.text2, Rect{{x_, bar_.low.y}, {x_ + width + 1, bar_.high.y}}, text);
@@ -123,6 +137,11 @@ void draw_tool_header(Editor& editor) {
   header.to_left();
   header.segments({"view.solid", "view.xray_display", "view.tissue"});
   header.line();
+  if (editor.workspace == Workspace::Rig) {
+    header.action("rig.auto_fit");
+    if (header.fits(110, {"rig.templates"})) header.plain("rig.templates");
+    header.line();
+  }
   if (editor.workspace == Workspace::Rig && editor.document().armature) {
     if (header.fits(140, {"snap.steps", "snap.joint", "snap.bone_middle"})) header.choice("Snap", {"snap.steps", "snap.joint", "snap.bone_middle"});
     if (header.fits(editor.layout.short_labels ? 36 : 110, {"edit.x_mirror"})) header.toggle("edit.x_mirror");

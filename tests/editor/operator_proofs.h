@@ -74,6 +74,7 @@ std::vector<Proof> proofs_of_motion();
 std::vector<Proof> proofs_of_clips();
 std::vector<Proof> proofs_of_handling();
 std::vector<Proof> proofs_of_rigging();
+std::vector<Proof> proofs_of_rig_fitting();
 
 void prove(Stage& stage, const std::vector<Proof>& proofs);
 

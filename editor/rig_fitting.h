@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Rigs that the editor lays into the volume: found by itself, as a job and one edit, or a template scaled to the tissue.
+#pragma once
+
+#include <string>
+
+#include "core/rig/auto_fit.h"
+#include "editor/editor.h"
+
+namespace limber::editor {
+
+// What stands for laying a skeleton by itself.
+inline constexpr char kAutoFitIcon[] = "\uf0d0";
+
+// Both ask first. Both need a volume.
+void ask_auto_fit(Editor& editor);
+void ask_template(Editor& editor);
+
+// Lays a template ("arm"), the one that suits best (""), or the rig that is there already ("rig").
+void start_auto_fit(Editor& editor, const std::string& which);
+
+// Tells how a fit came out; the console lists every joint with how it was found, the least sure last.
+void show_fit(Editor& editor, const AutoFit& fitted);
+
+}  // namespace limber::editor
