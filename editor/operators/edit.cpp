@@ -18,7 +18,8 @@ std::string nothing_to_rename(const Editor& editor) {
 void rename(Editor& editor) {
   editor.arrangement().sidebar = true;
   const auto result = shown_result(editor);
-  if (editor.shown_popup != "Result" && needs_bone(editor).empty()) {
+  // Whoever picks a bone lets the tissues go.
+  if (editor.shown_popup != "Result" && !editor.selection.tissue && needs_bone(editor).empty()) {
     const std::string& name = editor.document().armature->bones[*editor.selection.bone].name;
     editor.open_sections["Outliner"] = editor.outliner.open["armature"] = true;
     return begin_renaming(editor, "outlinerbone " + name, name);

@@ -105,7 +105,7 @@ std::vector<Proof> proofs_of_motion() {
       {"motion.set_start", "key Ctrl+Home", range_is(20, 60), Shows::Nothing, "", point_at(20)},
       {"motion.set_end", "key Ctrl+End", range_is(0, 20), Shows::Nothing, "", point_at(20)},
       {"motion.loop", "key Shift+L", ends_by(AtEnd::Stop), Shows::Nothing, "", point_at(0)},
-      {"motion.ping_pong", "click Motion/Ping-pong", ends_by(AtEnd::PingPong), Shows::Nothing, "", point_at(0)},
+      {"motion.ping_pong", "click Motion/Playing/Ping-pong", ends_by(AtEnd::PingPong), Shows::Nothing, "", point_at(0)},
       {"motion.faster", "key +", speed_is(2), Shows::Nothing, "", point_at(0)},
       {"motion.slower", "key -", speed_is(0.5), Shows::Nothing, "", point_at(0)},
       {"motion.play_at_file_rate", "key Shift+Space", speed_is(1), Shows::Nothing, "key +", point_at(0)},

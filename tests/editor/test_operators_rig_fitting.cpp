@@ -14,7 +14,7 @@ using namespace editor;
 std::vector<Proof> proofs_of_rig_fitting() {
   const char* rigging = "key Ctrl+1\n move \"3D view/view\"\n wait-idle";
   return {
-      {"rig.templates", "click header/Templates...\n click Skeleton/list\n click \"Skeleton/Quadruped\"\n key Return",
+      {"rig.templates", "click rig.templates\n click Skeleton/list\n click \"Skeleton/Quadruped\"\n key Return",
        [](Stage& s, const Seen&) { return s.is("edit", "Template Quadruped") && s.document().armature->bones.size() == rig_template("quadruped").bones.size() && check_rig(*s.document().volume, *s.document().armature).whole > 0.1; },
        Shows::InBody, rigging},
       // A rig of names that mean nothing, so that it is over soon.

@@ -50,7 +50,7 @@ std::vector<Proof> proofs_of_views() {
       {"view.one", "click view.one", [](Stage& s, const Seen&) { return s.is("layout", "one") && s.editor().layout.place_of(ViewId::Body) && s.is("maximized", "no"); }},
 
       {"view.xray_display", "click view.xray_display", becomes("display", "xray"), Shows::InBody},
-      {"view.tissue", "click View/Tissue", becomes("display", "tissue"), Shows::InBody},
+      {"view.tissue", "click View/Display/Tissue", becomes("display", "tissue"), Shows::InBody},
       {"view.solid", "move \"3D view/view\"\n key Z\n click Display/Solid", becomes("display", "solid"), Shows::InBody, "click view.xray_display"},
       {"view.xray", "key Alt+Z", becomes("display", "xray"), Shows::InBody},
 
@@ -65,7 +65,7 @@ std::vector<Proof> proofs_of_views() {
       {"view.sidebar", "key N", [](Stage& s, const Seen&) { return s.is("sidebar", "no") && s.is("text:Steps", "absent"); }},
       {"view.tool_strip", "key T", becomes("strip", "no")},
       {"view.console", "click Help/Console", becomes("console", "yes")},
-      {"view.results", "click View/Results", becomes("widget:Close results")},
+      {"view.results", "click \"View/Below the views/Results\"", becomes("widget:Close results")},
       {"view.context_menu", "right-click \"3D view/view\"", becomes("widget:context/Hide"), Shows::Nothing, "wait-idle"},
       {"view.pie", "move \"3D view/view\"\n key `", becomes("widget:Views/Front")},
       {"view.shading_pie", "move \"3D view/view\"\n key Z", becomes("widget:Display/X-ray")},

@@ -23,7 +23,7 @@ TEST_CASE("replay: menus, keys and buttons lead to the same operators") {
     expect display xray
     key Alt+Z
     expect display solid
-    click "View/Tissue"
+    click "View/Display/Tissue"
     expect display tissue
     key Ctrl+3
     expect workspace pose
@@ -404,7 +404,7 @@ TEST_CASE("replay: Escape closes menus") {
     expect widget:Overlays/Grid
     key Escape
     expect widget:Overlays/Grid absent
-    expect widget:View/Solid absent
+    expect widget:View/Sidebar absent
     move "3D view/view"
     key Z
     expect widget:Display/Solid

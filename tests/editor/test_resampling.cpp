@@ -262,7 +262,7 @@ TEST_CASE("help: pages of keys, licences and system facts") {
   SmallEditor test({1280, 720});
   test.play(R"(
     click Help/Keys
-    expect "text:Undo" shown
+    expect "text:Search commands" shown
     click dialog/search
     type "console"
     key Escape
