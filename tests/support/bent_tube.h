@@ -33,6 +33,16 @@ struct BentTube {
   }
 };
 
+// Anisotropic, turned and mirrored.
+inline Grid oblique_grid() {
+  Grid grid;
+  grid.spacing = {0.7, 2.1, 1.3};
+  grid.origin = {-31.7, 12.9, 1003.3};
+  grid.direction = glm::mat3_cast(glm::angleAxis(0.61, glm::normalize(glm::dvec3(1, -2, 0.5))));
+  grid.direction[1] = -grid.direction[1];  // mirrored
+  return grid;
+}
+
 inline TissueTable tube_tissues() {
   TissueTable table;
   for (auto [label, name, kind] : {std::tuple{kSkin, "skin", TissueKind::Skin}, {kFat, "fat", TissueKind::Fat},

@@ -63,19 +63,10 @@ Pose tube_pose(const Sitter& sitter, double degrees, double twist_degrees = 0) {
 
 bool same(const PreviewMap& a, const PreviewMap& b) { return a.first == b.first && a.size == b.size && a.nodes == b.nodes && a.cubes == b.cubes; }
 
-Grid oblique_grid() {
-  Grid grid;
-  grid.spacing = {0.7, 2.1, 1.3};
-  grid.origin = {-31.7, 12.9, 1003.3};
-  grid.direction = glm::mat3_cast(glm::angleAxis(0.61, glm::normalize(glm::dvec3(1, -2, 0.5))));
-  grid.direction[1] = -grid.direction[1];  // mirrored
-  return grid;
-}
-
 }  // namespace
 
 TEST_CASE("preview: at rest every covered node maps to itself, and all tissue is covered") {
-  for (const Grid& grid : {Grid{}, oblique_grid()})
+  for (const Grid& grid : {Grid{}, test::oblique_grid()})
     for (const int step : {2, 4, 8}) {
       const Sitter tube = tube_sitter(grid);
       LivePreview preview = tube.preview(step);
@@ -98,7 +89,7 @@ TEST_CASE("preview: at rest every covered node maps to itself, and all tissue is
 }
 
 TEST_CASE("preview: when everything moves rigidly the map is that motion backward, in any direction") {
-  for (const Grid& grid : {Grid{}, oblique_grid()}) {
+  for (const Grid& grid : {Grid{}, test::oblique_grid()}) {
     const Sitter tube = tube_sitter(grid);
     LivePreview preview = tube.preview();
     const RigidTransform move{glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, -1))), {31, -17, 222}};

@@ -19,19 +19,10 @@ Posed posed(const test::BentTube& tube, const Pose& pose, const Method& method, 
   return resample(tube.volume, tube.tissues, tube.rig, tube.weights, pose, method, settings);
 }
 
-Grid oblique_grid() {
-  Grid grid;
-  grid.spacing = {0.7, 2.1, 1.3};
-  grid.origin = {-31.7, 12.9, 1003.3};
-  grid.direction = glm::mat3_cast(glm::angleAxis(0.61, glm::normalize(glm::dvec3(1, -2, 0.5))));
-  grid.direction[1] = -grid.direction[1];  // mirrored
-  return grid;
-}
-
 }  // namespace
 
 TEST_CASE("resample: the rest pose gives back the volume bit for bit, on straight, mirrored, oblique and anisotropic grids") {
-  for (const Grid& grid : {Grid{}, oblique_grid()}) {
+  for (const Grid& grid : {Grid{}, test::oblique_grid()}) {
     const test::BentTube tube = test::bent_tube(grid);
     for (const Method& method : kMethods)
       for (int threads : {1, 2, 4}) {
@@ -45,7 +36,7 @@ TEST_CASE("resample: the rest pose gives back the volume bit for bit, on straigh
 }
 
 TEST_CASE("resample: a bent limb keeps every voxel, has no holes, and its bones stay rigid") {
-  for (const Grid& grid : {Grid{}, oblique_grid()}) {
+  for (const Grid& grid : {Grid{}, test::oblique_grid()}) {
     const test::BentTube tube = test::bent_tube(grid);
     for (const Method& method : kMethods)
       for (double degrees : {10.0, 45.0, 90.0}) {
