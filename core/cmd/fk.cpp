@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber fk RIG|BVH [--frame N] [POSE-OPTIONS] [--json]
+// limber fk RIG|BVH [--frame N | --all-frames] [POSE-OPTIONS] [--json]
 //
 // Where every joint is. Of a BVH: its own axes and units, global rotations of the joints, and the places of the End Sites.
 // Of a rig (or a BVH that is given a pose): world LPS mm, posed heads and tails, and the rotation of each bone from rest
 // to posed, which is the identity for a bone that nothing moves.
 #include <cstdio>
+#include <functional>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -22,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 struct FkOptions {
   std::string file;
-  bool json = false;
+  bool json = false, all_frames = false;
   PoseOptions pose;
 };
 
@@ -69,6 +70,18 @@ void print_table(const Json& joints) {
   }
 }
 
+void print_json(const Json& json, const char* end) {
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace) + end;
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+// {"frames": [{"joints": [...]}, ...]}, a line for each frame.
+void print_frames(int count, const std::function<Json(int)>& joints_at) {
+  std::printf("{\"frames\":[");
+  for (int frame = 0; frame < count; ++frame) print_json({{"joints", joints_at(frame)}}, frame + 1 < count ? ",\n" : "");
+  std::printf("]}\n");
+}
+
 void run_fk(const FkOptions& options) {
   const Path path = options.file;
   std::string extension = path.extension().string();
@@ -77,15 +90,19 @@ void run_fk(const FkOptions& options) {
   if (extension == ".bvh" && !wants_pose(options.pose)) {
     const Motion motion = read_bvh(path);
     warn(motion.warnings);
+    if (options.all_frames) return print_frames(motion.frame_count, [&](int frame) { return fk_of_motion(motion, frame, options.file); });
     joints = fk_of_motion(motion, options.pose.frame, options.file);
   } else {
     const ArmatureFile rig = read_armature_file(path);
     warn(rig.warnings);
+    if (options.all_frames) {
+      const auto poses = read_all_poses(options.pose, rig.armature);
+      return print_frames(static_cast<int>(poses.size()), [&](int frame) { return fk_of_rig(rig.armature, poses[frame]); });
+    }
     joints = fk_of_rig(rig.armature, read_pose_options(options.pose, rig.armature));
   }
   if (!options.json) return print_table(joints);
-  const std::string text = Json{{"joints", joints}}.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  print_json({{"joints", joints}}, "\n");
 }
 }  // namespace
 
@@ -93,8 +110,9 @@ void add_fk(CLI::App& app) {
   auto* command = app.add_subcommand("fk", "world positions and rotations of every joint of a rig or a motion");
   auto options = std::make_shared<FkOptions>();
   command->add_option("FILE", options->file, "a rig (posed, LPS mm, rotations from rest) or a BVH (its own axes and units)")->required();
-  command->add_flag("--json", options->json, "print {\"joints\": [{name, parent, position, rotation_wxyz}]}");
+  auto* json = command->add_flag("--json", options->json, "print {\"joints\": [{name, parent, position, rotation_wxyz}]}");
   add_pose_options(*command, options->pose);
+  command->add_flag("--all-frames", options->all_frames, "every frame of the motion: {\"frames\": [{\"joints\": ...}]}")->needs(json)->excludes("--frame");
   command->callback([options] { run_fk(*options); });
 }
 

@@ -24,11 +24,16 @@ void apply_flex(Pose& pose, const Armature& armature, const std::string& request
   flex(pose, armature, require_bone(armature, request.substr(0, equals)), degrees);
 }
 
-Pose pose_of_motion(const PoseOptions& options, const Armature& armature) {
+// Of one frame, or of all.
+std::vector<Pose> poses_of_motion(const PoseOptions& options, const Armature& armature, std::optional<int> frame) {
   const Motion motion = read_bvh(options.motion);
   warn(motion.warnings);
   const RetargetMap map = options.map.empty() ? match_by_names(motion, armature) : read_retarget_map(options.map, motion, armature);
-  return Retarget(motion, armature, map, {.travel = options.root_motion ? Travel::Free : Travel::Locked}).at(options.frame.value_or(0));
+  const Retarget retarget(motion, armature, map, {.travel = options.root_motion ? Travel::Free : Travel::Locked});
+  if (frame) return {retarget.at(*frame)};
+  std::vector<Pose> poses;
+  for (int f = 0; f < motion.frame_count; ++f) poses.push_back(retarget.at(f));
+  return poses;
 }
 }  // namespace
 
@@ -53,9 +58,17 @@ Pose read_pose_options(const PoseOptions& options, const Armature& armature) {
     throw Error("--frame says which frame, but of no motion", "--frame " + std::to_string(*options.frame), "add --motion F.bvh");
   Pose pose = rest_pose(armature);
   if (!options.pose.empty()) pose = read_pose(options.pose, armature);
-  if (!options.motion.empty()) pose = pose_of_motion(options, armature);
+  if (!options.motion.empty()) pose = poses_of_motion(options, armature, options.frame.value_or(0)).front();
   for (const std::string& request : options.flex) apply_flex(pose, armature, request);
   return pose;
+}
+
+std::vector<Pose> read_all_poses(const PoseOptions& options, const Armature& armature) {
+  if (options.motion.empty()) throw Error("there is no motion to take frames from", "--all-frames", "add --motion F.bvh");
+  std::vector<Pose> poses = poses_of_motion(options, armature, {});
+  for (const std::string& request : options.flex)
+    for (Pose& pose : poses) apply_flex(pose, armature, request);
+  return poses;
 }
 
 }  // namespace limber::cmd

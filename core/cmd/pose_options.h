@@ -33,4 +33,7 @@ void add_pose_options(CLI::App& command, PoseOptions& options);
 // Throws Error for what does not fit the rig; warnings of the files go to stderr.
 Pose read_pose_options(const PoseOptions& options, const Armature& armature);
 
+// Of every frame of --motion. Throws Error without one.
+std::vector<Pose> read_all_poses(const PoseOptions& options, const Armature& armature);
+
 }  // namespace limber::cmd

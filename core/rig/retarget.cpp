@@ -307,7 +307,7 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
   std::vector<int> feet;
   for (BodySide side : kSides)
     if (const auto foot = rig.joint.find({BodyPart::Foot, side}); foot != rig.joint.end() && joint_of_bone_[foot->second] >= 0) feet.push_back(foot->second);
-  if (settings.travel == Travel::Free && !feet.empty()) follow_the_feet(feet);
+  if (settings.travel != Travel::Locked && !feet.empty()) follow_the_feet(feet);
 }
 
 RetargetMap Retarget::map() const {
@@ -325,12 +325,35 @@ Pose Retarget::at(int frame) const {
   return settings_.mirror ? flipped(pose, *armature_) : pose;
 }
 
-// Legs of other proportions take steps of other lengths, so that a body that travels as the source's hips do slides. From
-// frame to frame, what its feet that stand moved more than the source's is taken off; of two that stand the stiller one
-// counts most.
+namespace {
+// The point of two discs that is nearest to `wanted`; where they do not meet, the point that parts the way between them as
+// their radii do.
+glm::dvec2 nearest_in_both(const glm::dvec2& wanted, const std::array<glm::dvec2, 2>& centre, const std::array<double, 2>& radius) {
+  const auto inside = [&](const glm::dvec2& p, int disc) { return glm::length(p - centre[disc]) <= radius[disc] * (1 + 1e-12); };
+  if (inside(wanted, 0) && inside(wanted, 1)) return wanted;
+  const glm::dvec2 way = centre[1] - centre[0];
+  const double distance = glm::length(way);
+  if (distance >= radius[0] + radius[1]) return centre[0] + way * (radius[0] + radius[1] > 0 ? radius[0] / (radius[0] + radius[1]) : 0.5);
+  for (int disc : {0, 1}) {
+    const glm::dvec2 out = wanted - centre[disc], rim = centre[disc] + out * (radius[disc] / std::max(glm::length(out), 1e-300));
+    if (!inside(wanted, disc) && inside(rim, 1 - disc)) return rim;
+  }
+  // One of the two places where the rims cross.
+  const double along = (distance * distance + radius[0] * radius[0] - radius[1] * radius[1]) / (2 * distance);
+  const double across = std::sqrt(std::max(0.0, radius[0] * radius[0] - along * along));
+  const glm::dvec2 unit = way / distance, foot = centre[0] + along * unit, aside = across * glm::dvec2(-unit.y, unit.x);
+  return glm::length(foot + aside - wanted) < glm::length(foot - aside - wanted) ? foot + aside : foot - aside;
+}
+}  // namespace
+
+// Legs of other proportions take steps of other lengths and bend to other heights, so that a body that travels as the
+// source's hips do slides and floats. From frame to frame, what its feet that stand moved more than the source's is taken
+// off; of two that stand the stiller one counts most, and neither slides further than the source's where that can be. Low
+// feet are as high above where they rest as the source's above their lowest place.
 void Retarget::follow_the_feet(const std::vector<int>& feet) {
   constexpr double kStanding = 200, kStill = 20;  // mm/s: slower feet stand; slower ones are alike
   constexpr double kLifted = 60;                  // mm above its lowest place
+  constexpr double kInTheAir = 0.02;              // what a foot that is lifted counts for the height
   const int frames = motion_->frame_count;
   const std::size_t count = feet.size();
   std::vector<glm::dvec3> source(frames * count), rig(frames * count);
@@ -348,20 +371,30 @@ void Retarget::follow_the_feet(const std::vector<int>& feet) {
   std::vector<double> ground(count, 1e300);
   for (std::size_t k = 0; k < source.size(); ++k) ground[k % count] = std::min(ground[k % count], source[k].z);
   feet_.assign(frames, glm::dvec3(0));
-  for (int frame = 1; frame < frames; ++frame) {
-    glm::dvec3 slid(0);
-    double weights = 0, standing = 0;
+  for (int frame = 0; frame < frames; ++frame) {
+    glm::dvec2 slid(0);
+    double weights = 0, standing = 0, lift = 0, lift_weights = 0;
+    std::array<glm::dvec2, 2> centre;
+    std::array<double, 2> radius;
+    bool all_stand = count == 2;
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t now = frame * count + i, before = now - count;
-      const glm::dvec3 moved = source[now] - source[before], ours = rig[now] - rig[before];
-      const double speed = std::hypot(moved.x, moved.y) / motion_->frame_time, height = source[now].z - ground[i];
-      const double stands = std::clamp(2 - speed / kStanding, 0.0, 1.0) * std::clamp(2 - height / kLifted, 0.0, 1.0);
+      const std::size_t now = frame * count + i, before = frame > 0 ? now - count : now;
+      const glm::dvec2 moved = source[now] - source[before], ours = rig[now] - rig[before];
+      const double way = glm::length(moved), speed = way / motion_->frame_time, height = source[now].z - ground[i];
+      const double low = std::clamp(2 - height / kLifted, 0.0, 1.0), stands = low * std::clamp(2 - speed / kStanding, 0.0, 1.0);
       const double weight = stands / (speed * speed + kStill * kStill);
-      slid += weight * glm::dvec3(ours.x - moved.x, ours.y - moved.y, 0);
+      slid += weight * (ours - moved);
       weights += weight;
       standing = std::max(standing, stands);
+      all_stand = all_stand && stands > 0;
+      if (all_stand) centre[i] = ours, radius[i] = way / stands;
+      lift += (low + kInTheAir) * (height - (rig[now].z - armature_->bones[feet[i]].head.z));
+      lift_weights += low + kInTheAir;
     }
-    feet_[frame] = feet_[frame - 1] - (weights > 0 ? standing / weights * slid : glm::dvec3(0));
+    if (weights > 0) slid *= standing / weights;
+    if (all_stand) slid = nearest_in_both(slid, centre, radius);
+    if (settings_.travel == Travel::Free && frame > 0) feet_[frame] = feet_[frame - 1] - glm::dvec3(slid, 0);
+    feet_[frame].z = lift / lift_weights;
   }
 }
 

@@ -49,8 +49,8 @@ void write_retarget_map(const RetargetMap& map, const Path& path);
 // How the body goes with the source's hips.
 enum class Travel {
   Locked,   // stays where it rests
-  InPlace,  // goes up and down, and nowhere else
-  Free,     // goes as the source does since frame 0, and so that its feet on the ground slide as little as the source's
+  InPlace,  // goes up and down, so that its feet on the ground stand as high as at rest, and nowhere else
+  Free,     // up and down likewise; and as the source does since frame 0, so that its feet slide no further than the source's
 };
 
 // The moment at which the source stands as the rig rests.
@@ -91,7 +91,7 @@ class Retarget {
   };
   std::vector<Between> between_;  // per bone; below = -1 where it follows its parent
   double scale_ = 1;
-  std::vector<glm::dvec3> feet_;  // by frame, where the body travels freely: added to its place
+  std::vector<glm::dvec3> feet_;  // by frame, where the body travels: added to its place
 };
 
 }  // namespace limber

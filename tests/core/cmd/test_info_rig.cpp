@@ -80,4 +80,18 @@ TEST_CASE("fk: a rig at rest shows its heads and no rotation, a motion its own a
   CHECK(test::run_limber({"fk", rig, "--flex", "LeftForearm=45x"}).exit_code == 1);
   CHECK(test::run_limber({"fk", rig, "--flex", "Wing=45"}).exit_code == 1);
   CHECK(test::run_limber({"fk", rig, "--frame", "4"}).exit_code == 1);
+
+  const std::string walk = test::shared_path("data/bvh/mh_walk1.bvh").string();
+  for (const std::vector<std::string>& of : {std::vector<std::string>{walk}, {rig, "--motion", walk, "--root-motion"}}) {
+    const auto told = [&](std::vector<std::string> options) {
+      options.insert(options.begin(), of.begin(), of.end());
+      options.insert(options.begin(), "fk");
+      options.push_back("--json");
+      return nlohmann::json::parse(test::run_limber(options).out);
+    };
+    const auto all = told({"--all-frames"});
+    REQUIRE(all["frames"].size() == 14);
+    CHECK(all["frames"][11] == told({"--frame", "11"}));
+  }
+  CHECK(test::run_limber({"fk", rig, "--all-frames", "--json"}).exit_code == 1);
 }
