@@ -215,13 +215,14 @@ void Editor::frame(double time) {
   if (const std::string title = name.empty() ? "Limber" : name + " - Limber"; title != shown_title) host.set_title(shown_title = title);
 
   ImGui::Render();
-  glBindFramebuffer(GL_FRAMEBUFFER, host.framebuffer());
-  glViewport(0, 0, size.x, size.y);
-  const ImVec4 gap = ImGui::ColorConvertU32ToFloat4(look.theme.void_);
-  glClearColor(gap.x, gap.y, gap.z, 1);
-  glClear(GL_COLOR_BUFFER_BIT);
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-  host.present();
+  host.present([this, size] {
+    ImGui::SetCurrentContext(imgui);
+    glViewport(0, 0, size.x, size.y);
+    const ImVec4 gap = ImGui::ColorConvertU32ToFloat4(look.theme.void_);
+    glClearColor(gap.x, gap.y, gap.z, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  });
 }
 
 }  // namespace limber::editor

@@ -3,6 +3,7 @@
 // OpenGL 3.3 core context and push the user's events into one queue; the editor cannot tell which one it is in.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include <glm/glm.hpp>
@@ -27,8 +28,8 @@ class Host {
   virtual void wake() = 0;  // from any thread
   // Moves the pointer by so many pixels, where the desktop allows; its next move is seen there.
   virtual void shift_pointer(const glm::vec2& by) = 0;
-  virtual void present() = 0;
-  virtual unsigned framebuffer() const { return 0; }
+  // Shows what `paint` draws into the bound framebuffer; a host that nobody looks at may paint later, until the next present().
+  virtual void present(const std::function<void()>& paint) = 0;
 
   virtual std::string clipboard() = 0;
   virtual void set_clipboard(const std::string& text) = 0;

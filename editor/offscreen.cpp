@@ -2,6 +2,7 @@
 #include "editor/offscreen.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <epoxy/gl.h>
 
@@ -32,8 +33,7 @@ class Picture final : public Offscreen {
   void wake() override {}
   void shift_pointer(const glm::vec2& by) override { shifted_ += by; }
   glm::vec2 shifted() const override { return shifted_; }
-  void present() override {}
-  unsigned framebuffer() const override { return framebuffer_; }
+  void present(const std::function<void()>& paint) override { paint_ = paint; }
 
   std::string clipboard() override { return clipboard_; }
   void set_clipboard(const std::string& text) override { clipboard_ = text; }
@@ -50,7 +50,11 @@ class Picture final : public Offscreen {
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colours_);
   }
 
-  render::Image picture() const override {
+  render::Image picture() override {
+    if (const auto paint = std::exchange(paint_, {})) {
+      glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+      paint();
+    }
     render::Image image{size_, std::vector<std::uint8_t>(std::size_t{4} * size_.x * size_.y)};
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -66,6 +70,7 @@ class Picture final : public Offscreen {
   render::HeadlessContext context_;
   double monitor_scale_;
   unsigned framebuffer_ = 0, colours_ = 0;
+  std::function<void()> paint_;
   glm::ivec2 size_{0};
   glm::vec2 shifted_{0};
   std::string clipboard_;

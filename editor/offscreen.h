@@ -12,7 +12,8 @@ namespace limber::editor {
 class Offscreen : public Host {
  public:
   virtual void resize(const glm::ivec2& size) = 0;
-  virtual render::Image picture() const = 0;  // as last presented
+  // The last frame presented, painted only now: most frames of a script are looked at by nobody.
+  virtual render::Image picture() = 0;
   virtual glm::vec2 shifted() const = 0;      // by how much shift_pointer() has moved the pointer, in all
   virtual bool full_screen() const = 0;       // as it would be on a desktop
 };

@@ -5,6 +5,7 @@
 #include <utility>
 
 #define GLFW_INCLUDE_NONE
+#include <epoxy/gl.h>
 #include <GLFW/glfw3.h>
 
 #include "core/base/error.h"
@@ -117,7 +118,11 @@ class Window final : public Host {
     const glm::vec2 units = by / pixels(1, 1);
     glfwSetCursorPos(window_, x + units.x, y + units.y);
   }
-  void present() override { glfwSwapBuffers(window_); }
+  void present(const std::function<void()>& paint) override {
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    paint();
+    glfwSwapBuffers(window_);
+  }
 
   std::string clipboard() override {
     const char* text = glfwGetClipboardString(window_);

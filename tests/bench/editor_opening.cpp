@@ -58,6 +58,7 @@ Figures open_once(const Path& volume) {
     if (seconds(CLOCK_MONOTONIC) - begin > kLongestWait) throw Error("no picture comes", volume.string(), "open it in the editor and look");
     const double before = seconds(CLOCK_THREAD_CPUTIME_ID);
     editor.frame(seconds(CLOCK_MONOTONIC) - begin);
+    host->picture();
     editor.views->renderer.finish();  // a frame has ended when its picture is there
     if (first_picture == 0) {
       longest = std::max(longest, seconds(CLOCK_THREAD_CPUTIME_ID) - before);
