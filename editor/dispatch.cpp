@@ -26,8 +26,14 @@ bool belongs_to_text(const Chord& chord) {
   return std::find(std::begin(kEditing), std::end(kEditing), chord.key) != std::end(kEditing);
 }
 
+// Keys that choose among the recent files.
+bool belongs_to_start_screen(const Chord& chord) {
+  return chord.modifiers == Modifiers{} && (chord.key == Key::Up || chord.key == Key::Down || chord.key == Key::Return);
+}
+
 void run_chord(Editor& editor, const Chord& chord) {
-  // Any key that is a command closes the start screen, and runs.
+  if (editor.start_screen && belongs_to_start_screen(chord)) return;
+  // Any other key that is a command closes the start screen, and runs.
   if (editor.start_screen && editor.keymap.find(chord, contexts(editor))) editor.start_screen = false;
   if (const std::string* id = editor.keymap.find(chord, contexts(editor))) run(editor, *id);
 }
