@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <epoxy/gl.h>
 
@@ -22,6 +23,18 @@ void write(const gl::Texture& texture, const glm::ivec3& size, const Format3D& f
   glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, size.x, size.y, size.z, format.pixels, format.type, texels);
 }
 
+// Maps grow and shrink from pose to pose. Room is kept, and is no power of two: a software driver translates its programs
+// anew when an axis becomes one, which takes as long as many pictures.
+glm::ivec3 roomier(glm::ivec3 room, const glm::ivec3& size, int largest_texture) {
+  for (int axis = 0; axis < 3; ++axis) {
+    room[axis] = std::max(room[axis], size[axis]);
+    if ((room[axis] & (room[axis] - 1)) == 0 && room[axis] < largest_texture) ++room[axis];
+  }
+  return room;
+}
+
+Error no_room() { return Error("the pose cannot be shown: the graphics driver has no room for it", "its map", "pose less far, or resample"); }
+
 }  // namespace
 
 const char* const kPosedFunctions = R"(
@@ -35,34 +48,38 @@ uniform ivec3 u_map_size;
 uniform float u_steepest;          // padded voxels at rest that half a node of one sheet can be
 
 const vec3 kNowhere = vec3(-1e6);
+const uint kBroken = 128u;
 
 vec3 node_of(vec3 posed) { return posed * u_node_scale + u_node_offset; }
 
-uint cube_at(vec3 node) {
+uint cube_in(usampler3D cubes, vec3 node) {
   ivec3 cube = ivec3(floor(node));
   if (any(lessThan(cube, ivec3(0))) || any(greaterThanEqual(cube, u_map_size - 1))) return 0u;
-  return texelFetch(u_cubes, cube, 0).r;
+  return texelFetch(cubes, cube, 0).r;
 }
 
-// In a cube that is not 0. Beside a fold: the nearest node, and what lies as far on its other side, mirrored through it.
+// Beside a fold a place reads its nearest node, and what lies as far on that node's other side, mirrored through it.
 // Without branches, since a software driver follows both.
-vec3 rest_in(vec3 node, uint cube) {
+struct Sheet { bool mirrored; vec3 node, rest; };
+Sheet sheet_at(vec3 node, uint cube) {
   vec3 nearest = floor(node + 0.5);
   vec4 middle = texelFetch(u_map, ivec3(nearest), 0);
-  bool mirror = cube >= 128u && middle.a > 0.5;
-  vec4 texel = textureLod(u_map, ((mirror ? 2.0 * nearest - node : node) + 0.5) * u_map_texel, 0.0);
+  return Sheet(cube >= kBroken && middle.a > 0.5, nearest, middle.rgb);
+}
+vec3 rest_on(Sheet sheet, vec3 node) {
+  vec4 texel = textureLod(u_map, ((sheet.mirrored ? 2.0 * sheet.node - node : node) + 0.5) * u_map_texel, 0.0);
   if (texel.a < 0.25) return kNowhere;
   texel.rgb /= texel.a;  // nodes that are not covered do not count
-  vec3 slope = (middle.rgb - texel.rgb) * u_rest_scale;
+  vec3 slope = (sheet.rest - texel.rgb) * u_rest_scale;
   bool one_sheet = all(lessThan(abs(slope), vec3(u_steepest)));
-  vec3 rest = (mirror ? middle.rgb : texel.rgb) * u_rest_scale + u_rest_offset;
-  return mirror && one_sheet ? rest + slope : rest;
+  vec3 rest = (sheet.mirrored ? sheet.rest : texel.rgb) * u_rest_scale + u_rest_offset;
+  return sheet.mirrored && one_sheet ? rest + slope : rest;
 }
 
 vec3 rest_of(vec3 posed) {
   vec3 node = node_of(posed);
-  uint cube = cube_at(node);
-  return cube == 0u ? kNowhere : rest_in(node, cube);
+  uint cube = cube_in(u_cubes, node);
+  return cube == 0u ? kNowhere : rest_on(sheet_at(node, cube), node);
 }
 )";
 static_assert(PreviewMap::kNothing == 0 && PreviewMap::kBroken == 128);
@@ -70,25 +87,17 @@ static_assert(PreviewMap::kNothing == 0 && PreviewMap::kBroken == 128);
 PosedTexture::PosedTexture() : nodes_(gl::Texture::create()), cubes_(gl::Texture::create()) {}
 
 void PosedTexture::upload(const std::shared_ptr<const PreviewMap>& map, int largest_texture) {
-  const bool fits = glm::all(glm::lessThanEqual(map->size, glm::ivec3(largest_texture)));
-  if (fits && !glm::all(glm::lessThanEqual(map->size, room_))) make_room(map->size, largest_texture);
-  if (!fits || room_ == glm::ivec3(0))
-    throw Error("the pose cannot be shown: the graphics driver has no room for it", "its map", "pose less far, or resample");
+  if (glm::any(glm::greaterThan(map->size, glm::ivec3(largest_texture)))) throw no_room();
+  if (glm::any(glm::greaterThan(map->size, room_))) {
+    const glm::ivec3 room = roomier(std::exchange(room_, glm::ivec3(0)), map->size, largest_texture);
+    if (!allocate(nodes_, room, kNodes) || !allocate(cubes_, room, kCubes)) throw no_room();
+    room_ = room;
+  }
   size_ = map->size;
   write(nodes_, size_, kNodes, map->nodes.data());
   write(cubes_, size_, kCubes, map->cubes.data());
   map_ = map;
   gl::check_gl("the upload of a pose");
-}
-
-// Maps grow and shrink from pose to pose. Room is kept, and is no power of two: a software driver translates its programs
-// anew when an axis becomes one, which takes as long as many pictures.
-void PosedTexture::make_room(const glm::ivec3& size, int largest_texture) {
-  for (int axis = 0; axis < 3; ++axis) {
-    room_[axis] = std::max(room_[axis], size[axis]);
-    if ((room_[axis] & (room_[axis] - 1)) == 0 && room_[axis] < largest_texture) ++room_[axis];
-  }
-  if (!allocate(nodes_, room_, kNodes) || !allocate(cubes_, room_, kCubes)) room_ = glm::ivec3(0);
 }
 
 int PosedTexture::bind(const VolumeTexture& volume, gl::Program& program, int first) const {
@@ -105,7 +114,10 @@ int PosedTexture::bind(const VolumeTexture& volume, gl::Program& program, int fi
   return first;
 }
 
-void build_posed_hull(Hull& hull, const PreviewMap& map, const VolumeTexture& volume, const VisibleField& field) {
+void PosedHull::update(const std::shared_ptr<const PreviewMap>& pointer, const VolumeTexture& volume, const VisibleField& field) {
+  if (map_ == pointer && revision_ == field.revision()) return;
+  map_ = nullptr;  // until this has ended
+  const PreviewMap& map = *pointer;
   const double halving = 1 << volume.halvings();
   const glm::vec3 scale(map.extent / halving / double(PreviewMap::kFullFraction)), offset((map.low + 0.5) / halving + double(kPad));
   const std::array<std::int64_t, 3> stride = {1, map.size.x, std::int64_t{map.size.x} * map.size.y};
@@ -113,9 +125,10 @@ void build_posed_hull(Hull& hull, const PreviewMap& map, const VolumeTexture& vo
   parallel_for(map.size.z, 4, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin * stride[2]; i < end * stride[2]; ++i) {
       if (map.cubes[i] == PreviewMap::kNothing) continue;
+      // Beside a fold what is mirrored lies outside the nodes' box; elsewhere a piece of a ray is a little straighter than the map.
+      const float margin = map.cubes[i] >= PreviewMap::kBroken ? float(map.step / halving) : 0.25f;
       const glm::vec3 low(map.reach[i].low), high(map.reach[i].high);
-      const glm::vec3 half = (high - low) * 0.5f * scale;
-      holds[i] = field.is_near((low + high) * 0.5f * scale + offset, std::max({half.x, half.y, half.z}));
+      if (field.may_be_met(low * scale + offset - margin, high * scale + offset + margin)) holds[i] = map.cubes[i];
     }
   });
 
@@ -141,7 +154,16 @@ void build_posed_hull(Hull& hull, const PreviewMap& map, const VolumeTexture& vo
         }
       }
     }
-  hull.upload(faces, map.step / halving, (glm::dvec3(map.first) + 0.5) * (map.step / halving) + double(kPad));
+  hull_.upload(faces, map.step / halving, (glm::dvec3(map.first) + 0.5) * (map.step / halving) + double(kPad));
+
+  if (glm::any(glm::greaterThan(map.size, room_))) {
+    const glm::ivec3 room = roomier(std::exchange(room_, glm::ivec3(0)), map.size, volume.largest_texture());
+    if (!allocate(cubes_, room, kCubes)) throw no_room();
+    room_ = room;
+  }
+  write(cubes_, map.size, kCubes, holds.data());
+  map_ = pointer;
+  revision_ = field.revision();
 }
 
 }  // namespace limber::render

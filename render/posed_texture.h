@@ -28,18 +28,31 @@ class PosedTexture {
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
 
  private:
-  void make_room(const glm::ivec3& size, int largest_texture);
-
   std::shared_ptr<const PreviewMap> map_;
   gl::Texture nodes_, cubes_;
   glm::ivec3 size_{0}, room_{0};  // texels in use, and there
 };
 
-// Around the places that the map leads to the field's set.
-void build_posed_hull(Hull& hull, const PreviewMap& map, const VolumeTexture& volume, const VisibleField& field);
+// Where rays in posed space can meet a field's set: the cubes of a map that lead near it, and the hull around them.
+class PosedHull {
+ public:
+  PosedHull() : cubes_(gl::Texture::create()) {}
 
-// vec3 rest_of(vec3 posed), both in padded coordinates; kNowhere outside the map. uint cube_at(vec3 node), vec3 rest_in(vec3 node,
-// uint cube) and node_of(vec3 posed) for whoever walks from cube to cube.
+  // As needed. Throws Error when the driver has no room for it.
+  void update(const std::shared_ptr<const PreviewMap>& map, const VolumeTexture& volume, const VisibleField& field);
+  const Hull& hull() const { return hull_; }
+  const gl::Texture& cubes() const { return cubes_; }  // as PreviewMap::cubes, kNothing where the set is far
+
+ private:
+  Hull hull_;
+  gl::Texture cubes_;
+  glm::ivec3 room_{0};
+  std::shared_ptr<const PreviewMap> map_;
+  int revision_ = 0;  // of the field
+};
+
+// vec3 rest_of(vec3 posed), both in padded coordinates; kNowhere outside the map. For whoever walks from cube to cube: vec3
+// node_of(vec3 posed), Sheet sheet_at(vec3 node, uint cube), vec3 rest_on(Sheet sheet, vec3 node).
 extern const char* const kPosedFunctions;
 
 }  // namespace limber::render

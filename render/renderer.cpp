@@ -65,18 +65,13 @@ const PosedTexture* Renderer::Parts::pose(Body& body, const std::shared_ptr<cons
   return body.pose.get();
 }
 
-const Hull& Renderer::Parts::hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map) {
-  const VisibleField& field = *body.layers[layer];
-  if (!map) return field.hull();
+const PosedHull* Renderer::Parts::posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map) {
+  if (!map) return nullptr;
   if (body.posed_hulls.size() <= layer) body.posed_hulls.resize(layer + 1);
-  auto& posed = body.posed_hulls[layer];
-  if (!posed) posed = std::make_unique<Body::PosedHull>();
-  if (posed->map != map || posed->revision != field.revision()) {
-    build_posed_hull(posed->hull, *map, *body.volume, field);
-    posed->map = map;
-    posed->revision = field.revision();
-  }
-  return posed->hull;
+  auto& hull = body.posed_hulls[layer];
+  if (!hull) hull = std::make_unique<PosedHull>();
+  hull->update(map, *body.volume, *body.layers[layer]);
+  return hull.get();
 }
 
 VolumePass& Renderer::Parts::volume_pass(const VolumeTexture& volume, VolumePass::Space space) {

@@ -32,11 +32,6 @@ struct Renderer::Parts {
     std::unique_ptr<VolumeTexture> volume;
     std::vector<std::unique_ptr<VisibleField>> layers;
     std::unique_ptr<PosedTexture> pose;  // the last one drawn, with the hull of each layer in it
-    struct PosedHull {
-      Hull hull;
-      std::shared_ptr<const PreviewMap> map;
-      int revision = 0;  // of the layer's field
-    };
     std::vector<std::unique_ptr<PosedHull>> posed_hulls;
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
@@ -45,8 +40,8 @@ struct Renderer::Parts {
   const VisibleField& layer(Body& body, const LooksTexture& looks, size_t layer);
   // The map on the card; null without one.
   const PosedTexture* pose(Body& body, const std::shared_ptr<const PreviewMap>& map);
-  // Where rays start that look for a layer.
-  const Hull& hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map);
+  // Where rays that look for a layer start in posed space; null without a map.
+  const PosedHull* posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map);
   VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
 
   int largest_texture;

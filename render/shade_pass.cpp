@@ -30,6 +30,7 @@ float openness(float depth, vec3 normal) {
   // Both at rest; the direction as the map turns it, from what lies just inside.
   vec3 rest = rest_of(p);
   vec3 turned = (rest - rest_of(p - 0.35 * out_of)) / 0.35;
+  if (length(turned) > 4.0 * length(out_of)) return 0.7;  // across a fold
   out_of = turned * min(1.0, 1.5 * length(out_of) / max(length(turned), 1e-3));
   p = rest;
 #endif

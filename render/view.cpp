@@ -193,7 +193,9 @@ struct View3D::Impl {
     const LooksTexture* looks = nullptr;
     std::vector<const VisibleField*> layers;
     const PosedTexture* pose = nullptr;
-    std::vector<const Hull*> hulls;  // of each layer
+    std::vector<const PosedHull*> posed_hulls;  // of each layer; null at rest
+
+    const Hull& hull(size_t layer) const { return posed_hulls[layer] ? posed_hulls[layer]->hull() : layers[layer]->hull(); }
   };
   std::optional<Source> source(const Scene& scene) {
     if (!scene.volume || !scene.looks) return std::nullopt;
@@ -203,13 +205,13 @@ struct View3D::Impl {
     result.pose = parts.pose(*result.body, scene.pose);
     for (size_t layer = 0; layer < result.looks->layers().size(); ++layer) {
       result.layers.push_back(&parts.layer(*result.body, *result.looks, layer));
-      result.hulls.push_back(&parts.hull(*result.body, layer, scene.pose));
+      result.posed_hulls.push_back(parts.posed_hull(*result.body, layer, scene.pose));
     }
     return result;
   }
 
   ViewRays rays_of(const Source& source, const glm::ivec2& size, int sample) const {
-    const Hull& outer = *source.hulls[0];
+    const Hull& outer = source.hull(0);
     ViewRays rays = view_rays(key.camera, source.body->volume->grid(), size, jitter_of(sample), outer.low(), outer.high());
     rays.label_shift = label_shift_of(sample);
     rays.mirrored_taps = sample % 2 != 0;
@@ -224,13 +226,14 @@ struct View3D::Impl {
     VolumePass& pass = volume_pass(source);
     for (size_t layer = 0; layer < source.layers.size(); ++layer) {
       buffers[layer].resize(size);
-      pass.draw_hull(*source.hulls[layer], rays, buffers[layer], part);
+      pass.draw_hull(source.hull(layer), rays, buffers[layer], part);
     }
   }
   void march(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
     VolumePass& pass = volume_pass(source);
     for (size_t layer = 0; layer < source.layers.size(); ++layer)
-      pass.march(*source.body->volume, *source.layers[layer], *source.hulls[layer], source.pose, source.looks->texture(), static_cast<int>(layer), scene.clip, rays, buffers[layer], part);
+      pass.march(*source.body->volume, *source.layers[layer], source.pose, source.posed_hulls[layer], source.looks->texture(), static_cast<int>(layer), scene.clip, rays,
+                 buffers[layer], part);
   }
   void shade(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
     body.resize(buffers[0].size(), GL_RGBA8);
@@ -245,7 +248,7 @@ struct View3D::Impl {
   void draw_at_once(const Source& source, int scale) {
     const glm::ivec2 size = glm::max((key.size + scale - 1) / scale, glm::ivec2(1));
     const ViewRays rays = rays_of(source, size, 0);
-    rect = VolumePass::covered(*source.hulls[0], rays, size);
+    rect = VolumePass::covered(source.hull(0), rays, size);
     start(source, rays, shown, size, rect);
     march(source, rays, shown, rect);
     shade(source, rays, shown, rect);
@@ -256,7 +259,7 @@ struct View3D::Impl {
   bool refine(const Source& source) {
     const double begin = seconds();
     const ViewRays rays = rays_of(source, key.size, sample);
-    const PixelRect part = VolumePass::covered(*source.hulls[0], rays, key.size);
+    const PixelRect part = VolumePass::covered(source.hull(0), rays, key.size);
     if (next_tile == 0) start(source, rays, jittered, key.size, part);
     const glm::ivec2 tiles = (part.high - part.low + kTile - 1) / kTile;
     const int count = part.empty() ? 0 : tiles.x * tiles.y;

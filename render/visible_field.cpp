@@ -21,6 +21,7 @@ constexpr int kReach = 2;                        // voxels that two blurs carry
 constexpr int kRead = kSlot + 2 * kReach;        // voxels an axis that a slot's field depends on
 constexpr int kRaised = 230;                     // gives a voxel that would vanish its size back
 constexpr int kFarthest = kFirstFieldValue - 1;  // bricks that a texel can tell
+constexpr int kHalf = kBrick / 2;
 constexpr size_t kSlotTexels = size_t{kSlot} * kSlot * kSlot;
 
 using Slot = std::vector<std::uint8_t>;
@@ -95,6 +96,7 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
 struct BrickFacts {
   bool touched, hull;
   std::uint8_t mean;
+  std::array<std::uint8_t, 8> met;  // by half, x fastest: whether a filtered read there can reach the surface
 };
 BrickFacts facts_of(const Slot& field, const glm::ivec3& brick) {
   const glm::ivec3 low = brick * kBrick + kApron;
@@ -108,7 +110,16 @@ BrickFacts facts_of(const Slot& field, const glm::ivec3& brick) {
       most = std::max(most, inner);
       sum += row[0] + row[1] + row[2] + row[3];
     }
-  return {most > 0, most_around >= kSurface, static_cast<std::uint8_t>(sum / (kBrick * kBrick * kBrick))};
+  BrickFacts facts{most > 0, most_around >= kSurface, static_cast<std::uint8_t>(sum / (kBrick * kBrick * kBrick)), {}};
+  for (int half = 0; half < 8 && facts.hull; ++half) {
+    const glm::ivec3 from = low + glm::ivec3(half & 1, half >> 1 & 1, half >> 2) * kHalf - 1;
+    for (int z = 0; z < kHalf + 2; ++z)
+      for (int y = 0; y < kHalf + 2; ++y) {
+        const std::uint8_t* row = field.data() + ((from.z + z) * kSlot + from.y + y) * kSlot + from.x;
+        facts.met[half] |= std::any_of(row, row + kHalf + 2, [](std::uint8_t value) { return value >= kSurface; });
+      }
+  }
+  return facts;
 }
 
 // Chebyshev distance to the nearest zero, in place, at most kFarthest: forward and backward over the 13 earlier neighbours.
@@ -214,6 +225,7 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
     distance_.assign(brick_count, 1);
     in_hull_.assign(brick_count, 0);
     occupancy_.assign(brick_count, 0);
+    met_.assign(brick_count * 8, 0);
   }
 
   // Blurred anew: the slots that depend on a changed label. Their bricks are touched by the set or not.
@@ -238,6 +250,10 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
       touched[at] = facts_here.touched;
       in_hull_[at] = facts_here.hull;
       occupancy_[at] = facts_here.mean;
+      for (int half = 0; half < 8; ++half) {
+        const glm::ivec3 place = (block * kBricksPerBlock + brick) * 2 + glm::ivec3(half & 1, half >> 1 & 1, half >> 2);
+        met_[static_cast<size_t>(place.x + 2 * bricks.x * (place.y + std::int64_t{2 * bricks.y} * place.z))] = facts_here.met[half];
+      }
     }
   };
   parallel_for(static_cast<std::int64_t>(slots), 1, [&](std::int64_t begin, std::int64_t end) {
@@ -281,6 +297,7 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
   bricks_ = bricks;
   ++revision_;
   build_hull(layout);
+  build_upward();
   build_occupancy(volume);
   gl::check_gl("the upload of a visible set");
 }
@@ -366,15 +383,23 @@ int VisibleField::bind(const VolumeTexture& volume, gl::Program& program, int fi
   return first;
 }
 
-bool VisibleField::is_near(const glm::vec3& padded, float reach) const {
-  const glm::ivec3 brick(glm::floor(padded / float(kBrick)));
-  if (glm::any(glm::lessThan(brick, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(brick, bricks_))) {
-    const glm::vec3 inside = glm::clamp(padded, glm::vec3(0), glm::vec3(bricks_ * kBrick) - 1.0f), away = glm::abs(padded - inside);
-    return is_near(inside, reach + std::max({away.x, away.y, away.z}));
+void VisibleField::build_upward() {
+  const glm::ivec3 size = bricks_ * 2;
+  const std::int64_t row = size.x, layer = row * size.y;
+  upward_.resize(met_.size());
+  for (std::int64_t at = std::ssize(met_) - 1; at >= 0; --at) {
+    const bool x = at % row + 1 < row, y = at / row % size.y + 1 < size.y, z = at / layer + 1 < size.z;
+    int least = met_[at] ? 0 : 255;
+    for (int i = 1; i < 8 && least > 0; ++i)
+      if ((!(i & 1) || x) && (!(i & 2) || y) && (!(i & 4) || z)) least = std::min(least, upward_[at + (i & 1) + (i >> 1 & 1) * row + (i >> 2) * layer] + 1);
+    upward_[at] = static_cast<std::uint8_t>(least);
   }
-  // A filtered read reaches half a voxel further.
-  const int bricks_away = distance_[static_cast<size_t>(brick.x + std::int64_t{bricks_.x} * (brick.y + std::int64_t{bricks_.y} * brick.z))];
-  return bricks_away == kFarthest ? reach > kBrick * (kFarthest - 1) : float(bricks_away) <= std::ceil((reach + 0.5f) / kBrick);
+}
+
+bool VisibleField::may_be_met(const glm::vec3& low, const glm::vec3& high) const {
+  const glm::ivec3 size = bricks_ * 2, first = glm::clamp(glm::ivec3(glm::floor(low / float(kHalf))), glm::ivec3(0), size - 1);
+  const glm::ivec3 wide = glm::ivec3(glm::floor(high / float(kHalf))) - first;
+  return upward_[static_cast<size_t>(first.x + size.x * (first.y + std::int64_t{size.y} * first.z))] <= std::max({wide.x, wide.y, wide.z, 0});
 }
 
 }  // namespace limber::render

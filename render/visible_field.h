@@ -35,8 +35,8 @@ class VisibleField {
   const gl::Texture& occupancy() const { return occupancy_texture_; }  // 3D, a texel a brick: how much of it belongs to the set
 
   const Hull& hull() const { return hull_; }
-  // False where no part of the blurred set lies in the box of half-width `reach` about a place in padded coordinates.
-  bool is_near(const glm::vec3& padded, float reach) const;
+  // False where no ray can meet the body in that box of padded coordinates.
+  bool may_be_met(const glm::vec3& low, const glm::vec3& high) const;
   int revision() const { return revision_; }  // rises with every update
 
   // Samplers u_field0 .., u_index, and u_texel; returns the next free unit.
@@ -46,11 +46,13 @@ class VisibleField {
 
  private:
   void build_hull(const BlockLayout& layout);
+  void build_upward();
   void build_occupancy(const VolumeTexture& volume);
 
   LabelSet set_;
   std::vector<std::uint8_t> distance_;   // by brick, bricks to the nearest one with a part of the blurred set, at most 7
   std::vector<std::uint8_t> in_hull_, occupancy_;
+  std::vector<std::uint8_t> met_, upward_;  // by half a brick: whether a ray can meet the body there; how many further up, along all axes, one first can
   glm::ivec3 bricks_{0};
   std::vector<gl::Texture> atlases_;
   gl::Texture index_, occupancy_texture_;

@@ -46,6 +46,13 @@ layout(location = 0) out float out_depth;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out uint out_label;
 
+#ifdef POSED
+uniform usampler3D u_near_cubes;   // of the map, where they lead near the set
+uniform ivec3 u_blocks;
+const float kStretch = 3.0;         // nodes
+const float kNodeTap = 0.5 / 1.4;  // nodes for u_tap: half a node, so that directions go over smoothly from cube to cube
+#endif
+
 uniform float u_tap;               // voxels; of either sign, which mirrors the tetrahedron
 uniform vec3 u_label_shift;
 
@@ -55,24 +62,59 @@ const float kFirstFieldValue = 7.5 / 255.0;
 
 struct Slot { ivec3 offset; uint atlas; };
 Slot slot_of(ivec3 block) {
+#ifdef POSED
+  // A piece of a ray may leave the blocks.
+  ivec3 inside = clamp(block, ivec3(0), u_blocks - 1);
+  uvec4 entry = texelFetch(u_index, inside, 0);
+  if (inside != block) entry.w = 0u;
+#else
   uvec4 entry = texelFetch(u_index, block, 0);
+#endif
   return Slot(ivec3(entry.xyz) * SLOT + APRON - block * BLOCK, entry.w);
 }
 
 // In the slot of its own block, since p may have left the block in which the march found it.
 Slot slot_at(vec3 p) { return slot_of(ivec3(p) >> BLOCK_SHIFT); }
 
-#ifdef POSED
-uniform vec3 u_rest_high;  // end of the blocks
-bool has_blocks(vec3 rest) { return all(greaterThanEqual(rest, vec3(0.0))) && all(lessThan(rest, u_rest_high)); }
+// Of a ray: where it meets the surface, if it does, the value read there and the last one before.
+struct Meeting { float s, value, s_before, value_before; };
 
-float field_of(vec3 posed) {
-  vec3 rest = rest_of(posed);
-  if (!has_blocks(rest)) return 0.0;
-  Slot slot = slot_at(rest);
-  return slot.atlas == 0u ? 0.0 : field_at(slot.atlas, rest + vec3(slot.offset));
+// From s to s_end along what is a line at rest, base + d s, of which a voxel is 1 / rate; moves s on. Not before s_start.
+void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout float s, inout Meeting found) {
+  float voxel = 1.0 / rate;
+  vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
+  vec3 inverse_d = 1.0 / safe;
+  vec3 block_exit = vec3(greaterThan(safe, vec3(0.0))) * float(BLOCK);
+  vec3 ahead = sign(safe) * 0.02;  // a block is left for good even where the ray runs along its face
+  for (int blocks = 0; blocks < 1024 && s < s_end && found.s < -1e29; ++blocks) {
+    vec3 p = base + d * s;
+    ivec3 block = ivec3(p + ahead) >> BLOCK_SHIFT;
+    Slot slot = slot_of(block);
+    vec3 leave = (vec3(block * BLOCK) + block_exit - base) * inverse_d;
+    float s_leave = min(min(min(leave.x, leave.y), leave.z) + 1e-3 * voxel, s_end);
+    float s_march = slot.atlas == 0u ? s_leave : s;
+    float value = 0.0;
+    while (s_march < s_leave) {
+      value = field_texel(slot.atlas, ivec3(base + d * s_march) + slot.offset);
+      if (value >= kBand) break;
+      s_march += (value < kFirstFieldValue ? max(1.0, value * (255.0 * BRICK) - float(BRICK - 1)) : 1.0) * voxel;
+    }
+    // From half a voxel before, so that a surface is not met from its inside. The field rises by about 3/8 a voxel, which gives
+    // the step; it is short enough not to pass over a thread. The apron reaches far enough.
+    float s_near = max(s_march - 0.5 * voxel, s_start), s_far = value >= kBand ? min(s_march + 1.5 * voxel, s_end) : -1e30;
+    vec3 offset = vec3(slot.offset);
+    found.value_before = 0.0;
+    found.s_before = s_near - 0.5 * voxel;
+    while (s_near < s_far) {
+      found.value = field_at(slot.atlas, base + d * s_near + offset);
+      if (found.value >= kSurface) { found.s = s_near; break; }
+      found.value_before = found.value;
+      found.s_before = s_near;
+      s_near += clamp((kSurface - found.value) * 3.0, 0.4, 0.7) * voxel;
+    }
+    s = value >= kBand ? s_march + 1.5 * voxel : max(s_march, s_leave);
+  }
 }
-#endif
 
 void main() {
   vec3 base = u_base + ndc.x * u_base_x + ndc.y * u_base_y;
@@ -100,76 +142,45 @@ void main() {
   }
   float s_start = s;
 
-  float found = -1e30, before = 0.0, after = 0.0, s_before = 0.0;
-  bool cap = false;
+  Meeting met = Meeting(-1e30, 0.0, 0.0, 0.0);
 #ifdef POSED
-  vec3 cube_exit = vec3(greaterThan(safe, vec3(0.0)));
-  vec3 ahead = sign(safe) * 1e-3;
-  for (int cubes = 0; cubes < 1024 && s < s_end && found < -1e29; ++cubes) {
-    float value = 0.0, rate = 1.0;
-    for (int steps = 0; steps < 1024 && s < s_end; ++steps) {
-      vec3 node = node_of(base + d * s);
-      uint cube = cube_at(node + ahead);
-      vec3 leave = ((floor(node + ahead) + cube_exit - u_node_offset) / u_node_scale - base) * inverse_d;
-      float s_leave = max(min(min(leave.x, leave.y), leave.z), s) + 1e-3;
-      vec3 rest = cube == 0u ? kNowhere : rest_in(node, cube);
-      bool here = has_blocks(rest);
-      Slot slot = slot_at(here ? rest : vec3(0.0));
-      value = here && slot.atlas != 0u ? field_texel(slot.atlas, ivec3(rest) + slot.offset) : 0.0;
-      rate = max(float(cube & 127u) / 16.0, 0.1);
-      if (value >= kBand) break;
-      // What has no slot is further away than the block's nearest face.
-      vec3 in_block = mod(rest, float(BLOCK)), wall = min(in_block, float(BLOCK) - in_block);
-      float room = value < kFirstFieldValue ? max(1.0, value * (255.0 * BRICK) - float(BRICK - 1)) : 1.0;
-      if (slot.atlas == 0u) room = min(min(wall.x, wall.y), wall.z) + 1.0;
-      s = here ? min(s + room / rate, s_leave) : s_leave;
+  vec3 node_base = node_of(base), node_d = d * u_node_scale, inverse_node_d = inverse_d / u_node_scale;
+  vec3 forward = vec3(greaterThan(safe, vec3(0.0))), ahead = sign(safe) * 1e-3;
+  vec3 rest_base = vec3(0.0), rest_d = d;
+  Sheet sheet = Sheet(false, vec3(0.0), vec3(0.0));
+  for (int pieces = 0; pieces < 1024 && s < s_end && met.s < -1e29; ++pieces) {
+    // The next cube that can hold the surface, or half a cube beside a fold.
+    uint cube = 0u;
+    vec3 low;
+    float s_leave, size = 1.0;
+    for (int cubes = 0; cubes < 1024; ++cubes) {
+      vec3 node = node_base + node_d * s + ahead;
+      cube = cube_in(u_near_cubes, node);
+      size = cube >= kBroken ? 0.5 : 1.0;
+      low = floor(node / size) * size;
+      vec3 leave = (low + forward * size - node_base) * inverse_node_d;
+      s_leave = max(min(min(leave.x, leave.y), leave.z), s + 0.1) + 1e-3;
+      if (cube != 0u || s_leave >= s_end) break;
+      s = s_leave;
     }
-    // As above, in voxels at rest.
-    float s_near = max(s - 0.5 / rate, s_start), s_far = value >= kBand ? s + 1.5 / rate : -1e30;
-    before = 0.0;
-    s_before = s_near - 0.5 / rate;
-    while (s_near < s_far) {
-      after = field_of(base + d * s_near);
-      if (after >= kSurface) { found = s_near; break; }
-      before = after;
-      s_before = s_near;
-      s_near += clamp((kSurface - after) * 3.0, 0.4, 0.7) / rate;
-    }
-    s = max(s, s_far);
+    // Where the map is straight, as in limbs that turn as a whole, a piece goes through several cubes.
+    float s_far = s + kStretch / u_node_scale;
+    sheet = sheet_at(low + 0.5 * size, cube);
+    vec3 from = rest_on(sheet, node_base + node_d * s), to = rest_on(sheet, node_base + node_d * s_leave);
+    vec3 far = rest_on(sheet, node_base + node_d * s_far), middle = rest_on(sheet, node_base + node_d * (0.5 * (s + s_far)));
+    bool straight = !sheet.mirrored && s_far > s_leave && all(lessThan(abs(from + far - 2.0 * middle), vec3(0.1)));
+    if (straight) { to = far; s_leave = s_far; }
+    rest_d = (to - from) / (s_leave - s);
+    rest_base = from - rest_d * s;
+    vec3 rest_speed = abs(rest_d);
+    float rate = max(max(max(rest_speed.x, rest_speed.y), rest_speed.z), 0.1);
+    if (cube != 0u && from.x > -1e5 && to.x > -1e5) march(rest_base, rest_d, rate, s_start, min(s_leave, s_end), s, met);
+    s = s_leave;
   }
 #else
-  vec3 block_exit = vec3(greaterThan(safe, vec3(0.0))) * float(BLOCK);
-  vec3 ahead = sign(safe) * 0.02;  // a block is left for good even where the ray runs along its face
-  for (int blocks = 0; blocks < 1024 && s < s_end && found < -1e29; ++blocks) {
-    vec3 p = base + d * s;
-    ivec3 block = ivec3(p + ahead) >> BLOCK_SHIFT;
-    Slot slot = slot_of(block);
-    vec3 leave = (vec3(block * BLOCK) + block_exit - base) * inverse_d;
-    float s_leave = min(min(min(leave.x, leave.y), leave.z) + 1e-3, s_end);
-    float s_march = slot.atlas == 0u ? s_leave : s;
-    float value = 0.0;
-    while (s_march < s_leave) {
-      value = field_texel(slot.atlas, ivec3(base + d * s_march) + slot.offset);
-      if (value >= kBand) break;
-      s_march += value < kFirstFieldValue ? max(1.0, value * (255.0 * BRICK) - float(BRICK - 1)) : 1.0;
-    }
-    // From half a voxel before, so that a surface is not met from its inside. The field rises by about 3/8 a voxel, which gives
-    // the step; it is short enough not to pass over a thread. The apron reaches far enough.
-    float s_near = max(s_march - 0.5, s_start), s_far = value >= kBand ? s_march + 1.5 : -1e30;
-    vec3 offset = vec3(slot.offset);
-    before = 0.0;
-    s_before = s_near - 0.5;
-    while (s_near < s_far) {
-      after = field_at(slot.atlas, base + d * s_near + offset);
-      if (after >= kSurface) { found = s_near; break; }
-      before = after;
-      s_before = s_near;
-      s_near += clamp((kSurface - after) * 3.0, 0.4, 0.7);
-    }
-    s = value >= kBand ? s_march + 1.5 : max(s_march, s_leave);
-  }
-
+  march(base, d, 1.0, s_start, s_end, s, met);
 #endif
+  float found = met.s;
 
   if (found < -1e29 || found > s_end) {
     out_depth = 1e30;
@@ -177,18 +188,21 @@ void main() {
     out_label = 0u;
     return;
   }
-  cap = cut && found == s_start;
+  bool cap = cut && found == s_start;
   // The secant.
-  if (!cap) found = mix(max(s_before, s_start), found, clamp((kSurface - before) / max(after - before, 1e-3), 0.0, 1.0));
+  if (!cap) found = mix(max(met.s_before, s_start), found, clamp((kSurface - met.value_before) / max(met.value - met.value_before, 1e-3), 0.0, 1.0));
   vec3 p = base + d * found;
   vec3 a = vec3(1, -1, -1) * u_tap, b = vec3(-1, -1, 1) * u_tap, c = vec3(-1, 1, -1) * u_tap, e = vec3(u_tap);
 #ifdef POSED
   // From here on at rest; how the map turns directions, from its differences along the four corners of a tetrahedron.
-  vec3 at_a = rest_of(p + a), at_b = rest_of(p + b), at_c = rest_of(p + c), at_e = rest_of(p + e);
-  mat3 rest_from_posed = mat3(at_a - at_b - at_c + at_e, at_c + at_e - at_a - at_b, at_b + at_e - at_a - at_c) / (4.0 * u_tap);
+  // A mirrored sheet is known in the cube on the other side of its node: at that cube's corners.
+  vec3 node = node_of(p);
+  if (sheet.mirrored) node = sheet.node + 0.5 * sign(node - sheet.node);
+  vec3 at_a = rest_on(sheet, node + a * kNodeTap), at_b = rest_on(sheet, node + b * kNodeTap), at_c = rest_on(sheet, node + c * kNodeTap), at_e = rest_on(sheet, node + e * kNodeTap);
+  mat3 rest_from_posed = mat3(at_a - at_b - at_c + at_e, at_c + at_e - at_a - at_b, at_b + at_e - at_a - at_c) * (u_node_scale / (4.0 * u_tap * kNodeTap));
   bool torn = any(greaterThan(abs(rest_from_posed[0]) + abs(rest_from_posed[1]) + abs(rest_from_posed[2]), vec3(8.0)));
   if (torn) rest_from_posed = mat3(1.0);
-  p = clamp(rest_of(p), vec3(0.0), u_rest_high - 1e-3);
+  p = clamp(rest_base + rest_d * found, vec3(0.0), vec3(u_blocks * BLOCK) - 1e-3);
   d = rest_from_posed * d;
 #endif
   Slot slot = slot_at(p);
@@ -200,7 +214,11 @@ void main() {
   float steepest = max(max(steepness.x, steepness.y), steepness.z);
   vec3 inward = steepest < 1e-4 || cap ? d : gradient / steepest;
 #ifdef POSED
+  if (torn) inward = d;
+#endif
+#ifdef POSED
   vec3 normal = normalize(-(u_view_from_gradient * (inward * rest_from_posed)));
+  normal.z = abs(normal.z);  // in a fold what is met may be the inside of a sheet
 #else
   vec3 normal = normalize(-(u_view_from_gradient * inward));
 #endif
@@ -331,9 +349,10 @@ void VolumePass::draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer
   glDisable(GL_BLEND);
 }
 
-void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, const Hull& hull, const PosedTexture* posed,
+void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed, const PosedHull* posed_hull,
                        const gl::Texture& looks, int layer, const Clip& clip, const ViewRays& rays, const GBuffer& buffer,
                        const PixelRect& rect) {
+  const Hull& hull = posed_hull ? posed_hull->hull() : field.hull();
   glBindFramebuffer(GL_FRAMEBUFFER, buffer.march_target.name());
   glViewport(0, 0, buffer.size().x, buffer.size().y);
   set_scissor(rect);
@@ -354,7 +373,8 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   unit = field.bind(volume, march_, unit);
   if (posed) {
     unit = posed->bind(volume, march_, unit);
-    march_.set("u_rest_high", glm::vec3(volume.layout().blocks * kBlock));
+    march_.set_texture("u_near_cubes", unit++, GL_TEXTURE_3D, posed_hull->cubes().name());
+    march_.set("u_blocks", volume.layout().blocks);
   }
   march_.set_texture("u_range", unit++, GL_TEXTURE_2D, buffer.range.name());
   march_.set("u_nearest", eye_inside(hull, rays) ? static_cast<float>(rays.nearest) : -kNothingDepth);

@@ -6,8 +6,8 @@
 // one texel a step, skipping as far as the texel allows; near the surface it reads filtered values, and the crossing is
 // found by the secant. A ray that the clip box or plane lets into the middle of the body ends at once, on a cap.
 //
-// The rays of a posed body go from cube to cube of its map and read at the rest points; what the map moves faster than a
-// voxel for a voxel shortens their steps.
+// The rays of a posed body go from cube to cube of its map. A ray's way through a cube is nearly straight at rest: its ends are
+// read through the map, and between them the ray marches at rest as it would without a pose.
 #pragma once
 
 #include <optional>
@@ -61,9 +61,9 @@ class VolumePass {
   // The start of every ray inside `rect`.
   void draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);
   // What the rays of `rect` meet: labels of that layer (looks_texture.h), which are the field's.
-  //   posed  given exactly when this pass is for posed space; the hull is then the posed one
-  void march(const VolumeTexture& volume, const VisibleField& field, const Hull& hull, const PosedTexture* posed, const gl::Texture& looks, int layer, const Clip& clip, const ViewRays& rays,
-             const GBuffer& buffer, const PixelRect& rect);
+  //   posed, posed_hull  given exactly when this pass is for posed space
+  void march(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed, const PosedHull* posed_hull, const gl::Texture& looks, int layer, const Clip& clip,
+             const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);
 
  private:
   gl::Program hull_, march_;

@@ -49,7 +49,6 @@ class Finish {
     for (int axis = 0; axis < 3; ++axis) {
       jump_[axis] = static_cast<int>(std::min(map.jump() * fractions[axis], double(PreviewMap::kFullFraction)));
       steepest_[axis] = static_cast<int>(std::min(map.steepest() * fractions[axis], double(PreviewMap::kFullFraction)));
-      per_step_[axis] = static_cast<float>(1.0 / (fractions[axis] * map.step));
     }
   }
 
@@ -69,8 +68,6 @@ class Finish {
   }
 
  private:
-  static constexpr std::uint8_t kFastest = 127;
-
   // The mean of what the claimed nodes next to it lead to, each with the one behind it; nothing where there are none.
   glm::u16vec4 carried_on(const glm::ivec3& node, std::int64_t at) const {
     Lanes sum{};
@@ -108,26 +105,17 @@ class Finish {
     }
     if (covered == 0) return;
     map_.reach[at] = {glm::u16vec3(low[0], low[1], low[2]), glm::u16vec3(high[0], high[1], high[2])};
-    glm::vec3 rate(0);
     bool jumps = false;
-    for (const int bit : {1, 2, 4}) {
-      Lanes edge{};
+    for (const int bit : {1, 2, 4})
       for (int i = 0; i < 8; ++i)
-        if (!(i & bit) && (covered >> i & 1) && (covered >> (i | bit) & 1)) edge = most(edge, apart(c[i], c[i | bit]));
-      jumps = jumps || any_beyond(edge, jump_);
-      rate += glm::vec3(edge[0], edge[1], edge[2]);
-    }
-    rate *= per_step_;
-    if (covered != 0xff) rate = glm::max(rate, glm::vec3(2));  // missing edges may be longer
-    const int whole = static_cast<int>(std::max({rate.x, rate.y, rate.z}) * PreviewMap::kRateUnit) + 1;
-    map_.cubes[at] = static_cast<std::uint8_t>(jumps ? PreviewMap::kBroken | kFastest : std::min<int>(whole, kFastest));
+        if (!(i & bit) && (covered >> i & 1) && (covered >> (i | bit) & 1)) jumps = jumps || any_beyond(apart(c[i], c[i | bit]), jump_);
+    map_.cubes[at] = jumps ? PreviewMap::kBroken : PreviewMap::kWhole;
   }
 
   PreviewMap& map_;
   const std::vector<glm::u16vec4>& claimed_;
   std::array<std::int64_t, 3> strides_;
   Lanes jump_{}, steepest_{};
-  glm::vec3 per_step_;
 };
 
 }  // namespace

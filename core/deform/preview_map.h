@@ -24,9 +24,8 @@ namespace limber {
 
 struct PreviewMap {
   static constexpr int kFullFraction = 65535;
-  // Of a cube: nothing known there; nodes that jump; how fast the rest point moves.
-  static constexpr std::uint8_t kNothing = 0, kBroken = 128;
-  static constexpr int kRateUnit = 16;  // the other bits: voxels at rest for a posed voxel of the fastest axis, in sixteenths, rounded up
+  // Of a cube: nothing known there; its nodes lie on one sheet; they jump.
+  static constexpr std::uint8_t kNothing = 0, kWhole = 1, kBroken = 128;
 
   // Boxes of rest points, in the nodes' own fractions.
   struct RestBox {

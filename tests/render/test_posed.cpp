@@ -89,8 +89,8 @@ TEST_CASE("posed body: at rest the picture is that of the volume itself, in ever
     a.display = b.display = display;
     const Difference apart = difference(picture_of(studio.renderer, a, camera, kSize), picture_of(studio.renderer, b, camera, kSize));
     INFO("display ", int(display), " mean ", apart.mean, " share ", apart.share);
-    CHECK(apart.mean < 0.5);
-    CHECK(apart.share < 0.01);
+    CHECK(apart.mean < 0.1);
+    CHECK(apart.share < 0.002);
   }
 }
 
