@@ -16,6 +16,7 @@ namespace {
 constexpr std::int64_t kMostFineVoxels = 1'500'000;  // a limb at 2 mm has 650 000 tissue voxels, a body at 2 mm ten millions
 constexpr double kLeastWeight = 1.0 / 1024;
 constexpr double kHold = 1000;  // of tissue that follows one bone wholly over what is blended: bones stay stiff up to their border
+constexpr double kStiff = 0.999;  // of a corner's weight that one bone must have for the cell to be stiff by itself
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
 constexpr int kGrain = 16;  // bricks
 
@@ -24,6 +25,11 @@ struct Share {
   std::int64_t place;
   int bone;
   float weight;
+};
+struct StiffPart {
+  std::int64_t place;  // of the cell
+  int bone;
+  std::uint64_t parts;
 };
 struct Nearest {
   std::int64_t place;
@@ -50,7 +56,7 @@ class Gather {
   Gather(const PreviewLattice& lattice, const TissueVoxels& tissue, const SkinWeights& weights)
       : lattice_(lattice), tissue_(tissue), weights_(weights), slot_of_(weights.bones().size(), -1) {}
 
-  void add(std::int64_t brick, std::vector<Share>& shares, std::vector<Nearest>& nearest) {
+  void add(std::int64_t brick, std::vector<Share>& shares, std::vector<Nearest>& nearest, std::vector<StiffPart>& stiff) {
     const int step = lattice_.step, side = TissueVoxels::kBrick / step, cells = side * side * side;
     const glm::ivec3 corner = tissue_.bricks()[brick].corner;
     distance_.assign(size_t(cells) * 8, kUnknown);
@@ -60,6 +66,10 @@ class Gather {
     tissue_.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
       const glm::ivec3 v = voxel - corner, c = v / step;
       const glm::dvec3 t = (glm::dvec3(v - c * step) + 0.5) / double(step);
+      if (influence->weight[0] == kFullWeight) {
+        const glm::ivec3 part = (v - c * step) * 4 / step;
+        stiff.push_back({lattice_.place(corner / step + c), influence->bone[0], std::uint64_t{1} << (part.x + 4 * (part.y + 4 * part.z))});
+      }
       add(*influence++, c.x + side * (c.y + side * c.z), t, cells);
     });
     for (int cell = 0; cell < cells; ++cell)
@@ -111,6 +121,17 @@ void normalize(std::vector<BoneWeight>& influences) {
   total = 0;
   for (const BoneWeight& each : influences) total += each.weight;
   for (BoneWeight& each : influences) each.weight /= total;
+}
+
+// One of each cell and bone, in rising order.
+void merge(std::vector<StiffPart>& stiff) {
+  std::sort(stiff.begin(), stiff.end(), [](const StiffPart& a, const StiffPart& b) { return a.place != b.place ? a.place < b.place : a.bone < b.bone; });
+  size_t kept = 0;
+  for (size_t i = 0; i < stiff.size(); ++i) {
+    if (kept > 0 && stiff[kept - 1].place == stiff[i].place && stiff[kept - 1].bone == stiff[i].bone) stiff[kept - 1].parts |= stiff[i].parts;
+    else stiff[kept++] = stiff[i];
+  }
+  stiff.resize(kept);
 }
 
 // Cells with tissue, and the ring around them.
@@ -166,9 +187,11 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
   const std::int64_t blocks = (bricks + kGrain - 1) / kGrain;
   std::vector<std::vector<Share>> shares_of(blocks);
   std::vector<std::vector<Nearest>> nearest_of(blocks);
+  std::vector<std::vector<StiffPart>> stiff_of(blocks);
   parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
     Gather gather(lattice, tissue, weights);
-    for (auto brick = begin; brick < end; ++brick) gather.add(brick, shares_of[begin / kGrain], nearest_of[begin / kGrain]);
+    for (auto brick = begin; brick < end; ++brick) gather.add(brick, shares_of[begin / kGrain], nearest_of[begin / kGrain], stiff_of[begin / kGrain]);
+    merge(stiff_of[begin / kGrain]);
   });
   std::vector<Share> shares;
   lattice.depth.assign(lattice.places(), kUnknown);
@@ -242,6 +265,22 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
     const double inside = depth(glm::dvec3(vertex * step) - 0.5);
     lattice.depth[place] = inside > 0 ? static_cast<float>(inside) : -std::sqrt(lattice.depth[place]);
   }
+
+  // A cell lies in one brick.
+  std::vector<StiffPart> stiff;
+  for (const auto& parts : stiff_of) stiff.insert(stiff.end(), parts.begin(), parts.end());
+  merge(stiff);
+  auto part = stiff.begin();
+  for (size_t cell = 0; cell < lattice.cells.size(); ++cell)
+    for (const std::int64_t place = lattice.place(lattice.cells[cell]); part != stiff.end() && part->place == place; ++part) {
+      const auto follows = [&](int corner) {
+        const auto& all = influences[lattice.place(lattice.cells[cell] + corner_of(corner))];
+        return std::any_of(all.begin(), all.end(), [&](const BoneWeight& each) { return each.bone == part->bone && each.weight >= kStiff; });
+      };
+      bool stiff_by_itself = true;
+      for (int corner = 0; corner < 8; ++corner) stiff_by_itself = stiff_by_itself && follows(corner);
+      if (!stiff_by_itself) lattice.stiff.push_back({static_cast<std::int32_t>(cell), part->bone, part->parts});
+    }
   return lattice;
 }
 

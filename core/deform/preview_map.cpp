@@ -178,6 +178,8 @@ class LivePreview::Tile {
   VoxelRange range() const { return {low_, low_ + kTile - 1}; }
 
   void claim(std::int32_t cell, const CellClaim& claim) {
+    const StiffCell* stiff = preview_.stiff(cell);
+    if (stiff && !stiff->holds(preview_.middle(cell), claim.rest, preview_.lattice_.step)) return;
     const glm::ivec3 v = claim.voxel - low_;
     const int at = v.x + kTile * (v.y + kTile * v.z);
     const bool inverted = claim.posed_per_rest < 0;
@@ -205,11 +207,13 @@ class LivePreview::Tile {
 
  private:
   bool is_better(std::int32_t cell, const glm::dvec3& rest, bool inverted, int at) const {
+    const bool stiff = preview_.stiff(cell), stiff_there = preview_.stiff(cell_[at]);
+    if (stiff != stiff_there) return stiff;
     if (inverted != inverted_[at]) return !inverted;
     const int mine = preview_.priority_[label_at(rest)], theirs = preview_.priority_[label_at(rest_[at])];
     if (mine != theirs) return mine > theirs;
     const PreviewLattice& lattice = preview_.lattice_;
-    const double my_depth = lattice.depth_in(lattice.cells[cell], rest), their_depth = lattice.depth_in(lattice.cells[cell_[at]], rest_[at]);
+    const double my_depth = lattice.depth_in(preview_.middle(cell), rest), their_depth = lattice.depth_in(preview_.middle(cell_[at]), rest_[at]);
     if (my_depth != their_depth) return my_depth > their_depth;
     return cell < cell_[at];
   }
@@ -228,7 +232,7 @@ class LivePreview::Tile {
 LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const TissueTable& tissues, const TissueVoxels& tissue,
                          const SkinWeights& weights, int step)
     : volume_(std::move(volume)), lattice_(preview_lattice(volume_->grid, tissue, weights, step)), priority_(65536, 0),
-      posed_(lattice_.places()), moved_(lattice_.places()), range_(lattice_.cells.size()), before_(range_) {
+      posed_(lattice_.places()), posed_stiff_(lattice_.stiff.size()), moved_(lattice_.places()), range_(lattice_.cells.size() + lattice_.stiff.size()), before_(range_) {
   priority_[0] = std::numeric_limits<int>::min();
   for (const Tissue& each : tissues.tissues)
     if (each.label != 0) priority_[each.label] = each.priority;
@@ -246,31 +250,41 @@ std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTra
 bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend) {
   const bool all = !map_ || blend != blend_;
   if (all) size_ = glm::ivec3(0);
-  std::vector<std::uint8_t> bone_moved(posed_from_rest.size(), all);
+  bone_moved_.assign(posed_from_rest.size(), all);
   for (size_t b = 0; b < posed_from_rest.size() && !all; ++b)
-    bone_moved[b] = posed_from_rest[b].rotation != posed_from_rest_[b].rotation || posed_from_rest[b].translation != posed_from_rest_[b].translation;
-  if (std::find(bone_moved.begin(), bone_moved.end(), 1) == bone_moved.end() && map_) return false;
+    bone_moved_[b] = posed_from_rest[b].rotation != posed_from_rest_[b].rotation || posed_from_rest[b].translation != posed_from_rest_[b].translation;
+  if (std::find(bone_moved_.begin(), bone_moved_.end(), 1) == bone_moved_.end() && map_) return false;
   map_ = nullptr;  // until this update has ended: what throws half way leaves nothing to build upon
 
   const std::vector<SkinTransform> bones = skin_transforms(posed_from_rest);
   const AffineTransform world_from_voxel = limber::world_from_voxel(lattice_.grid), voxel_from_world = limber::voxel_from_world(lattice_.grid);
   const double step = lattice_.step;
+  const auto posed = [&](const glm::ivec3& vertex, std::span<const BoneWeight> influences) {
+    const glm::dvec3 world = world_from_voxel * (glm::dvec3(vertex) * step - 0.5);
+    const glm::dvec3 moved = blend_point(blend, bones, influences, world) - world;
+    const glm::dvec3 at = glm::dvec3(vertex) - 0.5 + voxel_from_world.linear * moved / step;
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(at[axis]) < kFurthest))
+        throw Error("the pose carries the tissue too far away", "while the volume follows the pose", "check the pose and the rig");
+    return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
+  };
   parallel_for(std::ssize(lattice_.vertices), 512, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = begin; i < end; ++i) {
       const std::span<const BoneWeight> influences(lattice_.influences.data() + lattice_.offsets[i], lattice_.offsets[i + 1] - lattice_.offsets[i]);
-      const glm::ivec3& vertex = lattice_.vertices[i];
-      const std::int64_t place = lattice_.place(vertex);
+      const std::int64_t place = lattice_.place(lattice_.vertices[i]);
       moved_[place] = 0;
-      if (std::none_of(influences.begin(), influences.end(), [&](const BoneWeight& each) { return bone_moved[each.bone]; })) continue;
-      const glm::dvec3 world = world_from_voxel * (glm::dvec3(vertex) * step - 0.5);
-      const glm::dvec3 moved = blend_point(blend, bones, influences, world) - world;
-      const glm::dvec3 at = glm::dvec3(vertex) - 0.5 + voxel_from_world.linear * moved / step;
-      for (int axis = 0; axis < 3; ++axis)
-        if (!(std::abs(at[axis]) < kFurthest))
-          throw Error("the pose carries the tissue too far away", "while the volume follows the pose", "check the pose and the rig");
-      const FixedPoint fixed(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
+      if (std::none_of(influences.begin(), influences.end(), [&](const BoneWeight& each) { return bone_moved_[each.bone]; })) continue;
+      const FixedPoint fixed = posed(lattice_.vertices[i], influences);
       moved_[place] = all || fixed != posed_[place];
       posed_[place] = fixed;
+    }
+  });
+  parallel_for(std::ssize(lattice_.stiff), 512, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = begin; i < end; ++i) {
+      const StiffCell& cell = lattice_.stiff[i];
+      if (!bone_moved_[cell.bone]) continue;
+      const BoneWeight whole{cell.bone, 1};
+      for (int c = 0; c < 8; ++c) posed_stiff_[i][c] = posed(lattice_.cells[cell.cell] + glm::ivec3(c & 1, c >> 1 & 1, c >> 2), {&whole, 1});
     }
   });
   posed_from_rest_ = posed_from_rest;
@@ -278,33 +292,31 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   return true;
 }
 
+bool LivePreview::has_moved(std::int64_t cell) const {
+  if (const StiffCell* stiff = this->stiff(cell)) return bone_moved_[stiff->bone];
+  const std::int64_t place = lattice_.place(lattice_.cells[cell]), row = lattice_.row(), slice = lattice_.slice();
+  for (const std::int64_t corner : {std::int64_t{0}, row, slice, slice + row})
+    if (moved_[place + corner] || moved_[place + corner + 1]) return true;
+  return false;
+}
+
+PosedCell LivePreview::posed_cell(std::int64_t cell) const {
+  if (stiff(cell)) return PosedCell(posed_stiff_[cell - std::ssize(lattice_.cells)].data(), 2, 4, middle(cell));
+  return PosedCell(&posed_[lattice_.place(middle(cell))], int(lattice_.row()), int(lattice_.slice()), middle(cell));
+}
+
 // The nodes in the box of each moved cell, and the tiles that hold them all with a margin for nodes that are carried on.
 void LivePreview::bound_cells() {
-  const std::int64_t row = lattice_.row(), slice = lattice_.slice();
-  const std::array<std::int64_t, 8> corner = {0, 1, row, row + 1, slice, slice + 1, slice + row, slice + row + 1};
-  parallel_for(std::ssize(lattice_.cells), 512, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(cell_count(), 512, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = begin; i < end; ++i) {
-      const std::int64_t place = lattice_.place(lattice_.cells[i]);
-      before_[i] = range_[i];
-      if (std::none_of(corner.begin(), corner.end(), [&](std::int64_t c) { return moved_[place + c]; })) {
-        before_[i] = {};
-        continue;
-      }
-      Lanes low = lanes(posed_[place]), high = low;
-      for (const std::int64_t c : corner) {
-        low = least(low, lanes(posed_[place + c]));
-        high = most(high, lanes(posed_[place + c]));
-      }
-      low = (low + (kFixedOne - 1)) >> 16;  // shifts of negative numbers round down
-      high >>= 16;
-      range_[i] = {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+      const bool moved = has_moved(i);
+      before_[i] = moved ? range_[i] : VoxelRange{};
+      if (moved) range_[i] = posed_cell(i).box();
     }
   });
 }
 
 void LivePreview::rasterize() {
-  const std::int64_t row = lattice_.row(), slice = lattice_.slice();
-  const std::array<std::int64_t, 8> corner = {0, 1, row, row + 1, slice, slice + 1, slice + row, slice + row + 1};
   glm::ivec3 low(INT32_MAX), high(INT32_MIN);
   for (const VoxelRange& range : range_) {
     if (range.empty()) continue;
@@ -326,9 +338,8 @@ void LivePreview::rasterize() {
     size_ = size;
     claimed_.assign(std::int64_t{size.x} * size.y * size.z, glm::u16vec4(0));
   } else {
-    for (size_t i = 0; i < range_.size(); ++i) {
-      const std::int64_t place = lattice_.place(lattice_.cells[i]);
-      if (std::none_of(corner.begin(), corner.end(), [&](std::int64_t c) { return moved_[place + c]; })) continue;
+    for (std::int64_t i = 0; i < cell_count(); ++i) {
+      if (!has_moved(i)) continue;
       for (const VoxelRange& range : {before_[i], range_[i]}) tiles.reached(range, [&](std::int64_t t) { tiles.dirty[t] = 1; });
     }
   }
@@ -357,9 +368,7 @@ void LivePreview::rasterize() {
 void LivePreview::rasterize_tile(const glm::ivec3& tile_at, const std::int32_t* cells, std::int64_t count) {
   Tile tile(*this, tile_at);
   for (std::int64_t i = 0; i < count; ++i) {
-    const glm::ivec3& cell = lattice_.cells[cells[i]];
-    PosedCell(&posed_[lattice_.place(cell)], int(lattice_.row()), int(lattice_.slice()), cell)
-        .rasterize(tile.range(), [&](const CellClaim& claim) { tile.claim(cells[i], claim); });
+    posed_cell(cells[i]).rasterize(tile.range(), [&](const CellClaim& claim) { tile.claim(cells[i], claim); });
   }
   const Span span = span_of(lattice_);
   const glm::ivec3 from = tile_at * kTile - first_;

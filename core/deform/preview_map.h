@@ -11,12 +11,14 @@
 // Only the surroundings of cells that moved are rasterized again. What comes out never depends on what was posed before.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/deform/lattice.h"
 #include "core/deform/preview_lattice.h"
+#include "core/deform/rasterize.h"
 #include "core/volume/label_volume.h"
 #include "core/volume/tissue_table.h"
 
@@ -80,6 +82,13 @@ class LivePreview {
   struct Tiles;
   class Tile;
 
+  // The cells of the lattice and, after them, the stiff ones.
+  std::int64_t cell_count() const { return std::ssize(range_); }
+  const StiffCell* stiff(std::int64_t cell) const { return cell < std::ssize(lattice_.cells) ? nullptr : &lattice_.stiff[cell - std::ssize(lattice_.cells)]; }
+  const glm::ivec3& middle(std::int64_t cell) const { return lattice_.cells[stiff(cell) ? stiff(cell)->cell : cell]; }
+  bool has_moved(std::int64_t cell) const;
+  PosedCell posed_cell(std::int64_t cell) const;
+
   bool pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend);
   void bound_cells();
   void rasterize();
@@ -94,7 +103,9 @@ class LivePreview {
   std::vector<RigidTransform> posed_from_rest_;
   Blend blend_ = Blend::Linear;
   std::vector<FixedPoint> posed_;         // by place of the lattice
+  std::vector<std::array<FixedPoint, 8>> posed_stiff_;
   std::vector<std::uint8_t> moved_;       // by place: by the update under way
+  std::vector<std::uint8_t> bone_moved_;
   std::vector<VoxelRange> range_, before_;  // by cell: absolute nodes that its image can hold, of this update and of the last
   glm::ivec3 first_{0}, size_{0};         // nodes, whole tiles
   std::vector<glm::u16vec4> claimed_;     // by node: what a cell says

@@ -164,6 +164,8 @@ class PosedCell {
     box_ = {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
   }
 
+  const VoxelRange& box() const { return box_; }  // the voxel centres in the box of its corners
+
   // claim(CellClaim) for every voxel of `clip` whose centre lies in the cube.
   template <class Claim>
   void rasterize(const VoxelRange& clip, const Claim& claim) const {
@@ -219,7 +221,7 @@ class PosedCell {
 
   const FixedPoint* lowest_;
   int row_, slice_;
-  VoxelRange box_;  // the voxel centres in the box of the corners
+  VoxelRange box_;
   glm::ivec3 rest_voxel_;
 };
 

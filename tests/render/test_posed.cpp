@@ -100,14 +100,14 @@ TEST_CASE("posed body: a bent elbow has the outline and the colours of the resam
   for (const bool linear : {true, false}) {
     const Scene posed = arm().posed(pose, linear ? Blend::Linear : Blend::DualQuaternion);
     const Scene dense = arm().resampled(pose, linear ? Method(LinearBlend{}) : Method(DualQuaternion{}));
-    // From the side the outline is long: there an arm that only turns differs by 0.5 %, which are the resampled volume's voxels.
-    for (const auto& [side, most] : {std::pair{StandardView::Front, 0.005}, std::pair{StandardView::Left, 0.0075}}) {
+    // From the side the outline is long: there an arm that only turns differs by 0.7 %, which are the resampled volume's voxels.
+    for (const auto& [side, most] : {std::pair{StandardView::Front, 0.004}, std::pair{StandardView::Left, 0.0065}}) {
       const Camera camera = camera_of(dense.volume->grid, Projection::Perspective, side);
       const Image a = picture_of(studio.renderer, posed, camera, kSize), b = picture_of(studio.renderer, dense, camera, kSize);
       INFO("linear ", linear, " side ", int(side));
       CHECK(covered(b) > 5000);
       CHECK(silhouette_difference(a, b) < most);
-      CHECK(colours_agree(a, b) > 0.85);
+      CHECK(colours_agree(a, b) > 0.87);
     }
   }
 }
