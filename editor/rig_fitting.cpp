@@ -45,7 +45,7 @@ void start_auto_fit(Editor& editor, const std::string& which) {
   const Document from = editor.document();
   auto fitted = std::make_shared<AutoFit>();
   const int id = editor.jobs.start("Auto-fit skeleton", [from, which, fitted](Progress& progress) -> Edit {
-    const Armature rig = which == "rig" ? *from.armature : rig_template(which.empty() ? suggest_template(*from.volume, *from.tissues, progress) : which);
+    const Armature rig = which == "rig" ? *from.armature : rig_template(which.empty() ? suggest_template(*from.volume, progress) : which);
     *fitted = auto_fit(*from.volume, *from.tissues, rig, progress);
     auto laid = std::make_shared<const Armature>(fitted->armature);
     return [from, laid](const Document& now) {
@@ -69,8 +69,8 @@ void show_fit(Editor& editor, const AutoFit& fitted) {
   // The console shows the last line lowest: there the least sure joints stand together.
   for (std::size_t b : order) {
     char line[200];
-    std::snprintf(line, sizeof line, "%s: found by %s, confidence %.0f %%, %.0f %% in tissue", fitted.armature.bones[b].name.c_str(), std::string(to_string(fitted.joints[b].how)).c_str(),
-                  100 * fitted.joints[b].confidence, 100 * fitted.check.share[b]);
+    std::snprintf(line, sizeof line, "%s: found by %s, confidence %.0f %%, may be %.0f mm off, %.0f %% in tissue", fitted.armature.bones[b].name.c_str(), std::string(to_string(fitted.joints[b].how)).c_str(),
+                  100 * fitted.joints[b].confidence, fitted.joints[b].error, 100 * fitted.check.share[b]);
     editor.messages.log.push_back({Severity::Info, line});
   }
   editor.messages.ok("Skeleton fitted", std::to_string(sure) + " of " + std::to_string(fitted.joints.size()) + " joints with confidence, " + percent(fitted.check.whole) + " of bone length in tissue", "view.console");

@@ -13,7 +13,6 @@
 #include "core/base/parallel.h"
 #include "core/cmd/command.h"
 #include "core/rig/armature_io.h"
-#include "core/rig/bone_tissue.h"
 #include "core/rig/templates.h"
 #include "core/volume/volume_io.h"
 
@@ -27,9 +26,9 @@ struct Options {
   RunOptions run;
 };
 
-Armature wanted_rig(const std::string& name, const VolumeFile& file, const TissueTable& tissues, Progress& progress) {
+Armature wanted_rig(const std::string& name, const VolumeFile& file, Progress& progress) {
   if (name == "auto") {
-    const std::string suggested = suggest_template(file.volume, tissues, progress);
+    const std::string suggested = suggest_template(file.volume, progress);
     std::printf("template: %s\n", suggested.c_str());
     return rig_template(suggested);
   }
@@ -40,18 +39,6 @@ Armature wanted_rig(const std::string& name, const VolumeFile& file, const Tissu
   return std::move(rig.armature);
 }
 
-// A rig that lies in a body by its skin shows which label is bone; then bone decides.
-AutoFit fit_twice(const VolumeFile& file, const TissueTable& tissues, const Armature& rig, Progress& progress) {
-  AutoFit fitted = auto_fit(file.volume, tissues, rig, progress);
-  const auto guess = guess_bone_tissue(file.volume, tissues, fitted.armature);
-  if (!guess) return fitted;
-  const double value = tissues.find(guess->label)->file_value;
-  char text[160];
-  std::snprintf(text, sizeof text, "no table says what is bone: label %.0f, through which %.0f %% of the rig runs, is taken for it", value, 100 * guess->share_of_rig);
-  warn(std::string(text));
-  return auto_fit(file.volume, with_bones(tissues, {value}), rig, progress);
-}
-
 nlohmann::ordered_json report_of(const AutoFit& fitted) {
   nlohmann::ordered_json report{{"schema", "limber-fit/1"}, {"misfit_mm", fitted.misfit_mm}, {"share_in_tissue", fitted.check.whole}};
   for (size_t b = 0; b < fitted.joints.size(); ++b) {
@@ -60,6 +47,7 @@ nlohmann::ordered_json report_of(const AutoFit& fitted) {
                                 {"position", {head.x, head.y, head.z}},
                                 {"found_by", std::string(to_string(fitted.joints[b].how))},
                                 {"confidence", fitted.joints[b].confidence},
+                                {"may_be_off_mm", fitted.joints[b].error},
                                 {"share_in_tissue", fitted.check.share[b]}});
   }
   for (const auto& leaving : fitted.check.leaving)
@@ -69,10 +57,10 @@ nlohmann::ordered_json report_of(const AutoFit& fitted) {
 }
 
 void print(const AutoFit& fitted) {
-  std::printf("%-24s %-14s %10s %10s\n", "joint", "found by", "confidence", "in tissue");
+  std::printf("%-24s %-14s %10s %10s %10s\n", "joint", "found by", "confidence", "may be off", "in tissue");
   for (size_t b = 0; b < fitted.joints.size(); ++b)
-    std::printf("%-24s %-14s %9.0f%% %9.0f%%\n", fitted.armature.bones[b].name.c_str(), std::string(to_string(fitted.joints[b].how)).c_str(),
-                100 * fitted.joints[b].confidence, 100 * fitted.check.share[b]);
+    std::printf("%-24s %-14s %9.0f%% %7.0f mm %9.0f%%\n", fitted.armature.bones[b].name.c_str(), std::string(to_string(fitted.joints[b].how)).c_str(),
+                100 * fitted.joints[b].confidence, fitted.joints[b].error, 100 * fitted.check.share[b]);
   if (fitted.misfit_mm > 0) std::printf("skin %.1f mm off the fitted body's, ", fitted.misfit_mm);
   std::printf("%.1f %% of all bone length in tissue\n", 100 * fitted.check.whole);
 }
@@ -89,9 +77,9 @@ void run(const Options& options) {
   if (!options.tissues.empty()) user = read_tissue_table(options.tissues);
   TissueTable tissues = merge_tissue_tables(file.tissues, user ? &*user : nullptr);
   if (!options.bones.empty()) tissues = with_bones(std::move(tissues), options.bones);
-  const Armature rig = wanted_rig(options.rig, file, tissues, progress);
+  const Armature rig = wanted_rig(options.rig, file, progress);
 
-  const AutoFit fitted = fit_twice(file, tissues, rig, progress);
+  const AutoFit fitted = auto_fit(file.volume, tissues, rig, progress);
   write_armature(fitted.armature, options.output);
   if (!options.report.empty()) write_file_atomically(options.report, report_of(fitted).dump(1) + "\n");
   print(fitted);

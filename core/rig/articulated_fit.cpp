@@ -181,6 +181,7 @@ class Step {
   Step(const Mannequin& mannequin, const FitStage& stage) : m_(mannequin) {
     const int bones = m_.bone_count();
     turn_at_.assign(bones, -1);
+    sums_.resize(bones);
     count_ = 3;
     for (int b = 0; b < bones; ++b)
       if (stage.turns.empty() || stage.turns[b]) turn_at_[b] = count_, count_ += 3;
@@ -193,22 +194,11 @@ class Step {
   void add(const Pair& pair) {
     // Mostly across the surface, a little towards the point itself, so that nothing slides for ever.
     constexpr double kAlong = 0.15;
-    add_row(pair, pair.normal, pair.weight * (1 - kAlong));
-    for (int axis = 0; axis < 3; ++axis) {
-      glm::dvec3 n(0);
-      n[axis] = 1;
-      add_row(pair, n, pair.weight * kAlong);
-    }
+    add(pair, kAlong * glm::dmat3(1) + (1 - kAlong) * glm::outerProduct(pair.normal, pair.normal));
   }
 
   // All three ways.
-  void add_free(const Pair& pair) {
-    for (int axis = 0; axis < 3; ++axis) {
-      glm::dvec3 n(0);
-      n[axis] = 1;
-      add_row(pair, n, pair.weight);
-    }
-  }
+  void add_free(const Pair& pair) { add(pair, glm::dmat3(1)); }
 
   //   share  of their usual weight
   void add_likings(double share = 1) {
@@ -263,6 +253,7 @@ class Step {
 
   // The next mannequin.
   Mannequin taken() {
+    gather();
     for (int i = 0; i < count_; ++i) H_(i, i) += 1e-6 + 1e-4 * H_(i, i);
     const Eigen::VectorXd x = H_.selfadjointView<Eigen::Lower>().ldlt().solve(-g_);
     Mannequin next = m_;
@@ -289,36 +280,81 @@ class Step {
   }
 
  private:
-  void add_row(const Pair& pair, const glm::dvec3& n, double weight) {
-    entries_.clear();
+  // What moves a bone's points: its joint's shift (0), its turn (3), its own stretches (6, 7), what wrings it (8).
+  static constexpr int kWays = 9;
+  using Ways = Eigen::Matrix<double, 3, kWays>;
+  struct BoneSum {
+    Eigen::Matrix<double, kWays, kWays> H = Eigen::Matrix<double, kWays, kWays>::Zero();
+    Eigen::Matrix<double, kWays, 1> g = Eigen::Matrix<double, kWays, 1>::Zero();
+    bool has_pairs = false;
+  };
+
+  static void put(Ways& J, int column, const glm::dvec3& v) { J.col(column) << v.x, v.y, v.z; }
+
+  void add(const Pair& pair, const glm::dmat3& metric) {
+    const int b = pair.bone;
+    const glm::dvec3 arm = pair.place - m_.joint(b), axis = m_.rest_axis(b);
+    const glm::dvec3 along = m_.direction(b, axis * glm::dot(axis, pair.rest - m_.atlas().rig.bones[b].head));
+    Ways J = Ways::Zero();
+    for (int i = 0; i < 3; ++i) {
+      glm::dvec3 unit(0);
+      unit[i] = 1;
+      put(J, i, unit);
+      put(J, 3 + i, glm::cross(unit, arm));
+    }
+    put(J, 6, along);
+    put(J, 7, arm - along);
+    if (m_.wrung_by(b) >= 0) put(J, 8, m_.wrung_share(b, pair.rest) * glm::cross(m_.turn[b] * axis, arm));
+    Eigen::Matrix3d W;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) W(i, j) = pair.weight * metric[i][j];
+    const glm::dvec3 r = pair.place - pair.goal;
+    const Eigen::Matrix<double, kWays, 3> JW = J.transpose() * W;
+    sums_[b].H += JW * J;
+    sums_[b].g += JW * Eigen::Vector3d(r.x, r.y, r.z);
+    sums_[b].has_pairs = true;
+  }
+
+  // The bones' sums carried over to the free numbers, which the bones share with all above them.
+  void gather() {
     const Armature& rig = m_.atlas().rig;
-    for (int axis = 0; axis < 3; ++axis) entries_.push_back({axis, n[axis]});
-    glm::dvec3 rest = pair.rest;
-    if (const int by = m_.wrung_by(pair.bone); by >= 0 && turn_at_[by] >= 0) {
-      const glm::dvec3 about = m_.turn[pair.bone] * m_.rest_axis(pair.bone);
-      const double moves = m_.wrung_share(pair.bone, rest) * glm::dot(n, glm::cross(about, pair.place - m_.joint(pair.bone)));
-      for (int axis = 0; axis < 3; ++axis) entries_.push_back({turn_at_[by] + axis, moves * about[axis]});
-    }
-    for (int b = pair.bone; b >= 0; b = rig.bones[b].parent) {
-      if (turn_at_[b] >= 0) {
-        const glm::dvec3 by = glm::cross(pair.place - m_.joint(b), n);
-        for (int axis = 0; axis < 3; ++axis) entries_.push_back({turn_at_[b] + axis, by[axis]});
+    for (int b = 0; b < m_.bone_count(); ++b) {
+      if (!sums_[b].has_pairs) continue;
+      columns_.clear();
+      for (int axis = 0; axis < 3; ++axis) column(axis)[axis] = 1;
+      for (int a = b, below = -1; a >= 0; below = a, a = rig.bones[a].parent) {
+        const glm::dvec3 arm = m_.joint(b) - m_.joint(a);
+        for (int axis = 0; axis < 3 && turn_at_[a] >= 0; ++axis) {
+          glm::dvec3 unit(0);
+          unit[axis] = 1;
+          auto& turned = column(turn_at_[a] + axis);
+          add_shift(turned, glm::cross(unit, arm));
+          turned[3 + axis] = 1;
+        }
+        if (stretch_at_ < 0) continue;
+        const int at = stretch_at_ + 2 * m_.group_of(a);
+        if (below < 0) {
+          column(at)[6] = 1, column(at + 1)[7] = 1;
+        } else {
+          const glm::dvec3 axis = m_.rest_axis(a), l = rig.bones[below].head - rig.bones[a].head, up = axis * glm::dot(axis, l);
+          add_shift(column(at), m_.direction(a, up));
+          add_shift(column(at + 1), m_.direction(a, l - up));
+        }
       }
-      if (stretch_at_ >= 0) {
-        const glm::dvec3 axis = m_.rest_axis(b), l = rest - rig.bones[b].head, up = axis * glm::dot(axis, l);
-        const int group = m_.group_of(b);
-        entries_.push_back({stretch_at_ + 2 * group, glm::dot(n, m_.direction(b, up))});
-        entries_.push_back({stretch_at_ + 2 * group + 1, glm::dot(n, m_.direction(b, l - up))});
+      if (const int by = m_.wrung_by(b); by >= 0 && turn_at_[by] >= 0)
+        for (int axis = 0; axis < 3; ++axis) column(turn_at_[by] + axis)[8] = (m_.turn[b] * m_.rest_axis(b))[axis];
+      for (const auto& [i, u] : columns_) {
+        g_[i] += u.dot(sums_[b].g);
+        const Eigen::Matrix<double, kWays, 1> Hu = sums_[b].H * u;
+        for (const auto& [j, v] : columns_)
+          if (j <= i) H_(i, j) += Hu.dot(v);
       }
-      rest = rig.bones[b].head;
-    }
-    const double r = glm::dot(n, pair.place - pair.goal);
-    for (const auto& [i, a] : entries_) {
-      g_[i] += weight * a * r;
-      for (const auto& [j, b] : entries_)
-        if (j <= i) H_(i, j) += weight * a * b;
     }
   }
+
+  using Column = Eigen::Matrix<double, kWays, 1>;
+  static void add_shift(Column& column, const glm::dvec3& by) { column.head<3>() += Eigen::Vector3d(by.x, by.y, by.z); }
+  Column& column(int i) { return columns_.insert({i, Column::Zero()}).first->second; }
 
   void like_equal(int a, int b, double difference, double spread) {
     const double w = 1 / (spread * spread);
@@ -333,7 +369,8 @@ class Step {
   std::vector<int> turn_at_;
   Eigen::MatrixXd H_;
   Eigen::VectorXd g_;
-  std::vector<std::pair<int, double>> entries_;
+  std::vector<BoneSum> sums_;         // per bone, over its pairs
+  std::map<int, Column> columns_;  // how the bone at hand follows the free numbers
 };
 
 }  // namespace

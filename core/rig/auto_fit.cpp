@@ -3,17 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include <glm/gtc/quaternion.hpp>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/rig/articulated_fit.h"
 #include "core/rig/body_atlas.h"
 #include "core/rig/body_skeleton.h"
+#include "core/rig/bone_tissue.h"
+#include "core/rig/fit_starts.h"
+#include "core/rig/joint_landmarks.h"
 #include "core/rig/limb_paths.h"
 #include "core/rig/rig_placing.h"
 #include "core/rig/surface_points.h"
@@ -24,13 +30,13 @@ namespace limber {
 namespace {
 
 constexpr double kCells = 380;      // along the longest side of the tissue
+constexpr double kRoughCells = 190;
 constexpr double kLeastBone = 0.004;  // of all tissue: less bone than that is no skeleton
 constexpr std::int64_t kBoneCells = 6000;
-constexpr double kPi = 3.14159265358979323846;
 
 // What is fitted to.
 struct Target {
-  Occupancy body, bone_body;
+  Occupancy body, rough_body, bone_body;  // rough enough for ways through it
   double length = 0;  // mm, diagonal of the tissue's extent
   double cell = 0;    // mm, the largest side of a cell
   std::optional<FitSurface> skin, bone;
@@ -53,41 +59,40 @@ std::vector<glm::dvec3> filled_cells(const Occupancy& occupancy, std::int64_t mo
   return centres;
 }
 
-std::optional<std::pair<glm::dvec3, glm::dvec3>> extent_of(const std::vector<SurfacePoint>& points) {
-  if (points.empty()) return std::nullopt;
-  glm::dvec3 low = points[0].place, high = low;
-  for (const SurfacePoint& p : points) low = glm::min(low, p.place), high = glm::max(high, p.place);
-  return std::pair(low, high);
-}
-
-Target make_target(const LabelVolume& volume, const TissueTable& tissues) {
+Target make_target(const LabelVolume& volume) {
   const VoxelBox box = tissue_box(volume);
   if (box.voxel_count() == 0) throw Error("a volume without tissue cannot be rigged", "every voxel is air", "give a label volume with tissue");
   Target target;
   const glm::dvec3 sides = glm::dvec3(box.size) * volume.grid.spacing;
   const double longest = std::max({sides.x, sides.y, sides.z}), spacing = longest / kCells;
-  LabelSet all(65536, 1), bone(65536, 0);
+  LabelSet all(65536, 1);
   all[0] = 0;
-  const std::vector<TissueKind> kinds = tissues.kinds();
-  for (size_t label = 1; label < kinds.size(); ++label) bone[label] = is_bone(kinds[label]);
 
   target.body = occupancy_of(volume, all, spacing);
   close_body(target.body);
+  target.rough_body = coarsened(target.body, longest / kRoughCells);
   std::vector<SurfacePoint> skin = surface_points(target.body);
   target.length = glm::length(sides);
   target.cell = std::max({target.body.grid.spacing.x, target.body.grid.spacing.y, target.body.grid.spacing.z});
   target.skin.emplace(std::move(skin), longest / 150);
-
-  target.bone_body = occupancy_of(volume, bone, spacing);
-  const Occupancy& bones = target.bone_body;
-  double of_bone = 0, of_body = 0;
-  for (float share : bones.share) of_bone += share;
-  for (float share : target.body.share) of_body += share;
-  if (of_bone > kLeastBone * of_body) {
-    target.bone.emplace(surface_points(bones), longest / 200);
-    target.bone_cells = filled_cells(bones, kBoneCells);
-  }
   return target;
+}
+
+// Of these labels; nothing where they are no skeleton.
+void add_bone(Target& target, const LabelVolume& volume, const LabelSet& labels) {
+  const glm::dvec3 sides = glm::dvec3(tissue_box(volume).size) * volume.grid.spacing;
+  const double longest = std::max({sides.x, sides.y, sides.z});
+  target.bone_body = occupancy_of(volume, labels, longest / kCells);
+  const auto filled = [](const Occupancy& cells) {
+    return parallel_sum(std::ssize(cells.share), 1 << 16, [&](std::int64_t begin, std::int64_t end) {
+      double sum = 0;
+      for (std::int64_t i = begin; i < end; ++i) sum += cells.share[i];
+      return sum;
+    });
+  };
+  if (filled(target.bone_body) <= kLeastBone * filled(target.body)) return;
+  target.bone.emplace(surface_points(target.bone_body), longest / 200);
+  target.bone_cells = filled_cells(target.bone_body, kBoneCells);
 }
 
 // Too few points of surface say nothing of a body.
@@ -95,142 +100,6 @@ bool has_shape(const Target& target) {
   constexpr std::int64_t kLeast = 300;
   return std::ssize(target.skin->points) >= kLeast;
 }
-
-double rest_length(const Armature& rig, int bone, int child) { return glm::distance(rig.bones[bone].head, rig.bones[child].head); }
-
-glm::dmat3 turn_between(const glm::dvec3& from, const glm::dvec3& to) {
-  const glm::dvec3 a = glm::normalize(from), b = glm::normalize(to), across = glm::cross(a, b);
-  const double s = glm::length(across);
-  if (s < 1e-9) return glm::dmat3(1);
-  return glm::mat3_cast(glm::angleAxis(std::atan2(s, glm::dot(a, b)), across / s));
-}
-
-void stretch_all(Mannequin& m, double factor) {
-  for (double& a : m.along) a = std::log(factor);
-  m.across = m.along;
-  m.settle();
-}
-
-// A limb without its digits, and the bone whose tail is its end.
-struct Chain {
-  std::vector<int> bones;
-  int last = 0;
-};
-
-Chain chain_of(const Armature& rig, std::initializer_list<std::string> names, const std::string& last) {
-  Chain chain;
-  for (const std::string& name : names)
-    if (const auto bone = rig.find(name)) chain.bones.push_back(*bone);
-  chain.last = rig.find(last).value_or(chain.bones.empty() ? 0 : chain.bones.back());
-  return chain;
-}
-
-double length_from(const Armature& rig, const Chain& chain, size_t k) {
-  double length = glm::distance(rig.bones[chain.bones.back()].head, rig.bones[chain.last].tail);
-  for (; k + 1 < chain.bones.size(); ++k) length += rest_length(rig, chain.bones[k], chain.bones[k + 1]);
-  return length;
-}
-
-// Lays a chain along a way that starts at its end.
-void lay_chain(Mannequin& m, const Chain& chain, const LimbPath& path, double scale) {
-  const Armature& rig = m.atlas().rig;
-  for (size_t k = 0; k < chain.bones.size(); ++k) {
-    const bool is_last = k + 1 == chain.bones.size();
-    const double from = scale * length_from(rig, chain, k), to = is_last ? 0 : scale * length_from(rig, chain, k + 1);
-    const glm::dvec3 way = path.at(to) - path.at(from);
-    const glm::dvec3 next = is_last ? m.carried(chain.last, rig.bones[chain.last].tail) : m.joint(chain.bones[k + 1]);
-    const glm::dvec3 now = next - m.joint(chain.bones[k]);
-    if (glm::length(way) > 1e-6 && glm::length(now) > 1e-6) m.turn_branch(chain.bones[k], turn_between(now, way));
-  }
-}
-
-// --- starts ---------------------------------------------------------------------------------------------------------------
-
-glm::dmat3 frame(const glm::dvec3& left, const glm::dvec3& up) {
-  const glm::dvec3 z = glm::normalize(up), x = glm::normalize(left - z * glm::dot(left, z));
-  return glm::dmat3(x, glm::cross(z, x), z);
-}
-
-void put_body(Mannequin& m, const glm::dmat3& axes, double scale, const glm::dvec3& hips) {
-  for (glm::dmat3& turn : m.turn) turn = axes;
-  m.root = hips;
-  stretch_all(m, scale);
-}
-
-std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Target& target) {
-  std::vector<Mannequin> starts;
-  const auto [low, high] = *extent_of(target.skin->points);
-  const auto paths = limb_paths(target.body, PathCentre::Thickest);
-  const Armature& rig = atlas.rig;
-  const double stature = 1748;
-  {
-    Mannequin upright(atlas);
-    const double scale = (high.z - low.z) / stature;
-    put_body(upright, glm::dmat3(1), scale, glm::dvec3((low.x + high.x) / 2, (low.y + high.y) / 2, low.z + 925 * scale));
-    starts.push_back(upright);
-  }
-  if (paths.size() < 3) return starts;
-
-  // The head is the nearest of the five ends, the feet lie farthest away from it.
-  std::vector<LimbPath> ends(paths.begin(), paths.begin() + std::min<size_t>(paths.size(), 5));
-  const glm::dvec3 centre = ends[0].points.back();
-  const auto head = std::min_element(ends.begin(), ends.end(), [](auto& a, auto& b) { return a.length < b.length; });
-  const LimbPath crown = *head;
-  ends.erase(head);
-  const glm::dvec3 upwards = crown.points.front() - centre;
-  std::sort(ends.begin(), ends.end(), [&](auto& a, auto& b) { return glm::dot(a.points.front(), upwards) < glm::dot(b.points.front(), upwards); });
-  const LimbPath feet[2] = {ends[0], ends[1]};
-  const double whole = crown.length + (feet[0].length + feet[1].length) / 2, scale = whole / 1960;
-  // From the toes, the hip is at the end of foot, shank and thigh.
-  const double leg = scale * 1040;
-  const glm::dvec3 hips = (feet[0].at(leg) + feet[1].at(leg)) / 2.0;
-  const glm::dvec3 up = crown.points.front() - hips, across = feet[0].at(leg * 0.75) - feet[1].at(leg * 0.75);
-  if (glm::length(glm::cross(up, across)) < 1e-6) return starts;
-  for (int facing = 0; facing < 2; ++facing) {
-    const glm::dmat3 axes = frame(facing ? -across : across, up);
-    Mannequin m(atlas);
-    put_body(m, axes, scale, hips);
-    lay_chain(m, chain_of(rig, {"LeftThigh", "LeftShank", "LeftFoot"}, "LeftToes"), feet[facing], scale);
-    lay_chain(m, chain_of(rig, {"RightThigh", "RightShank", "RightFoot"}, "RightToes"), feet[1 - facing], scale);
-    for (size_t k = 2; k < ends.size(); ++k) {
-      // An arm belongs to the side it leaves the trunk on.
-      const glm::dvec3 shoulder = ends[k].at(scale * 700);
-      const bool left = glm::dot(axes[0], shoulder - hips) > 0;
-      const std::string side = left ? "Left" : "Right";
-      lay_chain(m, chain_of(rig, {side + "UpperArm", side + "Forearm", side + "Hand"}, side + "MiddleDistal"), ends[k], scale);
-    }
-    starts.push_back(m);
-  }
-  return starts;
-}
-
-// A single limb runs from its farthest end to the other one; it may run either way, turned about itself in eight ways.
-std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Target& target, const Chain& chain, double beyond_root) {
-  std::vector<Mannequin> starts;
-  auto paths = limb_paths(target.body, PathCentre::FarthestEnd);
-  if (paths.empty() || chain.bones.empty()) return starts;
-  LimbPath path = paths[0];
-  const Armature& rig = atlas.rig;
-  const double length = beyond_root + length_from(rig, chain, 0);
-  const double scale = path.length / length;
-  for (int way = 0; way < 2; ++way) {
-    for (int roll = 0; roll < 8; ++roll) {
-      Mannequin m(atlas);
-      const glm::dvec3 start = path.at(path.length - beyond_root * scale), on = path.at(path.length - (beyond_root + 0.4 * (length - beyond_root)) * scale) - start;
-      if (!(glm::length(on) > 0)) return starts;
-      const glm::dvec3 first = rig.bones[chain.bones[0]].head, rest = (chain.bones.size() > 1 ? rig.bones[chain.bones[1]].head : rig.bones[chain.last].tail) - first;
-      const glm::dmat3 lie = turn_between(rest, on);
-      const glm::dmat3 about = glm::mat3_cast(glm::angleAxis(roll * kPi / 4, glm::normalize(on)));
-      put_body(m, about * lie, scale, start);
-      lay_chain(m, chain, path, scale);
-      starts.push_back(m);
-    }
-    std::reverse(path.points.begin(), path.points.end());
-  }
-  return starts;
-}
-
-// --- fitting --------------------------------------------------------------------------------------------------------------
 
 bool is_digit(const std::string& name) {
   for (const char* word : {"Thumb", "Index", "Middle", "Ring", "Little", "Jaw"})
@@ -295,53 +164,100 @@ std::vector<std::uint8_t> branch_of(const Armature& rig, int root) {
   return in;
 }
 
-// A hand can come to lie one finger beside itself. It is tried turned in its plane and about the forearm, and what fits best
-// is kept.
+// A hand and what it is compared by.
+struct HandFit {
+  int hand = 0, knuckle = 0, index = 0, little = 0;
+  FitStage stage;
+  double palm = 0;
+};
+
+std::optional<HandFit> hand_fit(const Mannequin& m, int hand) {
+  const Armature& rig = m.atlas().rig;
+  const std::string side = rig.bones[hand].name.substr(0, rig.bones[hand].name.size() - 4);
+  const auto knuckle = rig.find(side + "MiddleProximal"), index = rig.find(side + "IndexProximal"), little = rig.find(side + "LittleProximal");
+  if (!knuckle || !index || !little) return std::nullopt;
+  HandFit fit{.hand = hand, .knuckle = *knuckle, .index = *index, .little = *little};
+  fit.palm = glm::distance(m.joint(hand), m.joint(*knuckle));
+  fit.stage = {.iterations = 14, .wide = 0.2 * fit.palm, .narrow = 0.04 * fit.palm, .turns = branch_of(rig, hand), .stretches = false, .bone_share = 0.6, .stride = 3};
+  fit.stage.points = fit.stage.turns;
+  fit.stage.around = m.joint(*knuckle), fit.stage.reach = 1.6 * fit.palm;
+  return fit;
+}
+
+// The hand of one side bent like the other's.
+void bend_alike(Mannequin& m, int hand, int other) {
+  const Armature& rig = m.atlas().rig;
+  const glm::dmat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);
+  const std::vector<std::uint8_t> below = branch_of(rig, hand);
+  // Bones of both hands stand in the same order.
+  for (int b = hand; b < m.bone_count(); ++b)
+    if (below[b]) {
+      const int there = other + b - hand;
+      m.turn[b] = m.turn[rig.bones[b].parent] * mirror * (glm::transpose(m.turn[rig.bones[there].parent]) * m.turn[there]) * mirror;
+    }
+  m.settle();
+}
+
+// A hand can come to lie one finger beside itself. It is tried turned in its plane and about the forearm, then bent like the
+// other one, and what fits best is kept.
 void try_hands(Mannequin& m, const Target& target, const FitSurface* bone) {
   const Armature& rig = m.atlas().rig;
+  std::vector<std::pair<int, double>> hands;  // and their misfit
+  const auto keep_better = [&](Mannequin& best, double& least, Mannequin tried, const HandFit& hand, double share) {
+    fit(tried, &*target.skin, bone, hand.stage);
+    const double off = misfit(tried, &*target.skin, bone, 0.25 * hand.palm, hand.stage);
+    if (off < least * share) least = off, best = std::move(tried);
+  };
   for (int b = 0; b < std::ssize(rig.bones); ++b) {
     if (!rig.bones[b].name.ends_with("Hand")) continue;
-    const auto knuckle = rig.find(rig.bones[b].name.substr(0, rig.bones[b].name.size() - 4) + "MiddleProximal");
-    const auto index = rig.find(rig.bones[b].name.substr(0, rig.bones[b].name.size() - 4) + "IndexProximal");
-    const auto little = rig.find(rig.bones[b].name.substr(0, rig.bones[b].name.size() - 4) + "LittleProximal");
-    if (!knuckle || !index || !little) continue;
-    const double palm = glm::distance(m.joint(b), m.joint(*knuckle));
-    FitStage stage{.iterations = 14, .wide = 0.2 * palm, .narrow = 0.04 * palm, .turns = branch_of(rig, b), .stretches = false, .bone_share = 0.6, .stride = 3};
-    stage.points = stage.turns;
-    stage.around = m.joint(*knuckle), stage.reach = 1.6 * palm;
-    const glm::dvec3 along = glm::normalize(m.joint(*knuckle) - m.joint(b)), normal = glm::normalize(glm::cross(along, m.joint(*index) - m.joint(*little)));
-    std::optional<Mannequin> best;
+    const auto hand = hand_fit(m, b);
+    if (!hand) continue;
+    const glm::dvec3 along = glm::normalize(m.joint(hand->knuckle) - m.joint(b)), normal = glm::normalize(glm::cross(along, m.joint(hand->index) - m.joint(hand->little)));
+    Mannequin best = m;
     double least = 1e300;
     for (double twist : {0.0, -0.7, 0.7})
       for (double aside : {0.0, -0.25, 0.25}) {
         Mannequin tried = m;
         tried.turn_branch(b, glm::mat3_cast(glm::angleAxis(twist, along) * glm::angleAxis(aside, normal)));
-        fit(tried, &*target.skin, bone, stage);
-        const double off = misfit(tried, &*target.skin, bone, 0.25 * palm, stage);
-        if (off < least * (best ? 0.97 : 1)) least = off, best = tried;  // without need it stays as it is
+        keep_better(best, least, tried, *hand, twist == 0 && aside == 0 ? 1 : 0.97);  // without need it stays as it is
       }
-    m = *best;
+    m = best;
+    hands.push_back({b, least});
   }
+  if (hands.size() != 2) return;
+  for (int k = 0; k < 2; ++k) {
+    auto& [hand, least] = hands[k];
+    Mannequin tried = m, best = m;
+    bend_alike(tried, hand, hands[1 - k].first);
+    if (const auto how = hand_fit(m, hand)) keep_better(best, least, tried, *how, 1);
+    m = best;
+  }
+}
+
+void refine_by_skin(Fitted& result, const Target& target) {
+  const double L = target.length;
+  fit(*result.body, &*target.skin, nullptr, {.iterations = 20, .wide = 0.03 * L, .narrow = 0.01 * L, .turns = without_digits(result.atlas->rig), .stride = 3});
 }
 
 void refine(Fitted& result, const Target& target, Progress& progress) {
   Mannequin& m = *result.body;
   const double L = target.length;
-  const auto main = without_digits(result.atlas->rig);
-  progress.update("fitting", 0.4);
-  fit(m, &*target.skin, nullptr, {.iterations = 20, .wide = 0.03 * L, .narrow = 0.01 * L, .turns = main, .stride = 3});
-  progress.update("fitting", 0.6);
   const FitSurface* bone = target.bone ? &*target.bone : nullptr;
   if (bone && follow_rods(m, target)) {
     result.is_rods = true;
     bone = nullptr;
   } else if (bone) {
-    fit(m, &*target.skin, bone, {.iterations = 24, .wide = 0.03 * L, .narrow = 0.006 * L, .turns = main, .bone_share = 0.7, .stride = 2});
+    fit(m, &*target.skin, bone, {.iterations = 24, .wide = 0.03 * L, .narrow = 0.006 * L, .turns = without_digits(result.atlas->rig), .bone_share = 0.7, .stride = 2});
   }
-  progress.update("fitting", 0.8);
+  progress.update("fitting", 0.6);
   try_hands(m, target, bone);
-  if (bone) fit(m, &*target.skin, bone, {.iterations = 16, .wide = 0.01 * L, .narrow = 0.003 * L, .bone_share = 0.8});
-  else if (!result.is_rods) fit(m, &*target.skin, nullptr, {.iterations = 16, .wide = 0.012 * L, .narrow = 0.004 * L});
+  progress.update("fitting", 0.8);
+  // Voxels coarser than finger bones are thick show skin better than bone.
+  const double bone_share = 0.8 * std::min(1.0, 4 / target.cell);
+  // Roughly with some of the points, then to the end with all.
+  if (!result.is_rods)
+    for (const auto& [iterations, stride, wide, narrow] : {std::tuple(14, 3, 0.012, 0.005), std::tuple(9, 1, 0.005, bone ? 0.003 : 0.004)})
+      fit(m, &*target.skin, bone, {.iterations = iterations, .wide = wide * L, .narrow = narrow * L, .bone_share = bone_share, .stride = stride});
   result.misfit = std::sqrt(misfit(m, &*target.skin, nullptr, 0.04 * L, {}));
   progress.update("fitting", 1);
 }
@@ -353,6 +269,8 @@ std::string_view to_string(JointFit::How how) {
     case JointFit::How::Skin: return "skin";
     case JointFit::How::BoneSurface: return "bone surface";
     case JointFit::How::BoneAxis: return "bone axis";
+    case JointFit::How::Girth: return "girth";
+    case JointFit::How::Ball: return "joint ball";
     case JointFit::How::Carried: return "carried along";
     case JointFit::How::Extents: return "extents";
   }
@@ -375,12 +293,6 @@ std::vector<AtlasKind> kinds_for(const Armature& rig) {
   return {};
 }
 
-Chain chain_for(AtlasKind kind, const Armature& rig) {
-  if (kind == AtlasKind::Leg) return chain_of(rig, {"Thigh", "Shank", "Foot"}, "Toes");
-  if (kind == AtlasKind::Hand) return chain_of(rig, {"Hand"}, "MiddleDistal");
-  return chain_of(rig, {"UpperArm", "Forearm", "Hand"}, "MiddleDistal");
-}
-
 // The best of several kinds of body, right and left.
 Fitted best_start(const std::vector<AtlasKind>& kinds, const Target& target, Progress& progress) {
   Fitted best;
@@ -391,9 +303,7 @@ Fitted best_start(const std::vector<AtlasKind>& kinds, const Target& target, Pro
       progress.update("starting", done++ / double(2 * kinds.size()));
       if (kind == AtlasKind::Body && mirror) continue;
       Fitted tried{.atlas = std::make_shared<BodyAtlas>(mirror ? mirrored(atlas) : atlas), .body = std::nullopt};
-      // Flesh goes on some way beyond the joint that a limb begins with.
-      constexpr double kBeyond = 40;
-      take_best_start(tried, target, kind == AtlasKind::Body ? body_starts(*tried.atlas, target) : limb_starts(*tried.atlas, target, chain_for(kind, tried.atlas->rig), kBeyond));
+      take_best_start(tried, target, kind == AtlasKind::Body ? body_starts(*tried.atlas, target.rough_body) : limb_starts(*tried.atlas, target.rough_body, kind));
       if (tried.body && tried.misfit < best.misfit) best = tried;
     }
   }
@@ -401,7 +311,7 @@ Fitted best_start(const std::vector<AtlasKind>& kinds, const Target& target, Pro
 }
 
 // Confidence in the heads of the fitted body's bones: how much of the surface on either side of the joint lies where it should.
-std::vector<double> confidences(const Fitted& fitted, const Target& target) {
+std::vector<double> shares_near(const Fitted& fitted, const Target& target) {
   const Mannequin& m = *fitted.body;
   const bool by_bone = target.bone && !fitted.is_rods;
   const double near = by_bone ? 2.5 + 1.2 * target.cell : 2.5 + 0.004 * target.length + target.cell;
@@ -415,10 +325,143 @@ std::vector<double> confidences(const Fitted& fitted, const Target& target) {
   return result;
 }
 
-bool is_followed_rod(const std::string& name) {
-  for (const char* part : {"UpperArm", "Forearm", "Thigh", "Shank", "Foot"})
-    if (name.ends_with(part)) return true;
-  return false;
+bool ends_with_any(const std::string& name, std::initializer_list<const char*> parts) {
+  return std::any_of(parts.begin(), parts.end(), [&](const char* part) { return name.ends_with(part); });
+}
+
+// Per bone: how little its skin and its parent's is that of the body that was laid over it, 0 for the same and 1 for another
+// shape. Voxels alone put it off by a tenth of a cell.
+std::vector<double> strangeness(const Fitted& fitted, const Target& target) {
+  constexpr double kSame = 0.8, kOther = 0.8;  // mm, and mm more
+  const Mannequin& m = *fitted.body;
+  std::vector<std::vector<double>> off(m.bone_count());
+  const double reach = 0.05 * target.length;
+  for (const AtlasPoint& point : m.atlas().skin) {
+    const glm::dvec3 here = m.carried(point.bone, point.place);
+    const int n = target.skin->tree.nearest(here, m.turn_at(point.bone, point.place) * point.normal, reach);
+    off[point.bone].push_back(n < 0 ? reach : std::abs(glm::dot(target.skin->points[n].normal, here - target.skin->points[n].place)));
+  }
+  std::vector<double> result;
+  for (int b = 0; b < m.bone_count(); ++b) {
+    std::vector<double> both = off[b];
+    if (const int parent = m.atlas().rig.bones[b].parent; parent >= 0) both.insert(both.end(), off[parent].begin(), off[parent].end());
+    std::nth_element(both.begin(), both.begin() + both.size() / 2, both.end());
+    const double scale = std::exp(m.across[m.group_of(b)]);
+    result.push_back(both.empty() ? 1 : std::clamp((both[both.size() / 2] - kSame * scale - 0.08 * target.cell) / (kOther * scale), 0.0, 1.0));
+  }
+  return result;
+}
+
+// The fitted body's joints. Where it is of another shape than the body laid over it, its own landmarks say more.
+struct FoundJoints {
+  std::vector<glm::dvec3> places;
+  std::vector<JointFit> how;
+};
+
+FoundJoints found_joints(const Fitted& fitted, const Target& target) {
+  using How = JointFit::How;
+  // mm that joints lay off on segmented adults, beside those that another shape adds.
+  constexpr double kLeastError = 3, kByBone = 10, kBySkin = 22, kHipsBySkin = 40, kByGirth = 10, kByBall = 6, kByAxis = 10;
+  const Mannequin& m = *fitted.body;
+  const Armature& rig = m.atlas().rig;
+  const bool by_bone = target.bone && !fitted.is_rods;
+  const std::vector<double> near = shares_near(fitted, target), strange = strangeness(fitted, target);
+  FoundJoints found;
+  for (int b = 0; b < m.bone_count(); ++b) {
+    const std::string& name = rig.bones[b].name;
+    const bool rod = fitted.is_rods && ends_with_any(name, {"UpperArm", "Forearm", "Thigh", "Shank", "Foot"});
+    const double other = by_bone ? kByBone : ends_with_any(name, {"Thigh", "Hips", "Neck", "Spine"}) ? kHipsBySkin : kBySkin;
+    found.places.push_back(m.joint(b));
+    found.how.push_back({.how = rod ? How::BoneAxis : by_bone ? How::BoneSurface : How::Skin, .confidence = rod ? 0.9 : near[b], .error = rod ? kByAxis : kLeastError + strange[b] * other});
+  }
+  const auto take = [&](const JointLandmark& mark, How how, double weight, double error) {
+    found.places[mark.bone] = glm::mix(found.places[mark.bone], mark.place, weight);
+    JointFit& joint = found.how[mark.bone];
+    joint.error = std::min(joint.error, glm::mix(joint.error, error, weight));
+    if (weight > 0.5) joint.how = how;
+  };
+  for (const JointLandmark& mark : girth_landmarks(m, target.body)) {
+    const std::string& name = rig.bones[mark.bone].name;
+    // Bones tell elbow and wrist themselves. Of the knee they show the condyles' middle and skin the gap below it; rigs
+    // bend in between.
+    const double share = name == "Neck" ? 1 : by_bone ? (name.ends_with("Shank") ? 0.5 : 0) : fitted.is_rods ? double(name.ends_with("Hand")) : 1;
+    take(mark, How::Girth, share * strange[mark.bone], kByGirth);
+  }
+  if (by_bone)
+    for (const JointLandmark& mark : ball_landmarks(m, *target.bone)) take(mark, How::Ball, strange[mark.bone], kByBall);
+  // Half sure of what may lie off by as much as a joint is thick.
+  constexpr double kJoint = 40;
+  for (JointFit& joint : found.how) joint.confidence *= 1 / (1 + joint.error / kJoint);
+  return found;
+}
+
+// The labels that are bone, as the table says. Where it says nothing of any label: the one through which the long bones of the
+// body run, as it lies by its skin.
+LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, const Fitted& fitted, std::vector<std::string>& warnings) {
+  LabelSet labels(65536, 0);
+  const std::vector<TissueKind> kinds = tissues.kinds();
+  for (size_t label = 1; label < kinds.size(); ++label) labels[label] = is_bone(kinds[label]);
+  const Mannequin& m = *fitted.body;
+  Armature long_bones;
+  for (int b = 0; b < m.bone_count(); ++b) {
+    const Bone& bone = m.atlas().rig.bones[b];
+    if (ends_with_any(bone.name, {"UpperArm", "Forearm", "Thigh", "Shank"})) long_bones.bones.push_back({.name = bone.name, .parent = -1, .head = m.joint(b), .tail = m.carried(b, bone.tail)});
+  }
+  if (const auto guess = guess_bone_tissue(volume, tissues, long_bones)) {
+    const Tissue* tissue = tissues.find(guess->label);
+    char text[160];
+    std::snprintf(text, sizeof text, "no table says what is bone: label %.0f, through which %.0f %% of the limbs' length runs, is taken for it",
+                  tissue ? tissue->file_value : double(guess->label), 100 * guess->share_of_rig);
+    warnings.push_back(text);
+    labels[guess->label] = 1;
+  }
+  return labels;
+}
+
+// Where the grid ends within the tissue: the cells there, of each face of the grid on which they are more than a touch.
+std::vector<glm::dvec3> cut_cells(const Occupancy& body) {
+  constexpr double kTouch = 0.03;  // of the grid's longest side: how wide a cut is at least
+  const glm::ivec3 size = body.grid.size;
+  const glm::dvec3 sides = glm::dvec3(size) * body.grid.spacing;
+  const double least = kTouch * std::max({sides.x, sides.y, sides.z});
+  const AffineTransform to_world = world_from_voxel(body.grid);
+  std::vector<glm::dvec3> cells;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int end : {0, size[axis] - 1}) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      std::vector<glm::dvec3> face;
+      for (int j = 0; j < size[v]; ++j)
+        for (int i = 0; i < size[u]; ++i) {
+          glm::ivec3 cell(0);
+          cell[axis] = end, cell[u] = i, cell[v] = j;
+          if (body.filled(cell)) face.push_back(to_world * glm::dvec3(cell));
+        }
+      if (double(face.size()) * body.grid.spacing[u] * body.grid.spacing[v] > least * least) cells.insert(cells.end(), face.begin(), face.end());
+    }
+  return cells;
+}
+
+// A limb that the grid's border cuts off looks short: what is found of it is not to be trusted.
+void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& found, std::vector<std::string>& warnings) {
+  const std::vector<glm::dvec3> cut = cut_cells(target.body);
+  if (cut.empty()) return;
+  constexpr double kNear = 0.08, kStrange = 5;  // of the tissue's diagonal; mm of error from which a joint is of another shape
+  const Armature& rig = fitted.atlas->rig;
+  std::set<int> doubted;
+  for (int b = 0; b < std::ssize(rig.bones); ++b) {
+    if (is_digit(rig.bones[b].name) || found.how[b].error < kStrange) continue;
+    const double reach = kNear * target.length;
+    if (std::none_of(cut.begin(), cut.end(), [&](const glm::dvec3& cell) { return glm::distance(cell, found.places[b]) < reach; })) continue;
+    doubted.insert(b);
+    if (ends_with_any(rig.bones[b].name, {"Foot", "Toes", "Hand"}) && rig.bones[b].parent >= 0) doubted.insert(rig.bones[b].parent);
+  }
+  std::string names;
+  for (int b : doubted) {
+    names += (names.empty() ? "" : ", ") + rig.bones[b].name;
+    found.how[b].confidence *= 0.4;
+    found.how[b].error = std::max(found.how[b].error, 0.05 * target.length);
+  }
+  if (!names.empty()) warnings.push_back("the grid's border cuts the tissue off; what goes on beyond it is not seen and these joints may lie far off: " + names);
 }
 
 AutoFit by_extents(const LabelVolume& volume, const Armature& rig, const std::string& reason) {
@@ -430,14 +473,19 @@ AutoFit by_extents(const LabelVolume& volume, const Armature& rig, const std::st
 }
 
 void warn_of_joints(AutoFit& result) {
-  constexpr double kDoubtful = 0.35, kOutside = 0.85;
-  std::string doubtful, outside;
+  constexpr double kDoubtful = 0.35, kOutside = 0.85, kFarOff = 18;
+  std::string doubtful, outside, far_off;
+  double farthest = 0;
   for (size_t b = 0; b < result.joints.size(); ++b) {
+    const JointFit& joint = result.joints[b];
     const auto list = [&](std::string& names) { names += (names.empty() ? "" : ", ") + result.armature.bones[b].name; };
-    if (result.joints[b].how != JointFit::How::Carried && result.joints[b].how != JointFit::How::Extents && result.joints[b].confidence < kDoubtful) list(doubtful);
+    const bool found = joint.how != JointFit::How::Carried && joint.how != JointFit::How::Extents;
+    if (found && joint.confidence < kDoubtful) list(doubtful);
+    else if (found && joint.error > kFarOff) list(far_off), farthest = std::max(farthest, joint.error);
     if (result.check.share[b] < kOutside) list(outside);
   }
   if (!doubtful.empty()) result.warnings.push_back("found with little confidence, check by eye: " + doubtful);
+  if (!far_off.empty()) result.warnings.push_back("the body is of another shape here and no landmark tells these joints, which may lie up to some " + std::to_string(std::lround(farthest)) + " mm off: " + far_off);
   if (!outside.empty()) result.warnings.push_back("bones that leave the tissue: " + outside);
 }
 
@@ -464,7 +512,7 @@ Armature scaled_to_tissue(const LabelVolume& volume, const Armature& rig) {
 AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Armature& rig, Progress& progress) {
   check_armature(rig, "the template");
   progress.update("surfaces", 0);
-  const Target target = make_target(volume, tissues);
+  Target target = make_target(volume);
   progress.update("surfaces", 1);
   AutoFit result;
   const std::vector<AtlasKind> kinds = kinds_for(rig);
@@ -473,23 +521,25 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
   if (!fitted.body) {
     result = by_extents(volume, rig, kinds.empty() ? "the bones' names do not tell of a body that is known" : "the tissue has hardly any surface");
   } else {
+    progress.update("fitting", 0);
+    refine_by_skin(fitted, target);
+    progress.update("fitting", 0.3);
+    add_bone(target, volume, bone_labels(volume, tissues, fitted, result.warnings));
     refine(fitted, target, progress);
-    const PlacedRig placed = place_rig(rig, *fitted.body);
+    FoundJoints found = found_joints(fitted, target);
+    doubt_cut_limbs(fitted, target, found, result.warnings);
+    const PlacedRig placed = place_rig(rig, *fitted.body, found.places);
     result.armature = placed.armature;
+    draw_inside(result.armature, target.body);
     result.misfit_mm = fitted.misfit;
-    const std::vector<double> sure = confidences(fitted, target);
-    for (int match : placed.joint_of) {
+    for (size_t b = 0; b < rig.bones.size(); ++b) {
+      const int match = placed.joint_of[b];
       JointFit joint;
-      if (match >= 0) {
-        const bool rod = fitted.is_rods && is_followed_rod(fitted.atlas->rig.bones[match].name);
-        joint.how = rod ? JointFit::How::BoneAxis : target.bone && !fitted.is_rods ? JointFit::How::BoneSurface : JointFit::How::Skin;
-        joint.confidence = rod ? 0.9 : sure[match];
-      }
+      if (match >= 0) joint = found.how[match];
+      // What rides along is as sure as what it rides on, and a little less.
+      else if (rig.bones[b].parent >= 0) joint.confidence = 0.7 * result.joints[rig.bones[b].parent].confidence, joint.error = 1.4 * result.joints[rig.bones[b].parent].error;
       result.joints.push_back(joint);
     }
-    // What rides along is as sure as what it rides on, and a little less.
-    for (size_t b = 0; b < result.joints.size(); ++b)
-      if (result.joints[b].how == JointFit::How::Carried && rig.bones[b].parent >= 0) result.joints[b].confidence = 0.7 * result.joints[rig.bones[b].parent].confidence;
     constexpr double kUnlike = 0.022;  // of the tissue's diagonal
     if (result.misfit_mm > kUnlike * target.length) result.warnings.push_back("the tissue looks little like the body that this rig is of; check every joint by eye");
   }
@@ -498,11 +548,14 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
   return result;
 }
 
-std::string suggest_template(const LabelVolume& volume, const TissueTable& tissues, Progress& progress) {
-  const Target target = make_target(volume, tissues);
+std::string suggest_template(const LabelVolume& volume, Progress& progress) {
+  const Target target = make_target(volume);
   if (!has_shape(target)) return "arm";
-  // A body has five ends that stand far out.
-  if (limb_paths(target.body, PathCentre::Thickest).size() >= 5) {
+  // A body has five ends that stand farther out than fingers do.
+  constexpr double kFarOut = 0.2;  // of the longest way
+  const std::vector<LimbPath> ends = limb_paths(target.rough_body, PathCentre::Thickest);
+  const auto longest = std::max_element(ends.begin(), ends.end(), [](auto& a, auto& b) { return a.length < b.length; });
+  if (ends.size() >= 5 && ends[4].prominence > kFarOut * longest->length) {
     const double whole = best_start({AtlasKind::Body}, target, progress).misfit;
     if (whole < 0.02 * target.length) return "adult";
   }

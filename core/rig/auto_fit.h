@@ -5,7 +5,9 @@
 //      the body lies in the world;
 //   2  the skin gives pose and proportions (core/rig/articulated_fit.h);
 //   3  where the table says what is bone, the bones' surfaces give the joints; bones drawn as mere rods are followed along
-//      their axes instead.
+//      their axes instead. Without a table bone is the label that the long bones run through (core/rig/bone_tissue.h);
+//   4  where the skin is not that of the known body, landmarks of the volume's own shape put joints right
+//      (core/rig/joint_landmarks.h).
 // The joints of any rig are then put where the body's joints came to lie, matched by what their names mean
 // (core/rig/joint_names.h); those between and below ride along. A rig whose names mean nothing is laid into the tissue's
 // extents.
@@ -25,9 +27,10 @@
 namespace limber {
 
 struct JointFit {
-  enum class How { Skin, BoneSurface, BoneAxis, Carried, Extents };
+  enum class How { Skin, BoneSurface, BoneAxis, Girth, Ball, Carried, Extents };
   How how = How::Carried;
   double confidence = 0;  // 0 .. 1
+  double error = 0;       // mm that it may lie off, by how joints found in such a way came out on bodies whose joints are known
 };
 std::string_view to_string(JointFit::How how);  // "bone surface"
 
@@ -47,6 +50,6 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
 Armature scaled_to_tissue(const LabelVolume& volume, const Armature& rig);
 
 // The template that suits the volume best: one of core/rig/templates.h.
-std::string suggest_template(const LabelVolume& volume, const TissueTable& tissues, Progress& progress = no_progress());
+std::string suggest_template(const LabelVolume& volume, Progress& progress = no_progress());
 
 }  // namespace limber

@@ -34,19 +34,36 @@ std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& d
     }
     return g;
   };
-  parallel_for(cells.z, 1, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t z = begin; z < end; ++z)
-      for (int y = 0; y < cells.y; ++y)
-        for (int x = 0; x < cells.x; ++x) {
-          glm::dvec3 p = box.low + step * (glm::dvec3(x, y, z) + 0.5);
-          if (std::abs(distance(p)) > 0.5 * step) continue;
-          for (int k = 0; k < 3; ++k) {
-            const glm::dvec3 g = gradient(p);
-            p -= g * (distance(p) / std::max(glm::dot(g, g), 0.25));
+  // Blocks of cells that lie far from the surface are passed over; distances may be off by a quarter.
+  constexpr int kBlock = 4;
+  const glm::ivec3 blocks = (cells + kBlock - 1) / kBlock;
+  const double far = 1.25 * step * (0.5 + 0.5 * std::sqrt(3.0) * kBlock);
+  parallel_for(blocks.z, 1, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<std::uint8_t> is_far(blocks.x * blocks.y);
+    for (std::int64_t block_z = begin; block_z < end; ++block_z) {
+      for (int y = 0; y < blocks.y; ++y)
+        for (int x = 0; x < blocks.x; ++x) is_far[x + blocks.x * y] = std::abs(distance(box.low + step * kBlock * (glm::dvec3(x, y, block_z) + 0.5))) > far;
+      const std::int64_t last = std::min<std::int64_t>(cells.z, kBlock * (block_z + 1));
+      for (std::int64_t z = kBlock * block_z; z < last; ++z)
+        for (int y = 0; y < cells.y; ++y)
+          for (int x = 0; x < cells.x; ++x) {
+            if (is_far[x / kBlock + blocks.x * (y / kBlock)]) continue;
+            glm::dvec3 p = box.low + step * (glm::dvec3(x, y, z) + 0.5);
+            double d = distance(p);
+            if (std::abs(d) > 0.5 * step) continue;
+            glm::dvec3 g = gradient(p);
+            constexpr double kOn = 0.05;  // mm
+            for (int k = 0; k < 3 && std::abs(d) > kOn; ++k) {
+              for (int step = 0; step < 2; ++step) {
+                p -= g * (d / std::max(glm::dot(g, g), 0.25));
+                d = distance(p);
+              }
+              g = gradient(p);
+            }
+            if (std::abs(d) >= 0.5) continue;
+            if (glm::length(g) > 0.1) rows[z].push_back({p, glm::normalize(g), 0});
           }
-          const glm::dvec3 g = gradient(p);
-          if (std::abs(distance(p)) < 0.5 && glm::length(g) > 0.1) rows[z].push_back({p, glm::normalize(g), 0});
-        }
+    }
   });
   std::vector<AtlasPoint> points;
   for (const auto& row : rows) points.insert(points.end(), row.begin(), row.end());
@@ -114,10 +131,11 @@ double skin_distance(const Anatomy& anatomy, const glm::dvec3& p, int* part = nu
 }
 
 // A limb's flesh is carried by its bone or that one's children; the trunk's by whatever lies nearest.
-void add_skin(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers) {
+void add_skin(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers, const Box& region) {
   for (int f = 0; f < std::ssize(anatomy.flesh); ++f) {
     const Box box = anatomy.flesh[f].solid.box.grown(8);
     const auto of_this = [&](const glm::dvec3& p) {
+      if (!region.touches({p, p})) return kFar;
       // What is far from this part is not worth the whole union.
       const double own = anatomy.flesh[f].solid.distance(p);
       return own > 45 ? own : skin_distance(anatomy, p);
@@ -154,8 +172,9 @@ void add_skin(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers
   }
 }
 
-void add_bones(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers) {
+void add_bones(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers, const Box& region) {
   for (const BonePart& part : anatomy.bones) {
+    if (!part.solid.box.touches(region)) continue;
     const auto distance = [&](const glm::dvec3& p) { return part.solid.distance(p); };
     const Box box = part.solid.box.grown(4);
     std::vector<AtlasPoint> points = points_on(box, kFineBoneStep * 1.5, distance);
@@ -170,12 +189,23 @@ void add_bones(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carrier
   }
 }
 
-BodyAtlas whole_atlas(const Anatomy& anatomy) {
+// Of all that the rig's bones from `root` on carry; nothing far from them is looked at.
+BodyAtlas whole_atlas(const Anatomy& anatomy, const std::string& root = "") {
+  constexpr double kAround = 150;  // mm, more than flesh is thick
+  Box region{glm::dvec3(kFar), glm::dvec3(-kFar)};
+  std::vector<std::uint8_t> below;
+  for (const Bone& bone : anatomy.armature.bones) {
+    below.push_back(root.empty() || bone.name == root || (bone.parent >= 0 && below[bone.parent]));
+    if (!below.back()) continue;
+    region.low = glm::min(region.low, glm::min(bone.head, bone.tail));
+    region.high = glm::max(region.high, glm::max(bone.head, bone.tail));
+  }
+  region = region.grown(kAround);
   BodyAtlas atlas;
   atlas.rig = anatomy.armature;
   const Carriers carriers(atlas.rig);
-  add_skin(atlas, anatomy, carriers);
-  add_bones(atlas, anatomy, carriers);
+  add_skin(atlas, anatomy, carriers, region);
+  add_bones(atlas, anatomy, carriers, region);
   return atlas;
 }
 
@@ -205,11 +235,10 @@ BodyAtlas branch(const BodyAtlas& whole, const std::string& root) {
 
 BodyAtlas make_atlas(AtlasKind kind) {
   if (kind == AtlasKind::Arm) return whole_atlas(arm_anatomy());
-  if (kind == AtlasKind::Hand) return branch(whole_atlas(arm_anatomy()), "Hand");
-  BodyAtlas body = whole_atlas(body_anatomy());
-  if (kind == AtlasKind::ArmWithShoulder) return branch(body, "RightClavicle");
-  if (kind == AtlasKind::Leg) return branch(body, "RightThigh");
-  return body;
+  if (kind == AtlasKind::Hand) return branch(whole_atlas(arm_anatomy(), "Hand"), "Hand");
+  if (kind == AtlasKind::Body) return whole_atlas(body_anatomy());
+  const std::string root = kind == AtlasKind::Leg ? "RightThigh" : "RightClavicle";
+  return branch(whole_atlas(body_anatomy(), root), root);
 }
 
 BodyAtlas mirrored(const BodyAtlas& atlas) {

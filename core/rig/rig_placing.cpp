@@ -116,8 +116,7 @@ glm::dvec3 along_line(const std::vector<glm::dvec3>& line, double share) {
 }
 
 // Joints of the rig's trunk between two matched ones, spread over the body's trunk between the same two.
-void spread_trunk(const Armature& rig, const Mannequin& body, const std::vector<int>& match, std::vector<std::optional<glm::dvec3>>& place) {
-  const Armature& there = body.atlas().rig;
+void spread_trunk(const Armature& rig, const Armature& there, const std::vector<glm::dvec3>& joints, const std::vector<int>& match, std::vector<std::optional<glm::dvec3>>& place) {
   for (int top = 0; top < std::ssize(rig.bones); ++top) {
     if (match[top] < 0 || rig.bones[top].parent < 0 || match[rig.bones[top].parent] >= 0) continue;
     std::vector<int> chain{top};
@@ -137,7 +136,7 @@ void spread_trunk(const Armature& rig, const Mannequin& body, const std::vector<
     if (line.size() < 3 && chain.size() > 3) continue;
     std::vector<glm::dvec3> from, to;
     for (int c : chain) from.push_back(rig.bones[c].head);
-    for (int l : line) to.push_back(body.joint(l));
+    for (int l : line) to.push_back(joints[l]);
     double length = 0, whole = 0;
     for (size_t i = 1; i < from.size(); ++i) whole += glm::distance(from[i - 1], from[i]);
     if (!(whole > 0)) continue;
@@ -177,17 +176,17 @@ int matching_bones(const Armature& rig, const Armature& body) {
   return static_cast<int>(std::count_if(match.begin(), match.end(), [](int b) { return b >= 0; }));
 }
 
-PlacedRig place_rig(const Armature& rig, const Mannequin& body) {
+PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vector<glm::dvec3>& joints) {
   const std::vector<int> match = counterparts(rig, body.atlas().rig);
   const int count = static_cast<int>(rig.bones.size());
   std::vector<std::optional<glm::dvec3>> place(count);
   std::vector<glm::dvec3> from, to;
   for (int b = 0; b < count; ++b)
     if (match[b] >= 0) {
-      place[b] = body.joint(match[b]);
+      place[b] = joints[match[b]];
       from.push_back(rig.bones[b].head), to.push_back(*place[b]);
     }
-  spread_trunk(rig, body, match, place);
+  spread_trunk(rig, body.atlas().rig, joints, match, place);
   const Similarity whole = similarity(from, to);
 
   PlacedRig result{rig, match};
@@ -210,7 +209,7 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body) {
     const int child = child_at_tail(rig, b);
     std::optional<glm::dvec3> end;
     if (child >= 0 && place[child]) end = place[child];
-    else if (match[b] >= 0 && (child < 0 || match[child] < 0)) end = body.carried(match[b], body.atlas().rig.bones[match[b]].tail);
+    else if (match[b] >= 0 && (child < 0 || match[child] < 0)) end = bone.head + body.carried(match[b], body.atlas().rig.bones[match[b]].tail) - body.joint(match[b]);
     const glm::dvec3 old = above.vector(before.tail - before.head);
     carry[b] = above;
     if (end && glm::distance(*end, bone.head) > 1e-6 && glm::length(old) > 1e-9) {
@@ -226,6 +225,47 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body) {
   for (int b = 0; b < count; ++b)
     if (const int child = child_at_tail(rig, b); child >= 0) result.armature.bones[b].tail = result.armature.bones[child].head;
   return result;
+}
+
+void draw_inside(Armature& rig, const Occupancy& body) {
+  const AffineTransform to_cell = voxel_from_world(body.grid), to_world = world_from_voxel(body.grid);
+  const double cell = std::min({body.grid.spacing.x, body.grid.spacing.y, body.grid.spacing.z});
+  // The nearest cell that is filled like all beside it.
+  const auto inside = [&](const glm::dvec3& place, double reach) {
+    const glm::ivec3 at(glm::clamp(glm::floor(to_cell * place + 0.5), glm::dvec3(-1), glm::dvec3(body.grid.size)));
+    if (body.filled(at)) return place;
+    constexpr double kMostCells = 16;
+    const int cells = static_cast<int>(std::min(kMostCells, reach / cell));
+    double least = reach;
+    glm::dvec3 best = place;
+    for (int z = -cells; z <= cells; ++z)
+      for (int y = -cells; y <= cells; ++y)
+        for (int x = -cells; x <= cells; ++x) {
+          const glm::ivec3 there = at + glm::ivec3(x, y, z);
+          const glm::dvec3 centre = to_world * glm::dvec3(there);
+          if (const double d = glm::distance(centre, place); d < least && body.filled(there)) {
+            bool deep = true;
+            for (int axis = 0; axis < 3 && deep; ++axis) {
+              glm::ivec3 step(0);
+              step[axis] = 1;
+              deep = body.filled(there + step) && body.filled(there - step);
+            }
+            if (deep) least = d, best = centre;
+          }
+        }
+    return best;
+  };
+  std::vector<int> child;
+  for (int b = 0; b < std::ssize(rig.bones); ++b) child.push_back(child_at_tail(rig, b));
+  for (Bone& bone : rig.bones) {
+    constexpr double kShare = 0.5, kMost = 30;  // of the bone's length, and mm
+    const double reach = std::min(kMost, kShare * glm::distance(bone.head, bone.tail));
+    const glm::dvec3 tail = inside(bone.tail, reach);
+    if (bone.parent >= 0) bone.head = inside(bone.head, reach);
+    if (glm::distance(bone.head, tail) > 0.5 * reach) bone.tail = tail;
+  }
+  for (int b = 0; b < std::ssize(rig.bones); ++b)
+    if (child[b] >= 0) rig.bones[b].tail = rig.bones[child[b]].head;
 }
 
 Armature moved_rig(const Armature& rig, const glm::dmat3& turn, double scale, const glm::dvec3& from, const glm::dvec3& to) {

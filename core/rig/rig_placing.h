@@ -8,6 +8,7 @@
 
 #include "core/rig/armature.h"
 #include "core/rig/articulated_fit.h"
+#include "core/rig/surface_points.h"
 
 namespace limber {
 
@@ -16,7 +17,11 @@ struct PlacedRig {
   std::vector<int> joint_of;  // per bone: the body's bone that gave its head, -1 where it rides along
 };
 
-PlacedRig place_rig(const Armature& rig, const Mannequin& body);
+//   joints  where the body's joints lie, by its bones
+PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vector<glm::dvec3>& joints);
+
+// Joints and ends that came to lie in air go to the nearest tissue, by at most half their bone's length.
+void draw_inside(Armature& rig, const Occupancy& body);
 
 // Every bone by one turn, scale and shift.
 Armature moved_rig(const Armature& rig, const glm::dmat3& turn, double scale, const glm::dvec3& from, const glm::dvec3& to);

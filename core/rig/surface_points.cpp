@@ -46,44 +46,94 @@ Occupancy occupancy_of(const LabelVolume& volume, const LabelSet& labels, double
   return result;
 }
 
+namespace {
+
+// Cells in a row along x that are all filled or all not; pieces of them, told by their first run.
+struct Run {
+  int begin = 0, end = 0;
+  bool filled = false;
+  std::int32_t piece = 0;
+};
+
+std::int32_t piece_of(std::vector<Run>& runs, std::int32_t i) {
+  while (runs[i].piece != i) i = runs[i].piece = runs[runs[i].piece].piece;
+  return i;
+}
+
+}  // namespace
+
 void close_body(Occupancy& body) {
-  const Grid& grid = body.grid;
-  const std::int64_t count = grid.voxel_count();
-  // Pieces of filled cells, and the air that the border reaches.
-  std::vector<std::int32_t> piece(count, 0);  // 0 unseen, -1 open air, else the number of its piece
-  std::vector<std::int64_t> pieces{0};
-  std::vector<glm::ivec3> front;
-  const auto flood = [&](const glm::ivec3& seed, bool filled, std::int32_t mark) {
-    std::int64_t cells = 0;
-    piece[grid.index(seed)] = mark;
-    front.assign(1, seed);
-    while (!front.empty()) {
-      const glm::ivec3 at = front.back();
-      front.pop_back();
-      ++cells;
-      for (const glm::ivec3& face : kFaces) {
-        const glm::ivec3 next = at + face;
-        if (!grid.contains(next) || piece[grid.index(next)] != 0 || body.filled(next) != filled) continue;
-        piece[grid.index(next)] = mark;
-        front.push_back(next);
+  const glm::ivec3 size = body.grid.size;
+  std::vector<Run> runs;
+  std::vector<std::int32_t> first;  // run of each row
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y) {
+      const float* row = &body.share[body.grid.index({0, y, z})];
+      first.push_back(static_cast<std::int32_t>(runs.size()));
+      for (int x = 0; x < size.x; ++x) {
+        const bool filled = row[x] >= 0.5f;
+        if (x == 0 || filled != runs.back().filled) runs.push_back({x, x, filled, static_cast<std::int32_t>(runs.size())});
+        runs.back().end = x + 1;
       }
     }
-    return cells;
-  };
-  for (int z = 0; z < grid.size.z; ++z)
-    for (int y = 0; y < grid.size.y; ++y)
-      for (int x = 0; x < grid.size.x; ++x) {
-        const glm::ivec3 at(x, y, z);
-        if (piece[grid.index(at)] != 0) continue;
-        const bool border = x == 0 || y == 0 || z == 0 || x + 1 == grid.size.x || y + 1 == grid.size.y || z + 1 == grid.size.z;
-        if (body.filled(at)) pieces.push_back(flood(at, true, static_cast<std::int32_t>(pieces.size())));
-        else if (border) flood(at, false, -1);
+  first.push_back(static_cast<std::int32_t>(runs.size()));
+  const auto join = [&](std::int64_t row, std::int64_t other) {
+    std::int32_t i = first[row], j = first[other];
+    while (i < first[row + 1] && j < first[other + 1]) {
+      if (runs[i].filled == runs[j].filled) {
+        const std::int32_t a = piece_of(runs, i), b = piece_of(runs, j);
+        runs[std::max(a, b)].piece = std::min(a, b);
       }
-  const auto largest = static_cast<std::int32_t>(std::max_element(pieces.begin(), pieces.end()) - pieces.begin());
-  for (std::int64_t i = 0; i < count; ++i) {
-    if (piece[i] == 0) body.share[i] = 1;
-    if (piece[i] > 0 && piece[i] != largest && 50 * pieces[piece[i]] < pieces[largest]) body.share[i] = 0;
+      const bool next = runs[i].end <= runs[j].end, also = runs[j].end <= runs[i].end;
+      i += next, j += also;
+    }
+  };
+  const std::int64_t rows = std::int64_t{size.y} * size.z;
+  for (std::int64_t row = 0; row < rows; ++row) {
+    if (row % size.y != 0) join(row, row - 1);
+    if (row >= size.y) join(row, row - size.y);
   }
+
+  std::vector<std::int64_t> cells(runs.size(), 0);
+  std::vector<std::uint8_t> open(runs.size(), 0);  // reaches the border
+  for (std::int64_t row = 0; row < rows; ++row) {
+    const std::int64_t y = row % size.y, z = row / size.y;
+    const bool edge = y == 0 || y + 1 == size.y || z == 0 || z + 1 == size.z;
+    for (std::int32_t i = first[row]; i < first[row + 1]; ++i) {
+      const std::int32_t piece = piece_of(runs, i);
+      cells[piece] += runs[i].end - runs[i].begin;
+      open[piece] |= edge || runs[i].begin == 0 || runs[i].end == size.x;
+    }
+  }
+  std::int64_t largest = 0;
+  for (size_t i = 0; i < runs.size(); ++i)
+    if (runs[i].filled) largest = std::max(largest, cells[i]);
+  for (std::int64_t row = 0; row < rows; ++row)
+    for (std::int32_t i = first[row]; i < first[row + 1]; ++i) {
+      const std::int32_t piece = piece_of(runs, i);
+      const bool hole = !runs[i].filled && !open[piece], speck = runs[i].filled && 50 * cells[piece] < largest;
+      float* cell = &body.share[row * size.x];
+      if (hole || speck) std::fill(cell + runs[i].begin, cell + runs[i].end, hole ? 1.0f : 0.0f);
+    }
+}
+
+Occupancy coarsened(const Occupancy& fine, double spacing) {
+  const glm::ivec3 factor = glm::max(glm::ivec3(1), glm::ivec3(glm::round(spacing / fine.grid.spacing)));
+  Occupancy coarse;
+  coarse.grid = fine.grid;
+  coarse.grid.size = (fine.grid.size + factor - 1) / factor;
+  coarse.grid.spacing = fine.grid.spacing * glm::dvec3(factor);
+  coarse.grid.origin = world_from_voxel(fine.grid) * (0.5 * glm::dvec3(factor - 1));
+  coarse.share.assign(coarse.grid.voxel_count(), 0);
+  const float each = 1.0f / static_cast<float>(factor.x * factor.y * factor.z);
+  const glm::ivec3 size = fine.grid.size;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y) {
+      const float* row = &fine.share[fine.grid.index({0, y, z})];
+      float* cells = &coarse.share[coarse.grid.index({0, y / factor.y, z / factor.z})];
+      for (int x = 0; x < size.x; ++x) cells[x / factor.x] += each * row[x];
+    }
+  return coarse;
 }
 
 std::vector<SurfacePoint> surface_points(const Occupancy& occupancy) {

@@ -28,6 +28,9 @@ Occupancy occupancy_of(const LabelVolume& volume, const LabelSet& labels, double
 // Air that no way leads to from outside counts as filled; specks apart from the largest connected piece do not.
 void close_body(Occupancy& body);
 
+// The same in cells of about `spacing` mm, whole numbers of its own; what the last ones lack is taken for empty.
+Occupancy coarsened(const Occupancy& fine, double spacing);
+
 struct SurfacePoint {
   glm::dvec3 place{0}, normal{0};  // world, mm; unit, out of the tissue
 };

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/rig/fit_starts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "core/rig/limb_paths.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// A limb without its digits, and the bone whose tail is its end.
+struct Chain {
+  std::vector<int> bones;
+  int last = 0;
+};
+
+double rest_length(const Armature& rig, int bone, int child) { return glm::distance(rig.bones[bone].head, rig.bones[child].head); }
+
+glm::dmat3 turn_between(const glm::dvec3& from, const glm::dvec3& to) {
+  const glm::dvec3 a = glm::normalize(from), b = glm::normalize(to), across = glm::cross(a, b);
+  const double s = glm::length(across);
+  if (s < 1e-9) return glm::dmat3(1);
+  return glm::mat3_cast(glm::angleAxis(std::atan2(s, glm::dot(a, b)), across / s));
+}
+
+void stretch_all(Mannequin& m, double factor) {
+  for (double& a : m.along) a = std::log(factor);
+  m.across = m.along;
+  m.settle();
+}
+
+Chain chain_of(const Armature& rig, std::initializer_list<std::string> names, const std::string& last) {
+  Chain chain;
+  for (const std::string& name : names)
+    if (const auto bone = rig.find(name)) chain.bones.push_back(*bone);
+  chain.last = rig.find(last).value_or(chain.bones.empty() ? 0 : chain.bones.back());
+  return chain;
+}
+
+double length_from(const Armature& rig, const Chain& chain, size_t k) {
+  double length = glm::distance(rig.bones[chain.bones.back()].head, rig.bones[chain.last].tail);
+  for (; k + 1 < chain.bones.size(); ++k) length += rest_length(rig, chain.bones[k], chain.bones[k + 1]);
+  return length;
+}
+
+// Lays a chain along a way that starts at its end.
+void lay_chain(Mannequin& m, const Chain& chain, const LimbPath& path, double scale) {
+  const Armature& rig = m.atlas().rig;
+  for (size_t k = 0; k < chain.bones.size(); ++k) {
+    const bool is_last = k + 1 == chain.bones.size();
+    const double from = scale * length_from(rig, chain, k), to = is_last ? 0 : scale * length_from(rig, chain, k + 1);
+    const glm::dvec3 way = path.at(to) - path.at(from);
+    const glm::dvec3 next = is_last ? m.carried(chain.last, rig.bones[chain.last].tail) : m.joint(chain.bones[k + 1]);
+    const glm::dvec3 now = next - m.joint(chain.bones[k]);
+    if (glm::length(way) > 1e-6 && glm::length(now) > 1e-6) m.turn_branch(chain.bones[k], turn_between(now, way));
+  }
+}
+
+glm::dmat3 frame(const glm::dvec3& left, const glm::dvec3& up) {
+  const glm::dvec3 z = glm::normalize(up), x = glm::normalize(left - z * glm::dot(left, z));
+  return glm::dmat3(x, glm::cross(z, x), z);
+}
+
+void put_body(Mannequin& m, const glm::dmat3& axes, double scale, const glm::dvec3& hips) {
+  for (glm::dmat3& turn : m.turn) turn = axes;
+  m.root = hips;
+  stretch_all(m, scale);
+}
+
+Chain chain_for(AtlasKind kind, const Armature& rig) {
+  if (kind == AtlasKind::Leg) return chain_of(rig, {"Thigh", "Shank", "Foot"}, "Toes");
+  if (kind == AtlasKind::Hand) return chain_of(rig, {"Hand"}, "MiddleDistal");
+  return chain_of(rig, {"UpperArm", "Forearm", "Hand"}, "MiddleDistal");
+}
+
+// World, of the filled cells.
+std::pair<glm::dvec3, glm::dvec3> extent_of(const Occupancy& body) {
+  glm::dvec3 low(std::numeric_limits<double>::max()), high(-low);
+  const AffineTransform to_world = world_from_voxel(body.grid);
+  for (int z = 0; z < body.grid.size.z; ++z)
+    for (int y = 0; y < body.grid.size.y; ++y)
+      for (int x = 0; x < body.grid.size.x; ++x)
+        if (body.filled({x, y, z})) {
+          const glm::dvec3 place = to_world * glm::dvec3(x, y, z);
+          low = glm::min(low, place), high = glm::max(high, place);
+        }
+  return {low, high};
+}
+
+}  // namespace
+
+std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body) {
+  std::vector<Mannequin> starts;
+  const auto [low, high] = extent_of(body);
+  const auto paths = limb_paths(body, PathCentre::Thickest);
+  const Armature& rig = atlas.rig;
+  const double stature = 1748;
+  {
+    Mannequin upright(atlas);
+    const double scale = (high.z - low.z) / stature;
+    put_body(upright, glm::dmat3(1), scale, glm::dvec3((low.x + high.x) / 2, (low.y + high.y) / 2, low.z + 925 * scale));
+    starts.push_back(upright);
+  }
+  if (paths.size() < 3) return starts;
+
+  // The head is the nearest of the five ends, the feet lie farthest away from it.
+  std::vector<LimbPath> ends(paths.begin(), paths.begin() + std::min<size_t>(paths.size(), 5));
+  const glm::dvec3 centre = ends[0].points.back();
+  const auto head = std::min_element(ends.begin(), ends.end(), [](auto& a, auto& b) { return a.length < b.length; });
+  const LimbPath crown = *head;
+  ends.erase(head);
+  const glm::dvec3 upwards = crown.points.front() - centre;
+  std::sort(ends.begin(), ends.end(), [&](auto& a, auto& b) { return glm::dot(a.points.front(), upwards) < glm::dot(b.points.front(), upwards); });
+  const LimbPath feet[2] = {ends[0], ends[1]};
+  const double whole = crown.length + (feet[0].length + feet[1].length) / 2, scale = whole / 1960;
+  // From the toes, the hip is at the end of foot, shank and thigh.
+  const double leg = scale * 1040;
+  const glm::dvec3 hips = (feet[0].at(leg) + feet[1].at(leg)) / 2.0;
+  const glm::dvec3 up = crown.points.front() - hips, across = feet[0].at(leg * 0.75) - feet[1].at(leg * 0.75);
+  if (glm::length(glm::cross(up, across)) < 1e-6) return starts;
+  for (int facing = 0; facing < 2; ++facing) {
+    const glm::dmat3 axes = frame(facing ? -across : across, up);
+    Mannequin m(atlas);
+    put_body(m, axes, scale, hips);
+    lay_chain(m, chain_of(rig, {"LeftThigh", "LeftShank", "LeftFoot"}, "LeftToes"), feet[facing], scale);
+    lay_chain(m, chain_of(rig, {"RightThigh", "RightShank", "RightFoot"}, "RightToes"), feet[1 - facing], scale);
+    for (size_t k = 2; k < ends.size(); ++k) {
+      // An arm belongs to the side it leaves the trunk on.
+      const glm::dvec3 shoulder = ends[k].at(scale * 700);
+      const bool left = glm::dot(axes[0], shoulder - hips) > 0;
+      const std::string side = left ? "Left" : "Right";
+      lay_chain(m, chain_of(rig, {side + "UpperArm", side + "Forearm", side + "Hand"}, side + "MiddleDistal"), ends[k], scale);
+    }
+    starts.push_back(m);
+  }
+  return starts;
+}
+
+std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body, AtlasKind kind) {
+  // Flesh goes on some way beyond the joint that a limb begins with.
+  constexpr double beyond_root = 40;
+  const Chain chain = chain_for(kind, atlas.rig);
+  std::vector<Mannequin> starts;
+  auto paths = limb_paths(body, PathCentre::FarthestEnd);
+  if (paths.empty() || chain.bones.empty()) return starts;
+  LimbPath path = paths[0];
+  const Armature& rig = atlas.rig;
+  const double length = beyond_root + length_from(rig, chain, 0);
+  const double scale = path.length / length;
+  for (int way = 0; way < 2; ++way) {
+    for (int roll = 0; roll < 8; ++roll) {
+      Mannequin m(atlas);
+      const glm::dvec3 start = path.at(path.length - beyond_root * scale), on = path.at(path.length - (beyond_root + 0.4 * (length - beyond_root)) * scale) - start;
+      if (!(glm::length(on) > 0)) return starts;
+      const glm::dvec3 first = rig.bones[chain.bones[0]].head, rest = (chain.bones.size() > 1 ? rig.bones[chain.bones[1]].head : rig.bones[chain.last].tail) - first;
+      const glm::dmat3 lie = turn_between(rest, on);
+      const glm::dmat3 about = glm::mat3_cast(glm::angleAxis(roll * kPi / 4, glm::normalize(on)));
+      put_body(m, about * lie, scale, start);
+      lay_chain(m, chain, path, scale);
+      starts.push_back(m);
+    }
+    std::reverse(path.points.begin(), path.points.end());
+  }
+  return starts;
+}
+
+}  // namespace limber
