@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/pose/gltf_export.h"
 #include "core/pose/pose_io.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bvh.h"
@@ -30,7 +31,7 @@ Motion motion_of_clip(const Document& document) {
   return motion_of_poses(*document.armature, frames, clip->rate, [&](int frame) { return on_rig.at(clip->range_start + frame); });
 }
 
-void write_export(ExportKind kind, const Document& document, const Path& path) {
+void write_export(ExportKind kind, const Document& document, const Path& path, Progress& progress) {
   switch (kind) {
     case ExportKind::Volume: return write_volume(*document.volume, path, *document.tissues, document.volume_type ? *document.volume_type : FileType{});
     case ExportKind::Tissues: return write_tissue_table(*document.tissues, path);
@@ -38,6 +39,7 @@ void write_export(ExportKind kind, const Document& document, const Path& path) {
     case ExportKind::Weights: return write_weights(*document.weights, *document.volume, TissueVoxels(*document.volume), path);
     case ExportKind::Pose: return write_pose(*document.pose, *document.armature, path);
     case ExportKind::Motion: return write_bvh(motion_of_clip(document), path);
+    case ExportKind::Gltf: return write_glb({*document.volume, *document.tissues, *document.armature, *document.weights}, document.clips, path, {}, progress);
   }
 }
 
@@ -85,6 +87,7 @@ std::string why_not_export(const Editor& editor, ExportKind kind) {
     case ExportKind::Weights: return document.weights ? "" : "There are no weights yet";
     case ExportKind::Pose: return document.pose ? "" : "There is no pose yet";
     case ExportKind::Motion: return document.shown_clip() && (document.armature || document.shown_clip()->motion) ? "" : "There is no motion yet";
+    case ExportKind::Gltf: return !document.volume ? "Open a volume first" : !document.armature ? "There is no rig yet" : document.weights ? "" : "There are no weights yet";
   }
   return "";
 }
@@ -93,7 +96,7 @@ void export_file(Editor& editor, ExportKind kind, const Path& path) {
   check_export(kind, path);
   start_task(editor, "Export " + path.filename().string(), [kind, path, document = editor.document()](Progress& progress) -> Finish {
     progress.update("write", 0);
-    write_export(kind, document, path);
+    write_export(kind, document, path, progress);
     return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
   });
 }

@@ -6,7 +6,7 @@
 
 namespace limber::editor {
 
-enum class ExportKind { Volume, Tissues, Rig, Weights, Pose, Motion };
+enum class ExportKind { Volume, Tissues, Rig, Weights, Pose, Motion, Gltf };
 std::string why_not_export(const Editor& editor, ExportKind kind);  // "" when there is something to write
 void export_file(Editor& editor, ExportKind kind, const Path& path);
 

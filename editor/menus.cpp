@@ -63,7 +63,7 @@ std::vector<Menu> menus() {
         "file.recent_8", "file.recent_9", "file.recent_10", "<", "> Samples", "file.sample_arm", "file.sample_arm_xray", "file.sample_body", "file.sample_body_open", "<", "file.open_recent", "-", "file.save", "file.save_as",
         "file.save_copy", "file.recover", "-", "> Import", "file.import", "file.import_volume", "file.import_dicom", "file.import_rig", "file.import_motion", "file.import_weights", "file.import_tissues",
         "file.import_pose", "<",
-        "> Export", "file.export_volume", "file.export_rig", "file.export_pose", "file.export_motion", "file.export_weights", "file.export_tissues",
+        "> Export", "file.export_volume", "file.export_rig", "file.export_pose", "file.export_motion", "file.export_weights", "file.export_tissues", "file.export_gltf",
         "view.screenshot", "view.turntable", "<", "-", "file.quit"}},
       {"Edit",
        {"edit.undo", "edit.redo", "edit.history", "-", "edit.repeat_last", "-", "select.all", "select.none", "-", "edit.rename", "-", "> Prepare volume", "prepare.regrid",

@@ -15,6 +15,7 @@
 namespace limber::cmd {
 
 void add_convert(CLI::App& app);
+void add_export_gltf(CLI::App& app);
 void add_fit_joint(CLI::App& app);
 void add_fit_rig(CLI::App& app);
 void add_fk(CLI::App& app);

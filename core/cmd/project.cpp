@@ -3,7 +3,7 @@
 // limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P] [--motion F.bvh]
 // limber project NAME.limber verify                        checks every byte; exit code 1 when something is wrong
 // limber project NAME.limber recover -o OUT.limber         with the edits that a crash left; of a damaged one, what is whole
-// limber project NAME.limber export PART -o OUT            volume, tissues, rig, weights, pose, motion, or a result by its name
+// limber project NAME.limber export PART -o OUT            volume, tissues, rig, weights, pose, motion, gltf, or a result by its name
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/cmd/command.h"
 #include "core/cmd/info_project.h"
+#include "core/pose/gltf_export.h"
 #include "core/pose/pose_io.h"
 #include "core/project/journal.h"
 #include "core/project/project_io.h"
@@ -132,7 +133,7 @@ const LabelVolume& result_named(const Document& document, const Options& options
   for (const auto& result : document.results)
     if (result->name == options.part && result->volume) return *result->volume;
   throw Error("the project has no such part or result", options.file + ", " + options.part,
-              "name volume, tissues, rig, weights, pose, motion, or a result that limber project " + options.file + " lists");
+              "name volume, tissues, rig, weights, pose, motion, gltf, or a result that limber project " + options.file + " lists");
 }
 
 void export_part(const Options& options) {
@@ -157,6 +158,8 @@ void export_part(const Options& options) {
     write_pose(there(document.pose, options), *document.armature, options.output);
   else if (options.part == "motion")
     write_bvh(there(document.shown_clip() ? document.shown_clip()->motion : nullptr, options), options.output);
+  else if (options.part == "gltf")
+    write_glb({there(document.volume, options), tissues, there(document.armature, options), there(document.weights, options)}, document.clips, options.output, {}, progress);
   else
     write_volume(result_named(document, options), options.output, tissues, type);
 }
@@ -177,7 +180,7 @@ void add_project(CLI::App& app) {
   command->add_option("NAME", options->file, "NAME.limber")->required();
   command->add_option("ACTION", options->action, "inspect (as without), create, verify, recover or export")
       ->check(CLI::IsMember({"inspect", "info", "create", "verify", "recover", "export"}));
-  command->add_option("PART", options->part, "of create: a label volume; of export: volume, tissues, rig, weights, pose, motion, or a result's name");
+  command->add_option("PART", options->part, "of create: a label volume; of export: volume, tissues, rig, weights, pose, motion, gltf, or a result's name");
   command->add_flag("--json", options->json, "inspect as JSON");
   command->add_option("--tissues", options->tissues, "of create: tissue table");
   command->add_option("--rig", options->rig, "of create: rig");

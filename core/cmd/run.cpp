@@ -12,6 +12,7 @@ namespace limber::cmd {
 void add_commands(CLI::App& app) {
   app.set_version_flag("--version", LIMBER_VERSION);
   add_convert(app);
+  add_export_gltf(app);
   add_fit_joint(app);
   add_fit_rig(app);
   add_fk(app);

@@ -61,6 +61,7 @@ std::vector<Operator> export_operators() {
       export_operator({"file.export_weights", "Weights...", "Writes how tissue follows the bones.", ExportKind::Weights, {{"Weights", {".nrrd"}}}, "-weights"}),
       export_operator({"file.export_pose", "Pose...", "Writes the pose of the rig.", ExportKind::Pose, {{"Limber pose", {".json"}}}, "-pose"}),
       export_operator({"file.export_motion", "Motion...", "Writes the motion as BVH.", ExportKind::Motion, {{"BVH", {".bvh"}}}, "-motion"}),
+      export_operator({"file.export_gltf", "glTF...", "Writes the surface, the skeleton, the weights and every clip for other programs.", ExportKind::Gltf, {{"glTF", {".glb"}}}, ""}),
       picture_operator("view.screenshot", "Picture...", "Writes the active view as a PNG.", "", export_picture),
       picture_operator("view.turntable", "Turntable...", "Writes 36 pictures all around the body.", "-turn", [](Editor& e, const Path& path) { export_turntable(e, path); }),
   };

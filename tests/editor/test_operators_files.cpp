@@ -6,6 +6,7 @@
 #include "core/project/session.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bvh.h"
+#include "core/rig/gltf.h"
 #include "editor/opening.h"
 #include "render/image_io.h"
 #include "tests/editor/operator_proofs.h"
@@ -131,6 +132,10 @@ std::vector<Proof> proofs_of_files() {
       {"file.import_motion", answer("File/Import/Motion...", "moves.bvh") + "\n wait-idle\n key Return", brings_clip("moves"), Shows::Nothing, "",
        [](Stage& s) { write_bvh(bending_motion(*s.document().armature), s.home / "moves.bvh"); }},
       {"file.export_motion", answer("File/Export/Motion...", "out-motion"), writes("out-motion.bvh", [](const Path& p, const Document& d) { return read_bvh(p).joints == d.shown_clip()->motion->joints; })},
+      {"file.export_gltf", answer("File/Export/glTF...", "out"), writes("out.glb", [](const Path& p, const Document& d) {
+         const GltfSummary file = parse_gltf(read_file(p), true, p.string());
+         return file.armature.bones.size() == d.armature->bones.size() && file.animations == std::ssize(d.clips) && file.triangles > 100;
+       })},
       {"view.screenshot", "key F12\n type view\n key Return\n wait-job", writes("view.png", [](const Path& p, const Document&) { return render::read_png(p).size.x > 300; })},
       {"view.turntable", "key Ctrl+F12\n type turn\n key Return\n wait-job",
        writes("turn-0035.png", [](const Path& p, const Document&) { return render::read_png(p).rgba != render::read_png(p.parent_path() / "turn-0009.png").rgba; })},

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber export-gltf VOLUME --rig R --weights W [--tissues T] [--motion F.bvh ...] [--map M] [--root-motion] [--step MM] -o OUT.glb
+#include <filesystem>
+#include <memory>
+
+#include "core/base/error.h"
+#include "core/cmd/body_options.h"
+#include "core/cmd/command.h"
+#include "core/pose/gltf_export.h"
+#include "core/skin/weights_io.h"
+
+namespace limber::cmd {
+
+namespace {
+struct Options {
+  BodyOptions body;
+  std::string weights, map, output, progress;
+  std::vector<std::string> motions;
+  bool root_motion = false;
+  GltfSettings settings;
+};
+
+std::shared_ptr<const Clip> clip_of_file(const Options& options, const std::string& file, const Armature& rig, const std::vector<std::shared_ptr<const Clip>>& before) {
+  auto motion = std::make_shared<const Motion>(read_bvh(file));
+  warn(motion->warnings);
+  if (motion->frame_count == 0) throw Error("this motion has no frames", file, "choose another file");
+  Clip clip = clip_of(motion, unique_clip_name(before, std::filesystem::path(file).stem().string()));
+  clip.map = options.map.empty() ? match_by_names(*motion, rig) : read_retarget_map(options.map, *motion, rig);
+  if (options.root_motion) clip.retarget.travel = Travel::Free;
+  return std::make_shared<const Clip>(std::move(clip));
+}
+
+void export_gltf(const Options& options) {
+  check_place(options.output);
+  CommandProgress progress(options.progress);
+  const Body body = read_body(options.body, progress);
+  const WeightsFile weights = read_weights(options.weights, body.file.volume, TissueVoxels(body.file.volume), body.rig);
+  warn(weights.warnings);
+  std::vector<std::shared_ptr<const Clip>> clips;
+  for (const std::string& file : options.motions) clips.push_back(clip_of_file(options, file, body.rig, clips));
+  write_glb({body.file.volume, body.tissues, body.rig, weights.weights}, clips, options.output, options.settings, progress);
+}
+}  // namespace
+
+void add_export_gltf(CLI::App& app) {
+  auto* command = app.add_subcommand("export-gltf", "the body's surface, skeleton and weights, and motions as animations, in one .glb");
+  auto options = std::make_shared<Options>();
+  add_body_options(*command, options->body);
+  command->add_option("--weights", options->weights, "W.nrrd, or a folder with Bender's weights")->required();
+  auto* motion = command->add_option("--motion", options->motions, "motion capture (BVH) that becomes an animation (repeatable)")->type_name("F.bvh")->expected(1)->take_all();
+  command->add_option("--map", options->map, "which joint moves which bone (default: by names)")->type_name("M.json")->needs(motion);
+  command->add_flag("--root-motion", options->root_motion, "let the body travel as the motion does")->needs(motion);
+  command->add_option("--step", options->settings.step, "mm between the surface's points (default: 1/400 of the longest side)")->type_name("MM")->check(CLI::PositiveNumber);
+  command->add_option("-o,--output", options->output, "OUT.glb")->required();
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  command->callback([options] { export_gltf(*options); });
+}
+
+}  // namespace limber::cmd
