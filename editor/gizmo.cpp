@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/gtc/constants.hpp>
+
+#include "core/rig/joint_limits.h"
 #include "editor/dispatch.h"
 #include "editor/gizmo_painter.h"
 #include "editor/paint.h"
@@ -271,6 +274,40 @@ void draw_marks(Editor& editor, const SeenFrom& view) {
   }
 }
 
+constexpr double kLimits = 58, kTwist = 18;  // pixels at scale 1
+
+// What the joint at the active bone's head allows, about the bone at rest: a hinge's fan, a ball's cone and range of twist.
+void draw_limits(Editor& editor, const SeenFrom& view) {
+  const std::shared_ptr<const Armature> armature = shown_rig(editor);
+  const auto chosen = editor.selection.bone;
+  if (editor.workspace != Workspace::Rig || view.place.id != ViewId::Body || !armature || !chosen || *chosen >= std::ssize(armature->bones) || !editor.views->bones) return;
+  const Bone& bone = armature->bones[*chosen];
+  const JointLimits& limits = bone.limits;
+  const GizmoPainter painter(editor, view);
+  const Colour line = with_alpha(editor.look.theme.warn, 0.9f), area = with_alpha(editor.look.theme.warn, 0.16f);
+  const glm::dvec3 along = bone.tail - bone.head;
+  if (limits.type == JointLimits::Type::Hinge) {
+    Ring fan = ring_of(view, editor.look.scale, bone.head, limits.axis, kLimits);
+    const glm::dvec3 across = along - glm::dot(along, limits.axis) * limits.axis;
+    if (glm::length(across) < 1e-6) return;
+    fan.from = glm::normalize(across);
+    painter.sector(fan, limits.minimum, limits.maximum - limits.minimum, area);
+    painter.arc(fan, limits.minimum, limits.maximum, line, 2);
+    for (const double end : {limits.minimum, limits.maximum}) painter.line(fan.centre, fan.at(end), line, 1.4f);
+  }
+  if (limits.type == JointLimits::Type::Ball) {
+    const glm::dvec3 axis = twist_axis(bone);
+    Ring rim = ring_of(view, editor.look.scale, bone.head, axis, kLimits);
+    const double reach = rim.radius;
+    rim.centre = bone.head + axis * (reach * std::cos(limits.cone));
+    rim.radius = reach * std::sin(limits.cone);
+    painter.ring(rim, line, 2, GizmoPainter::Part::Whole);
+    for (int spoke = 0; spoke < 8; ++spoke) painter.line(bone.head, rim.at(spoke * glm::two_pi<double>() / 8), with_alpha(line, 0.4f), 1);
+    const Ring twist = ring_of(view, editor.look.scale, bone.head, axis, kTwist);
+    painter.arc(twist, limits.twist_minimum, limits.twist_maximum, line, 2.5f);
+  }
+}
+
 }  // namespace
 
 std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view) {
@@ -335,6 +372,7 @@ void draw_gizmo(Editor& editor, const ViewPlace& place) {
   const SeenFrom view(editor, place);
   draw_rig(editor, view);
   draw_marks(editor, view);
+  draw_limits(editor, view);
   if (editor.modal) return editor.modal->draw(editor, place);
   const auto gizmo = gizmo_in(editor, view);
   if (!gizmo) return;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Edits of the rig at rest.
 #include "core/rig/mirror.h"
+#include "core/rig/motion_range.h"
+#include "editor/form.h"
 #include "editor/handling.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
@@ -90,6 +92,40 @@ void symmetrize(Editor& editor) {
   edit(editor, "Symmetrize", [](const Armature& rig, const std::vector<int>& bones) { return symmetrized(rig, bones); });
 }
 
+// The chosen bones with the limits of that joint, or where it is -1 of what their names mean.
+Armature with_usual_limits(const Armature& rig, const std::vector<int>& bones, int joint, int& changed) {
+  const auto by_name = usual_joints_of(rig);
+  Armature next = rig;
+  changed = 0;
+  for (const int bone : bones)
+    if (const auto known = joint < 0 ? by_name[bone] : std::optional(joint)) {
+      next.bones[bone].limits = usual_limits(rig, bone, *known);
+      ++changed;
+    }
+  return next;
+}
+
+void ask_motion_range(Editor& editor) {
+  std::vector<std::string> joints = usual_joints();
+  joints.insert(joints.begin(), "By the bone's name");
+  const auto outcome = [](const Editor& e, const std::vector<FormField>& fields) {
+    if (const std::string why = needs_rig_bone(e); !why.empty()) throw Error("no bone is chosen", "the rig", why);
+    const std::vector<int> bones = bones_chosen_last(e);
+    int changed = 0;
+    const Armature next = with_usual_limits(*e.document().armature, bones, fields[0].chosen - 1, changed);
+    if (changed == 0) throw Error("this bone's name means no joint known", next.bones[bones.back()].name, "choose the joint");
+    if (bones.size() == 1) return next.bones[bones[0]].name + ": " + limits_text(next.bones[bones[0]].limits) + ".";
+    return std::to_string(changed) + " of " + std::to_string(bones.size()) + " bones.";
+  };
+  const auto act = [](Editor& e, const std::vector<FormField>& fields) {
+    const std::vector<int> bones = bones_chosen_last(e);
+    int changed = 0;
+    commit_rig(e, naming_chosen(e, "Range of motion of"), mirrored_too(e, with_usual_limits(*e.document().armature, bones, fields[0].chosen - 1, changed)), bones);
+  };
+  editor.open_dialog(make_form({"Range of motion", "Gives the joints at the heads of the chosen bones the range that is usual for an adult.", "Set limits",
+                                {choice_of("Joint", "Ranges of the American Academy of Orthopaedic Surgeons.", joints)}, outcome, act}));
+}
+
 Operator edit_operator(const char* id, const char* label, const char* icon, const char* sentence, const char* verb, Armature (*change)(const Armature&, const std::vector<int>&)) {
   return {id, label, icon, "Bone", sentence, [verb, change](Editor& e) { edit(e, verb, change); }, needs_rig_bone};
 }
@@ -121,6 +157,7 @@ std::vector<Operator> rig_operators() {
       {"rig.symmetrize", "Symmetrize", icon::kMirror, "Bone", "The other side of the chosen bones becomes their mirror image; what is missing there is added.", symmetrize, needs_rig_bone},
       {"rig.recalculate_roll", "Recalculate roll", "", "Bone", "The chosen bones' own z axes look forward.",
        [](Editor& e) { edit(e, "Recalculate roll of", [](const Armature& rig, const std::vector<int>& bones) { return with_z_towards(rig, bones, {0, -1, 0}); }); }, needs_rig_bone},
+      {"rig.motion_range", "Range of motion...", "", "Bone", "Limits that are usual for a joint, by its name or as chosen.", ask_motion_range, needs_rig_bone},
       {"rig.snap", "Snap", icon::kSnap, "Bone", "Transforms snap without Ctrl, and with Ctrl they do not.", [](Editor& e) { e.handling->snapping = !e.handling->snapping; }, nullptr,
        [](const Editor& e) { return e.handling->snapping; }},
       snap_operator("snap.steps", "Snap to steps", "Of 5 mm, 5 degrees or a tenth; with Shift finer.", Snap::Steps),

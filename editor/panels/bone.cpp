@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The active bone: name, parent, where its ends lie, length and roll.
+// The active bone: name, parent, where its ends lie, length and roll; what the joint at its head allows.
+#include <cmath>
+
 #include "editor/fields.h"
 #include "editor/panels/panels.h"
 #include "editor/rigging.h"
+#include "editor/widgets.h"
 
 namespace limber::editor {
 
@@ -31,7 +34,9 @@ void draw_number(Editor& editor, const Rect& rect, const std::string& name, cons
 void draw_end(Editor& editor, Column& column, const Bone& bone, const BoneEnd& end) {
   const Look& look = editor.look;
   const std::string which = end.tail ? "Tail" : "Head";
-  const Rect rect = column.property(which + ", mm");
+  // Three numbers want more than a property's place.
+  Rect rect = column.property(which + ", mm");
+  rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
   const glm::dvec3 place = end.tail ? bone.tail : bone.head;
   const float width = (rect.width() - 2 * look.px(4)) / 3;
   for (int axis = 0; axis < 3; ++axis) {
@@ -45,6 +50,80 @@ void draw_end(Editor& editor, Column& column, const Bone& bone, const BoneEnd& e
     });
     fill({field.low, {field.low.x + look.px(3), field.high.y}}, look.theme.axis[axis]);
   }
+}
+
+// The turn that is positive about a hinge, as choices: the bone's own axes, either way round.
+const std::vector<std::string> kAxes = {"Own X", "Own Y", "Own Z", "Own \u2212X", "Own \u2212Y", "Own \u2212Z", "Other"};
+constexpr int kOtherAxis = 6;
+
+glm::dvec3 own_axis(const Bone& bone, int choice) { return rest_axes(bone)[choice % 3] * (choice < 3 ? 1.0 : -1.0); }
+
+int axis_choice(const Bone& bone) {
+  for (int choice = 0; choice < kOtherAxis; ++choice)
+    if (glm::dot(own_axis(bone, choice), bone.limits.axis) > 0.9999) return choice;
+  return kOtherAxis;
+}
+
+Armature with_limits(const Armature& rig, int bone, const JointLimits& limits) {
+  Armature next = rig;
+  next.bones[bone].limits = limits;
+  return next;
+}
+
+// Two angles side by side.
+void draw_range(Editor& editor, Column& column, const Bone& bone, int index, const std::string& label, double JointLimits::*low, double JointLimits::*high, double farthest) {
+  const Rect rect = column.property(label);
+  const float middle = std::round(rect.centre().x), gap = editor.look.px(2);
+  const auto number = [&](const Rect& field, const std::string& name, double JointLimits::*angle, double from, double to) {
+    draw_number(editor, field, name, "Limits of " + bone.name, glm::degrees(bone.limits.*angle), from, to, "%.0f", "\u00b0", index, [&](const Armature& rig, double degrees) {
+      JointLimits limits = rig.bones[index].limits;
+      limits.*angle = glm::radians(degrees);
+      return with_limits(rig, index, limits);
+    });
+  };
+  number({rect.low, {middle - gap, rect.high.y}}, label + " from", low, -farthest, std::min(0.0, glm::degrees(bone.limits.*high)));
+  number({{middle + gap, rect.low.y}, rect.high}, label + " to", high, std::max(0.0, glm::degrees(bone.limits.*low)), farthest);
+}
+
+void draw_joint(Editor& editor, Column& column, const Bone& bone, int index) {
+  const std::vector<std::string> kinds = {"Free", "Fixed", "Hinge", "Ball"};
+  int kind = static_cast<int>(bone.limits.type);
+  if (column.begin_section("Joint", kinds[kind], false)) {
+    column.space(6);
+    const std::shared_ptr<const Armature> rig = editor.document().armature;
+    const auto choose = [&](const std::string& label, const std::vector<std::string>& choices, int& chosen) {
+      const Rect rect = column.property(label);
+      const PathScope scope(editor, label);
+      return choice_field(editor, rect, choices, chosen);
+    };
+    if (choose("Kind", kinds, kind)) {
+      JointLimits limits;
+      limits.type = static_cast<JointLimits::Type>(kind);
+      if (limits.type == JointLimits::Type::Hinge) limits.axis = rest_axes(bone)[0], limits.maximum = glm::radians(90.0);
+      if (limits.type == JointLimits::Type::Ball) limits.cone = limits.twist_maximum = glm::radians(45.0), limits.twist_minimum = -limits.twist_maximum;
+      commit_rig(editor, "Limits of " + bone.name, mirrored_too(editor, with_limits(*rig, index, limits)), {index});
+    }
+    if (bone.limits.type == JointLimits::Type::Hinge) {
+      int axis = axis_choice(bone);
+      if (choose("Axis", kAxes, axis) && axis != kOtherAxis) {
+        JointLimits limits = bone.limits;
+        limits.axis = own_axis(bone, axis);
+        commit_rig(editor, "Hinge of " + bone.name, mirrored_too(editor, with_limits(*rig, index, limits)), {index});
+      }
+      draw_range(editor, column, bone, index, "Angle", &JointLimits::minimum, &JointLimits::maximum, 180);
+    }
+    if (bone.limits.type == JointLimits::Type::Ball) {
+      draw_number(editor, column.property("Cone"), "Cone", "Limits of " + bone.name, glm::degrees(bone.limits.cone), 0, 180, "%.0f", "\u00b0", index, [&](const Armature& before, double degrees) {
+        JointLimits limits = before.bones[index].limits;
+        limits.cone = glm::radians(degrees);
+        return with_limits(before, index, limits);
+      });
+      draw_range(editor, column, bone, index, "Twist", &JointLimits::twist_minimum, &JointLimits::twist_maximum, 180);
+    }
+    operator_button(editor, "rig.motion_range", column.property("Usual range"), "By joint...");
+    column.space(6);
+  }
+  column.end_section();
 }
 
 }  // namespace
@@ -74,6 +153,7 @@ void draw_bone(Editor& editor, Column& column) {
     column.space(6);
   }
   column.end_section();
+  draw_joint(editor, column, bone, index);
 }
 
 }  // namespace limber::editor

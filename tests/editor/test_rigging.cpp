@@ -125,3 +125,22 @@ TEST_CASE("rigging: the sidebar's numbers move ends, lengthen and roll, and F2 r
   test.play("move \"3D view/view\"\nkey F2\nkey Ctrl+A\ntype \"Lower\"\nkey Return\nwait-idle");
   CHECK(test.rig().bones[1].name == "Lower");
 }
+
+TEST_CASE("rigging: the sidebar sets what a joint allows, one edit each, and rest stays allowed") {
+  RiggingEditor test({1280, 900});
+  test.play("click Steps/fold\n click Outliner/fold\n click Tissues/fold\n wait-idle\n click Joint/fold\n wait-idle");
+  const auto limits = [&] { return test.rig().bones[1].limits; };
+  test.play("click Joint/Kind/list\n click Joint/Kind/Ball\n wait-idle\n expect edit \"Limits of Fore\"");
+  CHECK(limits().type == JointLimits::Type::Ball);
+  test.play("double-click Joint/Cone\n type \"30\"\n key Return\n double-click \"Joint/Twist from\"\n type \"-200\"\n key Return");
+  CHECK(glm::degrees(limits().cone) == doctest::Approx(30));
+  CHECK(glm::degrees(limits().twist_minimum) == doctest::Approx(-180));
+  test.play("click Joint/Kind/list\n click Joint/Kind/Hinge\n wait-idle\n click Joint/Axis/list\n click \"Joint/Axis/Own Z\"");
+  CHECK(limits().axis == rest_axes(test.rig().bones[1])[2]);
+  // A range holds the rest pose: its lower end is not above zero.
+  test.play("double-click \"Joint/Angle from\"\n type \"20\"\n key Return\n double-click \"Joint/Angle to\"\n type \"140\"\n key Return");
+  CHECK(limits().minimum == 0);
+  CHECK(glm::degrees(limits().maximum) == doctest::Approx(140));
+  test.play("key Ctrl+Z\n key Ctrl+Z\n key Ctrl+Z\n key Ctrl+Z");
+  CHECK(limits().type == JointLimits::Type::Ball);
+}
