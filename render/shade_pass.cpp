@@ -20,7 +20,7 @@ uniform uint u_layer;
 layout(location = 0) out vec4 colour;
 
 const vec3 kKey = vec3(-0.428, 0.556, 0.713);
-
+const float kFold = 0.7;  // how open the crease of a fold is
 
 // How open the place is: 1 on a flat or bulging surface, less in a crease.
 float openness(float depth, vec3 normal) {
@@ -30,7 +30,7 @@ float openness(float depth, vec3 normal) {
   // Both at rest; the direction as the map turns it, from what lies just inside.
   vec3 rest = rest_of(p);
   vec3 turned = (rest - rest_of(p - 0.35 * out_of)) / 0.35;
-  if (length(turned) > 4.0 * length(out_of)) return 0.7;  // across a fold
+  if (length(turned) > 4.0 * length(out_of)) return kFold;  // across one
   out_of = turned * min(1.0, 1.5 * length(out_of) / max(length(turned), 1e-3));
   p = rest;
 #endif
@@ -69,7 +69,7 @@ void main() {
 #else
   alpha *= float(look.a >> 3) / 255.0;
   vec3 n = normalize(normal.xyz * 2.0 - 1.0);
-  vec3 rgb = cap ? srgb : sqrt(clamp(lit(srgb * srgb, n, openness(texelFetch(u_depth, at, 0).r, n)), 0.0, 1.0));
+  vec3 rgb = cap ? srgb : sqrt(clamp(lit(srgb * srgb, n, normal.a > 0.5 ? kFold : openness(texelFetch(u_depth, at, 0).r, n)), 0.0, 1.0));
 #endif
   colour = vec4(rgb * alpha, alpha);
 }

@@ -219,6 +219,7 @@ void main() {
 #ifdef POSED
   vec3 normal = normalize(-(u_view_from_gradient * (inward * rest_from_posed)));
   normal.z = abs(normal.z);  // in a fold what is met may be the inside of a sheet
+  if (sheet.mirrored) normal = normalize(normal + vec3(0, 0, 1.5));  // whose pieces point this way and that
 #else
   vec3 normal = normalize(-(u_view_from_gradient * inward));
 #endif
@@ -240,7 +241,12 @@ void main() {
   }
 
   out_depth = found / voxels_per_depth;
-  out_normal = vec4(normal * 0.5 + 0.5, cap ? 1.0 : 1.0 / 3.0);
+#ifdef POSED
+  bool fold = sheet.mirrored;
+#else
+  const bool fold = false;
+#endif
+  out_normal = vec4(normal * 0.5 + 0.5, cap ? 1.0 : fold ? 2.0 / 3.0 : 1.0 / 3.0);
   out_label = label;
 }
 )";

@@ -40,7 +40,7 @@ class GBuffer {
   const glm::ivec2& size() const { return size_; }
 
   gl::Texture depth;   // R32F: mm before the eye along the direction of view; kNothingDepth
-  gl::Texture normal;  // RGB10_A2: unit, of the view, halved and shifted to [0, 1]; alpha 0 nothing, 1/3 surface, 1 cap
+  gl::Texture normal;  // RGB10_A2: unit, of the view, halved and shifted to [0, 1]; alpha 0 nothing, 1/3 surface, 2/3 in a fold of a posed body, 1 cap
   gl::Texture label;   // R16UI
   gl::Texture range;   // RG32F: depth where the ray enters the hull, negated, and where it leaves it for good
   gl::Texture hull_depth;
