@@ -551,16 +551,15 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
 std::string suggest_template(const LabelVolume& volume, Progress& progress) {
   const Target target = make_target(volume);
   if (!has_shape(target)) return "arm";
-  // A body has five ends that stand farther out than fingers do.
-  constexpr double kFarOut = 0.2;  // of the longest way
-  const std::vector<LimbPath> ends = limb_paths(target.rough_body, PathCentre::Thickest);
-  const auto longest = std::max_element(ends.begin(), ends.end(), [](auto& a, auto& b) { return a.length < b.length; });
-  if (ends.size() >= 5 && ends[4].prominence > kFarOut * longest->length) {
+  // A body has five ends that stand far out, or three at least where arms lie at the trunk.
+  const size_t ends = limb_paths(target.rough_body, PathCentre::Thickest).size();
+  if (ends >= 5) {
     const double whole = best_start({AtlasKind::Body}, target, progress).misfit;
     if (whole < 0.02 * target.length) return "adult";
   }
   std::pair<double, std::string> best{std::numeric_limits<double>::max(), "arm"};
   for (const auto& [kind, name] : {std::pair(AtlasKind::Arm, "arm"), std::pair(AtlasKind::Leg, "leg"), std::pair(AtlasKind::Hand, "hand"), std::pair(AtlasKind::Body, "adult")}) {
+    if (kind == AtlasKind::Body && ends < 3) continue;
     const Fitted tried = best_start({kind}, target, progress);
     if (tried.body && tried.misfit < best.first) best = {tried.misfit, name};
   }

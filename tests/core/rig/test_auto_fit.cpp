@@ -100,6 +100,10 @@ TEST_CASE("auto-fit: every joint of the procedural body lies within 8 mm of the 
   CHECK(median_of_main(errors(fitted.armature, body.armature)) < 3);
 }
 
+TEST_CASE("auto-fit: the template that suits an arm is the arm, with a hand of five fingers too") {
+  CHECK(suggest_template(arm().volume) == "arm");
+}
+
 TEST_CASE("auto-fit: the result does not depend on the number of threads") {
   std::vector<Armature> results;
   for (int threads : {1, 3}) {
