@@ -112,7 +112,7 @@ void choose_mirrored(Editor& editor) {
 
 void choose_all(Editor& editor) {
   const Document& document = editor.document();
-  if (document.armature && (editor.workspace == Workspace::Pose || (editor.workspace == Workspace::Rig && editor.selection.bone))) {
+  if (document.armature && (editor.workspace == Workspace::Pose || (editor.workspace == Workspace::Rig && editor.selection.tissues.empty()))) {
     for (int b = 0; b < std::ssize(document.armature->bones); ++b) editor.selection.bones.insert(b);
     if (!editor.selection.bone) editor.selection.bone = 0;
     return;
@@ -132,7 +132,7 @@ std::vector<Operator> select_operators() {
       {"select.extend", "Extend selection", "", "Select", "Adds the tissue under the pointer to the chosen ones, or takes it out.", extend, needs_volume},
       {"select.pick_list", "Select from list", icon::kPick, "Select", "Chooses the tissue under the pointer and lists what lies behind it.", pick_list, needs_volume},
       {"select.none", "Select nothing", "", "Select", "Chooses nothing.", [](Editor& e) { e.selection = {}; }},
-      {"select.all", "Select all", "", "Select", "Chooses every tissue; every bone in the Pose workspace.", choose_all, needs_volume},
+      {"select.all", "Select all", "", "Select", "Chooses every bone in the Rig and Pose workspaces, every tissue elsewhere or where one is chosen.", choose_all, needs_volume},
       {"select.parent", "Select parent", "", "Select", "Chooses the bone that the active one hangs on.", [](Editor& e) { go_to_parent(e, false); }, needs_bone},
       {"select.child", "Select child", "", "Select", "Chooses the first bone that hangs on the active one.", [](Editor& e) { go_to_child(e, false); }, needs_bone},
       {"select.extend_parent", "Extend to parent", "", "Select", "Adds the bone that the active one hangs on.", [](Editor& e) { go_to_parent(e, true); }, needs_bone},

@@ -41,7 +41,7 @@ std::vector<Proof> proofs_of_tissues() {
       {"select.none", "click \"Edit/Select nothing\"", becomes("selected", "0"), Shows::Nothing, chosen},
       {"select.extend", "click \"3D view/view\" Shift", [](Stage& s, const Seen&) { return s.editor().selection.tissues == std::set<Label>{17, 143}; }, Shows::Nothing, "click Muscle/17/name\n wait-idle",
        [](Stage& s) { s.editor().views->bones = false; }},  // a bone under the pointer would come first
-      {"select.all", "move \"3D view/view\"\n key A", becomes("selected", "4"), Shows::Nothing, "", [](Stage& s) { s.editor().views->bones = true; }},
+      {"select.all", "move \"3D view/view\"\n key A", becomes("selected", "4"), Shows::Nothing, "click Muscle/17/name", [](Stage& s) { s.editor().views->bones = true; }},
       {"select.pick_list", "click \"3D view/view\" Alt", becomes("widget:pick/Muscle"), Shows::Nothing, ready},
 
       {"view.hide", "move \"3D view/view\"\n key H", edits("Hide Skin", "hidden", "1"), Shows::InBody, "click Skin/143/name"},
