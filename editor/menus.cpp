@@ -83,7 +83,7 @@ std::vector<Menu> menus() {
         "motion.ping_pong", "motion.faster", "motion.slower", "motion.play_at_file_rate", "<", "-", "motion.insert_key", "motion.delete_key", "motion.auto_key", "> Keys", "motion.next_key",
         "motion.previous_key", "motion.choose_all_keys", "motion.choose_no_keys", "-", "motion.move_keys", "motion.scale_keys", "motion.duplicate_keys", "motion.delete_keys", "<", "-", "> Markers",
         "motion.marker", "motion.rename_marker", "motion.delete_marker", "<", "> Range", "motion.set_start", "motion.set_end", "motion.preview_range", "motion.clear_range", "motion.view_all",
-        "motion.show_seconds", "<", "-", "> Export", "file.export_motion", "<"}},
+        "motion.show_seconds", "<", "> Onion skin", "motion.onion_skin", "motion.onion_frames", "<", "-", "> Export", "file.export_motion", "<"}},
       {"Help", {"help.guide", "help.keys", "help.tour", "help.new", "-", "search.commands", "view.console", "help.last_error", "help.system_facts", "-", "help.about"}},
   };
 }
@@ -91,7 +91,7 @@ std::vector<Menu> menus() {
 Menu pointer_menu(const std::string& name, ViewId view) {
   if (name == "Views") return {name, {"view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom", "view.opposite", "-", "view.ortho", "view.frame_selected", "view.frame_all", "view.walk"}};
   if (name == "Display") return {name, {"view.solid", "view.xray_display", "view.tissue", "-", "view.clip_box", "view.clip_plane"}};
-  if (name == "Keys") return {name, {"motion.insert_key", "motion.delete_key", "motion.auto_key", "-", "motion.next_key", "motion.previous_key"}};
+  if (name == "Keys") return {name, {"motion.insert_key", "motion.delete_key", "motion.auto_key", "-", "motion.next_key", "motion.previous_key", "-", "motion.onion_skin", "motion.onion_frames"}};
   if (name == "Workspaces") return {name, {"workspace.rig", "workspace.skin", "workspace.pose", "workspace.resample"}};
   if (name == "Tissue")
     return {name, {"view.hide", "view.isolate_selected", "view.reveal", "view.frame_selected", "-", "edit.rename", "prepare.merge"}};

@@ -40,6 +40,10 @@ struct Timeline {
   } play;
 
   bool auto_key = false;
+  struct {  // ghosts on either side, so many frames apart
+    bool on = false;
+    int count = 3, step = 10;
+  } onion;
   bool seconds = false;  // the ruler's numbers
   std::set<int> chosen;  // frames of keys
   std::map<int, int> moving;     // where chosen keys are shown while they are dragged

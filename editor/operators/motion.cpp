@@ -148,6 +148,19 @@ void ask_marker_name(Editor& editor) {
                                 }}));
 }
 
+void ask_onion_frames(Editor& editor) {
+  const auto& onion = editor.timeline->onion;
+  editor.open_dialog(make_form({"Onion skin", "The skeleton at frames before and after the one that is shown.", "Show",
+                                {number_of("On either side", "So many ghosts.", onion.count, 1, 10, "%.0f"), number_of("Frames apart", "From one to the next.", onion.step, 1, 10'000, "%.0f")}, {},
+                                [](Editor& e, const std::vector<FormField>& fields) {
+                                  auto& changed = e.timeline->onion;
+                                  changed.count = static_cast<int>(std::round(fields[0].value));
+                                  changed.step = static_cast<int>(std::round(fields[1].value));
+                                  changed.on = true;
+                                  e.touch();
+                                }}));
+}
+
 void delete_marker(Editor& editor) {
   const std::size_t place = *marker_here(editor);
   edit_clip(editor, "Delete marker", PoseThen::Stays, [&](Clip& clip) { clip.markers.erase(clip.markers.begin() + static_cast<std::ptrdiff_t>(place)); });
@@ -204,6 +217,9 @@ std::vector<Operator> motion_operators() {
        [](const Editor& e) { return !needs_rig(e).empty() ? needs_rig(e) : needs_keys(e); }},
       {"motion.auto_key", "Auto-key", icon::kDot, "Motion", "Every change of the pose becomes a key at its frame.", [](Editor& e) { e.timeline->auto_key = !e.timeline->auto_key; }, nullptr,
        [](const Editor& e) { return e.timeline->auto_key; }},
+      {"motion.onion_skin", "Onion skin", icon::kOnionSkin, "Motion", "Shows the skeleton at frames before and after this one.", [](Editor& e) { e.timeline->onion.on = !e.timeline->onion.on; }, nullptr,
+       [](const Editor& e) { return e.timeline->onion.on; }},
+      {"motion.onion_frames", "Onion frames...", "", "Motion", "How many ghosts there are, and how far apart.", ask_onion_frames},
       {"motion.marker", "Add marker", icon::kMarker, "Motion", "Puts a named mark at this frame.", add_marker, needs_clip},
       {"motion.rename_marker", "Rename marker...", "", "Motion", "Names the marker at this frame, or the last one before it.", ask_marker_name, needs_marker},
       {"motion.delete_marker", "Delete marker", "", "Motion", "Takes away the marker at this frame, or the last one before it.", delete_marker, needs_marker},

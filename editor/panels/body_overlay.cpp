@@ -6,6 +6,7 @@
 
 #include "editor/clip_handles.h"
 #include "editor/live_pose.h"
+#include "editor/onion_skin.h"
 #include "editor/panels/panels.h"
 #include "editor/results.h"
 
@@ -87,6 +88,7 @@ void draw_body_overlay(Editor& editor, const Rect& rect) {
   std::string title = body.name.empty() ? projection : body.name + " \u00b7 " + projection;
   if (!editor.name.empty()) title += " \u00b7 " + editor.name;
   draw_view_title(editor, rect, title, state_of(editor));
+  draw_onion_skin(editor);
   draw_axis_ball(editor, rect);
   if (!editor.document().volume) return draw_empty_view(editor, rect);
   draw_clip_handles(editor, rect);
