@@ -49,6 +49,10 @@ std::vector<KeyHint> hints(const Editor& editor) {
                  {"view.place_cross_hair", "Cross-hair"}, {"slice.outline", "Outline"}, {"view.maximize", "Maximize"}};
   else if (!editor.document().volume || editor.start_screen)
     operators = {{"file.open", "Open"}, {"file.new", "New"}, {"search.commands", "Search"}, {"help.guide", "Help"}, {"file.quit", "Quit"}};
+  else if (editor.workspace == Workspace::Rig && editor.selection.bone)
+    operators = {{"rig.move", "Move"}, {"rig.rotate", "Rotate"}, {"rig.extrude", "Extrude"}, {"rig.delete", "Delete"}, {"view.orbit", "Turn"}, {"view.xray", "X-ray"}, {"select.all", "All bones"}};
+  else if (editor.workspace == Workspace::Pose && editor.selection.bone)
+    operators = {{"pose.rotate", "Rotate"}, {"pose.move", "Move"}, {"pose.clear_rotation", "Clear"}, {"view.orbit", "Turn"}, {"view.xray", "X-ray"}, {"select.all", "All bones"}};
   else
     operators = {{"view.orbit", "Turn"}, {"view.pan", "Shift"}, {"view.zoom_step", "Zoom"}, {"view.xray", "X-ray"}, {"view.clip_box", "Clip box"}, {"view.hide", "Hide tissue"},
                  {"view.frame_all", "Frame all"}};
