@@ -30,6 +30,13 @@ struct Handling {
   bool snapping = false;                    // always; Ctrl then leaves it
   std::set<std::string> pins;               // bones whose tails stay where they are while others are dragged
   std::map<std::string, glm::dvec3> poles;  // world points that the limb ending in that bone bends towards
+
+  std::string library_pose;  // the chosen pose of the library
+  struct {                   // the one whose card is pressed, and where that began
+    std::string pose;
+    float begin = 0;
+    bool moved = false;
+  } library_drag;
 };
 
 // Columns x, y, z of a space for a bone of a posed rig. A root's parent is the world.

@@ -13,6 +13,7 @@
 
 #include "core/pose/clip.h"
 #include "core/pose/pose.h"
+#include "core/pose/pose_library.h"
 #include "core/rig/armature.h"
 #include "core/skin/skin_weights.h"
 #include "core/volume/label_volume.h"
@@ -80,6 +81,7 @@ struct Document {
   std::vector<std::shared_ptr<const Clip>> clips;
   int clip = 0;   // the one that moves the rig, where there are any
   int frame = 0;  // of that clip
+  PoseLibrary poses;
 
   const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 

@@ -130,6 +130,18 @@ void get(ByteReader& in, Keys& keys) {
   }
 }
 
+void get(ByteReader& in, NamedPose& pose) {
+  pose.name = in.text();
+  for (std::size_t count = in.count(36); count > 0; --count) {
+    const std::string bone = in.text();
+    pose.rotation[bone] = get_rotation(in);
+  }
+  const bool has_place = in.flag();
+  const glm::dvec3 place = get_vector(in);
+  if (has_place) pose.root_translation = place;
+  pose.picture = in.text();
+}
+
 void get(ByteReader& in, RetargetMap& map) {
   for (std::size_t count = in.count(41); count > 0; --count) {
     RetargetMap::Source& source = map.sources[in.text()];
@@ -232,6 +244,7 @@ class Reading {
       document.clip = in.get<std::int32_t>();
       document.frame = get_frame(in);
       in.require(document.clip >= 0);
+      if (layout > 2) list(document.poses);
     }
     in.require(next == node.nodes.size());
     in.end();

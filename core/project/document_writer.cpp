@@ -62,6 +62,18 @@ void put(ByteWriter& out, const Pose& pose) {
   put(out, pose.root_translation);
 }
 
+void put(ByteWriter& out, const NamedPose& pose) {
+  out.text(pose.name);
+  out.count(pose.rotation.size());
+  for (const auto& [bone, rotation] : pose.rotation) {
+    out.text(bone);
+    put(out, rotation);
+  }
+  out.flag(pose.root_translation.has_value());
+  put(out, pose.root_translation.value_or(glm::dvec3(0)));
+  out.text(pose.picture);
+}
+
 void put(ByteWriter& out, const Motion& motion) {
   out.count(motion.joints.size());
   for (const BvhJoint& joint : motion.joints) {
@@ -175,6 +187,8 @@ class DocumentWriter::Writing {
     for (const auto& clip : document.clips) root.nodes.push_back(write(clip));
     out.put(static_cast<std::int32_t>(document.clip));
     out.put(static_cast<std::int32_t>(document.frame));
+    out.count(document.poses.size());
+    for (const auto& pose : document.poses) root.nodes.push_back(write(pose));
     root.bytes = out.take();
     const ChunkHash hash = put_chunk(to_chunk(root));
     progress_.update("save", 1);

@@ -43,6 +43,11 @@ std::int64_t own_bytes(const Motion& motion) {
   for (const std::string& warning : motion.warnings) bytes += heap_bytes(warning);
   return bytes;
 }
+std::int64_t own_bytes(const NamedPose& pose) {
+  std::int64_t bytes = heap_bytes(pose.name) + heap_bytes(pose.picture);
+  for (const auto& [bone, rotation] : pose.rotation) bytes += kBlock + std::int64_t{sizeof(std::pair<std::string, glm::dquat>)} + 32 + heap_bytes(bone);
+  return bytes;
+}
 std::int64_t own_bytes(const Clip& clip) {  // without its motion, which is shared
   constexpr std::int64_t kNode = kBlock + 48;  // of a map
   std::int64_t bytes = heap_bytes(clip.name) + heap_bytes(clip.markers) + kNode * std::ssize(clip.keys.root);
@@ -107,7 +112,8 @@ class History::Ledger {
     for (const auto& result : document.results) visit(result, step);
     for (const auto& clip : document.clips)
       if (count(clip, step)) count(clip->motion, step);
-    bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results) + heap_bytes(document.clips));
+    for (const auto& pose : document.poses) count(pose, step);
+    bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results) + heap_bytes(document.clips) + heap_bytes(document.poses));
   }
 
   std::unordered_map<const void*, std::int64_t> uses_;

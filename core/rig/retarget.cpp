@@ -292,6 +292,8 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
     rest_offset_[b] = given ? *given : glm::normalize(glm::conjugate(at_standing) * alignment.turns()[b]);
   }
   scale_ = settings.scale > 0 ? settings.scale : scale_between(rig, source);
+  const auto first = std::find_if(joint_of_bone_.begin(), joint_of_bone_.end(), [](int joint) { return joint >= 0; });
+  if (first != joint_of_bone_.end()) lead_ = *first, start_ = forward_kinematics(motion, 0)[lead_].translation;
 
   // Bones of the trunk that lie between matched ones: nearest below by walking up, nearest above by what walks up to them.
   for (size_t top = 0; top < joint_of_bone_.size(); ++top) {
@@ -320,7 +322,7 @@ RetargetMap Retarget::map() const {
 Pose Retarget::at(int frame) const {
   if (frame < 0 || frame >= motion_->frame_count)
     throw Error("the motion has no frame " + std::to_string(frame), "--frame", "choose one from 0 to " + std::to_string(motion_->frame_count - 1));
-  Pose pose = carried_over(frame);
+  Pose pose = carried_over(forward_kinematics(*motion_, frame));
   if (!feet_.empty()) pose.root_translation += feet_[frame];
   return settings_.mirror ? flipped(pose, *armature_) : pose;
 }
@@ -360,7 +362,7 @@ void Retarget::follow_the_feet(const std::vector<int>& feet) {
   parallel_for(frames, 64, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t frame = begin; frame < end; ++frame) {
       const auto joints = forward_kinematics(*motion_, static_cast<int>(frame));
-      const auto posed = posed_from_rest(*armature_, carried_over(static_cast<int>(frame)));
+      const auto posed = posed_from_rest(*armature_, carried_over(joints));
       for (std::size_t i = 0; i < count; ++i) {
         source[frame * count + i] = scale_ * lps_from_bvh(joints[joint_of_bone_[feet[i]]].translation);
         rig[frame * count + i] = posed[feet[i]] * armature_->bones[feet[i]].head;
@@ -398,8 +400,7 @@ void Retarget::follow_the_feet(const std::vector<int>& feet) {
   }
 }
 
-Pose Retarget::carried_over(int frame) const {
-  const auto source = forward_kinematics(*motion_, frame);
+Pose Retarget::carried_over(const std::vector<RigidTransform>& source) const {
   const size_t count = joint_of_bone_.size();
   auto matched = [&](int bone) { return glm::normalize(lps_from_bvh(source[joint_of_bone_[bone]].rotation) * rest_offset_[bone]); };
 
@@ -419,11 +420,7 @@ Pose Retarget::carried_over(int frame) const {
   }
 
   if (settings_.travel != Travel::Locked) {
-    const auto first = std::find_if(joint_of_bone_.begin(), joint_of_bone_.end(), [](int joint) { return joint >= 0; });
-    if (first != joint_of_bone_.end()) {
-      const auto start = forward_kinematics(*motion_, 0);
-      pose.root_translation = scale_ * lps_from_bvh(source[*first].translation - start[*first].translation);
-    }
+    if (lead_ >= 0) pose.root_translation = scale_ * lps_from_bvh(source[lead_].translation - start_);
     if (settings_.travel == Travel::InPlace) pose.root_translation.x = pose.root_translation.y = 0;
   }
   return pose;

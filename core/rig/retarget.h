@@ -77,7 +77,8 @@ class Retarget {
   RetargetMap map() const;                                       // with the offsets that are in use
 
  private:
-  Pose carried_over(int frame) const;  // without what the feet add to the travel
+  // Where the source's joints are so; without what the feet add to the travel.
+  Pose carried_over(const std::vector<RigidTransform>& source) const;
   void follow_the_feet(const std::vector<int>& feet);
 
   const Motion* motion_;
@@ -91,6 +92,8 @@ class Retarget {
   };
   std::vector<Between> between_;  // per bone; below = -1 where it follows its parent
   double scale_ = 1;
+  int lead_ = -1;                 // the joint that the body travels with
+  glm::dvec3 start_{0};           // where it is at frame 0, in the file's axes
   std::vector<glm::dvec3> feet_;  // by frame, where the body travels: added to its place
 };
 

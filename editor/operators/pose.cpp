@@ -6,6 +6,7 @@
 #include "editor/form.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
+#include "editor/pose_library.h"
 #include "editor/posing.h"
 #include "editor/tools/pose_tools.h"
 
@@ -201,7 +202,7 @@ Operator space_operator(const char* id, const char* label, const char* sentence,
 }  // namespace
 
 std::vector<Operator> pose_operators() {
-  return {
+  std::vector<Operator> operators = {
       {"pose.rotate", "Rotate", icon::kRotate, "Pose", "Turns the chosen bones with the pointer.", [](Editor& e) { begin_tool(e, begin_turning(e)); }, needs_bone},
       {"pose.move", "Reach", icon::kMove, "Pose", "The end of the chosen bone goes with the pointer and its limb follows; the root takes the body along.",
        [](Editor& e) { begin_tool(e, begin_dragging(e)); }, needs_bone},
@@ -233,6 +234,8 @@ std::vector<Operator> pose_operators() {
       {"pose.flex", "Flex a joint...", icon::kRotate, "Pose", "Turns a bone about its hinge by an angle.", ask_flex, needs_rig},
       {"pose.clear", "Clear pose", icon::kUndo, "Pose", "Every bone goes back to rest.", clear_pose, needs_pose},
   };
+  for (Operator& op : pose_library_operators()) operators.push_back(std::move(op));
+  return operators;
 }
 
 }  // namespace limber::editor

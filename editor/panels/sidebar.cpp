@@ -2,6 +2,7 @@
 // The column of sections at the right: fixed order, each folds, all scroll as one.
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
+#include "editor/pose_library.h"
 
 namespace limber::editor {
 
@@ -37,6 +38,7 @@ void draw_sidebar(Editor& editor) {
       draw_resample(editor, column);
     }
     if (editor.workspace == Workspace::Pose) {
+      draw_pose_library(editor, column);
       draw_live_volume(editor, column);
       draw_motion(editor, column);
     }

@@ -155,7 +155,7 @@ void draw_tool_header(Editor& editor) {
     }
     if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"})) header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
     if (header.fits(90, {"pose.limits"})) header.toggle("pose.limits", "Limits");
-    for (const char* id : {"pose.auto_ik", "edit.x_mirror"})
+    for (const char* id : {"pose.auto_ik", "edit.x_mirror", "motion.onion_skin"})
       if (header.fits(editor.layout.short_labels ? 36 : 110, {id})) header.toggle(id);
     header.line();
   }

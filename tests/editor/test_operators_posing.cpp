@@ -79,6 +79,12 @@ std::vector<Proof> proofs_of_posing() {
       {"pose.flip", "key Ctrl+M", [](Stage& s, const Seen& b) { return edit_is("Flip pose")(s, b) && turn_about_z(s, 0) < -0.1; }, Shows::InBody,
        "key R\n key Z\n key 3\n key 0\n key Return\n key Ctrl+C"},
       {"pose.paste_flipped", "key Shift+Ctrl+V", [](Stage& s, const Seen& b) { return edit_is("Paste flipped pose")(s, b) && turn_about_z(s, 0) < -0.1; }, Shows::InBody, "key Alt+R"},
+      {"pose.library_add", "click \"Edit/Pose library/Add to library\"", [](Stage& s, const Seen&) { return s.document().poses.size() == 1 && s.document().poses[0]->rotation.contains("Fore"); }, Shows::Nothing,
+       "key R\n key X\n key 3\n key 0\n key Return", choose(1)},
+      {"pose.library_apply", "click \"Edit/Pose library/Apply pose of library\"", edit_is("Apply Pose"), Shows::InBody, "key Alt+R"},
+      {"pose.library_blend", "click \"Edit/Pose library/Blend to pose of library\"\n key 5\n key 0\n key Return", edit_is("Blend to Pose"), Shows::InBody, "move \"3D view/view\"\n key Alt+R"},
+      {"pose.library_rename", "click \"Edit/Pose library/Rename pose...\"\n wait-idle\n key Ctrl+A\n type Reach\n key Return", [](Stage& s, const Seen&) { return s.document().poses[0]->name == "Reach"; }},
+      {"pose.library_delete", "click \"Edit/Pose library/Delete pose\"", [](Stage& s, const Seen&) { return s.document().poses.empty(); }},
       {"select.mirror", "key Shift+Ctrl+M", bones_are({1}, 1), Shows::InBody, "", name_sides},
   };
 }

@@ -18,6 +18,11 @@ bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::b
 bool same(const glm::dvec3& a, const glm::dvec3& b) { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
 bool same(const glm::dquat& a, const glm::dquat& b) { return same(a.w, b.w) && same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
 
+bool equal(const NamedPose& a, const NamedPose& b) {
+  const auto same_turn = [](const auto& x, const auto& y) { return x.first == y.first && same(x.second, y.second); };
+  return a.name == b.name && a.picture == b.picture && std::equal(a.rotation.begin(), a.rotation.end(), b.rotation.begin(), b.rotation.end(), same_turn) &&
+         a.root_translation.has_value() == b.root_translation.has_value() && (!a.root_translation || same(*a.root_translation, *b.root_translation));
+}
 bool equal(const LabelVolume& a, const LabelVolume& b) { return a.grid == b.grid && a.voxels == b.voxels; }
 bool equal(const Tissue& a, const Tissue& b) {
   return a.label == b.label && same(a.file_value, b.file_value) && a.name == b.name && a.colour == b.colour && a.kind == b.kind &&
@@ -143,7 +148,10 @@ bool same_contents(const Document& a, const Document& b) {
     return false;
   for (std::size_t i = 0; i < a.results.size(); ++i)
     if (!equal(a.results[i], b.results[i])) return false;
-  return a.clip == b.clip && a.frame == b.frame && std::equal(a.clips.begin(), a.clips.end(), b.clips.begin(), b.clips.end(), [](const auto& x, const auto& y) { return equal(x, y); });
+  const auto all_equal = [](const auto& ours, const auto& theirs) {
+    return std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(), [](const auto& x, const auto& y) { return equal(x, y); });
+  };
+  return a.clip == b.clip && a.frame == b.frame && all_equal(a.clips, b.clips) && all_equal(a.poses, b.poses);
 }
 
 Document small_document() {
@@ -158,6 +166,8 @@ Document small_document() {
   document.clips = {shared(keyed_clip()), shared(Clip{.name = "Keys alone", .rate = 23.976})};
   document.clip = 1;
   document.frame = -3;
+  document.poses = {shared(NamedPose{"Reach \xff", {{"Lower", {0.5, -0.0, 1e-300, 0.5}}}, {}, std::string("\0PNG", 4)}),
+                    shared(NamedPose{"", {{"Upper", {1, 0, 0, 0}}}, glm::dvec3(1, -0.0, 1e-9), std::string(100'000, 'p')})};
   document.visibility = shared(Visibility{.looks = {{2, {.visible = false, .opacity = 0.25f}}}});
   document.results.push_back(shared(result_of(document, random)));
   return document;

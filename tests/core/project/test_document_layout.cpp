@@ -62,4 +62,18 @@ TEST_CASE("project: a document of the first layout opens, its motion as a clip")
   CHECK(back.clips[0]->keys.empty());
 }
 
+TEST_CASE("project: a document of the second layout opens, with an empty library of poses") {
+  Document now = small_document();
+  now.poses.clear();
+  Chunks chunks;
+  DocumentWriter writer;
+  Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
+  // The same, without the count of poses at its end.
+  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t));
+  node.bytes[0] = 2;
+  std::vector<std::string> warnings;
+  CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
+  CHECK(warnings.empty());
+}
+
 }  // namespace limber::test
