@@ -53,7 +53,7 @@ void draw_end(Editor& editor, Column& column, const Bone& bone, const BoneEnd& e
 }
 
 // The turn that is positive about a hinge, as choices: the bone's own axes, either way round.
-const std::vector<std::string> kAxes = {"Own X", "Own Y", "Own Z", "Own \u2212X", "Own \u2212Y", "Own \u2212Z", "Other"};
+const std::vector<std::string> kAxes = {"Own X", "Own Y", "Own Z", "Own \u2212X", "Own \u2212Y", "Own \u2212Z"};
 constexpr int kOtherAxis = 6;
 
 glm::dvec3 own_axis(const Bone& bone, int choice) { return rest_axes(bone)[choice % 3] * (choice < 3 ? 1.0 : -1.0); }
@@ -105,7 +105,9 @@ void draw_joint(Editor& editor, Column& column, const Bone& bone, int index) {
     }
     if (bone.limits.type == JointLimits::Type::Hinge) {
       int axis = axis_choice(bone);
-      if (choose("Axis", kAxes, axis) && axis != kOtherAxis) {
+      std::vector<std::string> axes = kAxes;
+      if (axis == kOtherAxis) axes.push_back("Other");  // what it is; nothing to choose
+      if (choose("Axis", axes, axis)) {
         JointLimits limits = bone.limits;
         limits.axis = own_axis(bone, axis);
         commit_rig(editor, "Hinge of " + bone.name, mirrored_too(editor, with_limits(*rig, index, limits)), {index});
