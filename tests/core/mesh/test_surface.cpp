@@ -53,14 +53,16 @@ TEST_CASE("surface: a ball's is closed, faces outwards, lies on the ball and hol
       CAPTURE(mirror);
       CAPTURE(step);
       CHECK(is_closed(mesh));
-      CHECK(volume_inside(mesh) == doctest::Approx(4.0 / 3 * std::numbers::pi * radius * radius * radius).epsilon(0.04));
+      // The blur draws a ball in by h^2 / 2R, flat triangles by a sixth of that.
+      const double h = std::max(step, 1.25);
+      CHECK(volume_inside(mesh) == doctest::Approx(4.0 / 3 * std::numbers::pi * radius * radius * radius).epsilon(0.005 + 1.75 * h * h / (radius * radius)));
       const auto normals = vertex_normals(mesh);
       double farthest = 0, least = 1;
       for (std::size_t i = 0; i < mesh.V.size(); ++i) {
         farthest = std::max(farthest, std::abs(glm::length(mesh.V[i] - centre) - radius));
         least = std::min(least, glm::dot(normals[i], glm::normalize(mesh.V[i] - centre)));
       }
-      CHECK(farthest < 0.7 * std::max(step, 1.25));
+      CHECK(farthest < 0.7 * h);
       CHECK(least > 0.8);
     }
 }
