@@ -143,8 +143,9 @@ void draw_bone(Editor& editor, Column& column) {
     put_text(editor, look.fonts.regular, look.theme.text, parent, bone.parent < 0 ? "None" : rig->bones[bone.parent].name + (is_connected(*rig, index) ? ", connected" : ""));
     draw_end(editor, column, bone, {index, false});
     draw_end(editor, column, bone, {index, true});
-    const Rect rect = column.property("Length \u00b7 roll");
-    const float middle = std::round(rect.centre().x);
+    Rect rect = column.property("Length \u00b7 roll");
+    rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(156)));
+    const float middle = std::round(rect.low.x + 0.56f * rect.width());
     draw_number(editor, {rect.low, {middle - look.px(2), rect.high.y}}, "Length", "Length of " + bone.name, glm::distance(bone.head, bone.tail), 0.01, kFar, "%.1f", "mm", index, [&](const Armature& before, double number) {
       const glm::dvec3 along = before.bones[index].tail - before.bones[index].head;
       const double length = glm::length(along);
