@@ -11,6 +11,7 @@
 #include "editor/gizmo_painter.h"
 #include "editor/paint.h"
 #include "editor/posing.h"
+#include "editor/rig_check.h"
 #include "editor/rigging.h"
 #include "editor/tools/pose_tools.h"
 #include "editor/tools/rig_tools.h"
@@ -23,7 +24,6 @@ namespace {
 constexpr double kRing = 86, kViewRing = 108, kTrackball = 78, kHit = 7;
 constexpr double kArrowBegin = 16, kArrowEnd = 80, kCone = 12, kSquareAt = 28, kSquare = 12, kCentre = 9;
 constexpr double kJointHit = 10;
-constexpr double kSliceDepth = 20;  // mm
 constexpr double kHidden = 0.0698, kEdgeOn = 0.1392;  // sines of 4 and 8 degrees: from where a ring fades, until where it is gone
 constexpr int kSteps = 96;
 
@@ -172,11 +172,6 @@ void draw_moving(const Gizmo& gizmo, const SeenFrom& view, const Editor& editor,
   painter.circle(gizmo.centre, with_alpha(0xFFFFFFFF, hovered && *hovered == GizmoPart{GizmoPart::Kind::Centre} ? 1 : 0.85f), kCentre, 1.6f);
 }
 
-// What lies this near to a slice is seen and taken hold of in it.
-bool in_slice(const SeenFrom& view, const glm::dvec3& point) {
-  return view.place.id == ViewId::Body || std::abs(glm::dot(point - view.slice.centre, view.towards_eye)) <= kSliceDepth;
-}
-
 struct BonePart {
   int bone;
   Handling::Part part;
@@ -191,7 +186,7 @@ std::optional<BonePart> bone_part_at(const Editor& editor, const SeenFrom& view,
   for (int bone = 0; bone < std::ssize(rig->bones); ++bone)
     for (const bool tail : {false, true}) {
       const glm::dvec3& place = place_of(*rig, {bone, tail});
-      const auto seen = in_slice(view, place) ? view.pixel_of(place) : std::nullopt;
+      const auto seen = view.shows(place) ? view.pixel_of(place) : std::nullopt;
       // A tail before the heads that lie on it.
       const double distance = seen ? glm::distance(*seen, pixel) - (editor.selection.bone == bone ? 1e-3 : 0) - (tail ? 5e-4 : 0) : 1e9;
       if (distance > nearest) continue;
@@ -213,7 +208,7 @@ void draw_rig(Editor& editor, const SeenFrom& view) {
     for (int bone = 0; bone < std::ssize(rig->bones); ++bone) {
       const Bone& b = rig->bones[bone];
       const bool chosen = editor.selection.bones.contains(bone);
-      const float alpha = in_slice(view, b.head) || in_slice(view, b.tail) ? 0.9f : 0.25f;
+      const float alpha = view.shows(b.head) || view.shows(b.tail) ? 0.9f : 0.25f;
       const Colour colour = with_alpha(chosen ? theme.select : theme.view_text, alpha);
       painter.line(b.head, b.tail, colour, 2);
       for (const glm::dvec3& end : {b.head, b.tail}) painter.dot(end, colour, with_alpha(0xFF1A1614, alpha), 4);
@@ -221,7 +216,7 @@ void draw_rig(Editor& editor, const SeenFrom& view) {
   const auto bone = editor.selection.bone;
   if (editor.handling->part == Handling::Part::Whole || !bone || *bone >= std::ssize(rig->bones)) return;
   const glm::dvec3& place = place_of(*rig, {*bone, editor.handling->part == Handling::Part::Tail});
-  if (in_slice(view, place)) painter.dot(place, theme.select_light, theme.select, 5);
+  if (view.shows(place)) painter.dot(place, theme.select_light, theme.select, 5);
 }
 
 // Moves what is pressed, or draws a bone out of it.
@@ -317,7 +312,7 @@ std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view) {
   if (!armature || !bone || *bone >= std::ssize(armature->bones)) return std::nullopt;
   if (editor.workspace == Workspace::Rig && (editor.tool == Tool::Move || editor.tool == Tool::Rotate || editor.tool == Tool::Scale)) {
     const glm::dvec3& place = place_of(*armature, {*bone, editor.tool == Tool::Move && editor.handling->part == Handling::Part::Tail});
-    if (!in_slice(view, place)) return std::nullopt;
+    if (!view.shows(place)) return std::nullopt;
     return Gizmo{editor.tool, place, axes_of(editor.handling->space, *armature, rest_pose(*armature), *bone, view)};
   }
   if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body) return std::nullopt;
@@ -371,6 +366,7 @@ bool pick_bone_part(Editor& editor) {
 void draw_gizmo(Editor& editor, const ViewPlace& place) {
   const SeenFrom view(editor, place);
   draw_rig(editor, view);
+  draw_rig_check(editor, view);
   draw_marks(editor, view);
   draw_limits(editor, view);
   if (editor.modal) return editor.modal->draw(editor, place);

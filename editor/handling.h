@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "core/pose/pose.h"
+#include "editor/rig_check.h"
 #include "editor/seen_from.h"
 
 namespace limber::editor {
@@ -30,6 +31,9 @@ struct Handling {
   bool snapping = false;                    // always; Ctrl then leaves it
   std::set<std::string> pins;               // bones whose tails stay where they are while others are dragged
   std::map<std::string, glm::dvec3> poles;  // world points that the limb ending in that bone bends towards
+
+  KnownRigCheck rig_check;
+  bool rig_check_marks = true;  // over the views
 
   std::string library_pose;  // the chosen pose of the library
   struct {                   // the one whose card is pressed, and where that began

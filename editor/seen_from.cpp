@@ -31,6 +31,11 @@ std::optional<glm::dvec2> SeenFrom::pixel_of(const glm::dvec3& point) const {
   return corner + pixel;
 }
 
+bool SeenFrom::shows(const glm::dvec3& point) const {
+  constexpr double kDepth = 20;  // mm
+  return place.id == ViewId::Body || std::abs(glm::dot(point - slice.centre, towards_eye)) <= kDepth;
+}
+
 render::Ray SeenFrom::ray(const glm::dvec2& pixel) const {
   const glm::dvec2 inside = pixel - glm::dvec2(place.rect.low);
   if (place.id == ViewId::Body) return render::ray_through(camera, inside, glm::ivec2(place.rect.size()));

@@ -20,6 +20,9 @@ struct SeenFrom {
   glm::dvec3 direction_to_eye(const glm::dvec3& point) const;  // unit
   double millimetres_per_pixel(const glm::dvec3& point) const;  // across the line of sight
 
+  // All of the world in 3D; in a slice what lies within 20 mm of it.
+  bool shows(const glm::dvec3& point) const;
+
   // The point under the pixel in the plane through `point` with that normal; nothing where the line of sight misses it.
   std::optional<glm::dvec3> in_plane(const glm::dvec2& pixel, const glm::dvec3& point, const glm::dvec3& normal) const;
   // How far along the line through `point` (unit direction) it comes nearest to what is under the pixel; nothing where

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <tuple>
 
 namespace limber {
 
@@ -41,6 +43,13 @@ RigCheck check_rig(const LabelVolume& volume, const Armature& armature) {
     within += own * check.share.back();
   }
   check.whole = length > 0 ? within / length : 0;
+  std::set<std::tuple<double, double, double>> seen;
+  for (const bool tail : {true, false})
+    for (int b = 0; b < std::ssize(armature.bones); ++b) {
+      const glm::dvec3& place = tail ? armature.bones[b].tail : armature.bones[b].head;
+      if (seen.insert({place.x, place.y, place.z}).second && !in_tissue(place)) check.outside.push_back({b, tail, place});
+    }
+  std::stable_sort(check.outside.begin(), check.outside.end(), [](const auto& a, const auto& b) { return a.bone < b.bone; });
   return check;
 }
 

@@ -30,6 +30,12 @@ std::string needs_two(const Editor& editor) {
   return editor.selection.bones.size() > 1 ? "" : "Choose the children first, then the parent";
 }
 
+std::string needs_leaving(const Editor& editor) {
+  if (const std::string why = needs_rig_workspace(editor); !why.empty()) return why;
+  if (!editor.document().armature || !editor.document().volume) return "Open a volume and a rig first";
+  return rig_check(editor)->bones.empty() ? "Every bone lies in tissue" : "";
+}
+
 void transform(Editor& editor, RigChange::Kind kind) { begin_tool(editor, begin_rig_change(editor, chosen_change(editor, kind))); }
 
 void extrude(Editor& editor) {
@@ -158,6 +164,9 @@ std::vector<Operator> rig_operators() {
       {"rig.recalculate_roll", "Recalculate roll", "", "Bone", "The chosen bones' own z axes look forward.",
        [](Editor& e) { edit(e, "Recalculate roll of", [](const Armature& rig, const std::vector<int>& bones) { return with_z_towards(rig, bones, {0, -1, 0}); }); }, needs_rig_bone},
       {"rig.motion_range", "Range of motion...", "", "Bone", "Limits that are usual for a joint, by its name or as chosen.", ask_motion_range, needs_rig_bone},
+      {"rig.next_leaving", "Next bone outside tissue", "", "Bone", "Goes to the next bone that leaves the tissue.", show_next_leaving, needs_leaving},
+      {"view.rig_check", "Where the rig leaves tissue", "", "View", "Marks bones and joints outside of tissue in the Rig workspace.", [](Editor& e) { e.handling->rig_check_marks = !e.handling->rig_check_marks; }, nullptr,
+       [](const Editor& e) { return e.handling->rig_check_marks; }},
       {"rig.snap", "Snap", icon::kSnap, "Bone", "Transforms snap without Ctrl, and with Ctrl they do not.", [](Editor& e) { e.handling->snapping = !e.handling->snapping; }, nullptr,
        [](const Editor& e) { return e.handling->snapping; }},
       snap_operator("snap.steps", "Snap to steps", "Of 5 mm, 5 degrees or a tenth; with Shift finer.", Snap::Steps),

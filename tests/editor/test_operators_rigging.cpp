@@ -85,6 +85,8 @@ std::vector<Proof> proofs_of_rigging() {
       {"rig.mirror", "key Ctrl+M", edited("Mirror 2 bones", [](const Armature& r) { return named(r, "Hip.R").tail.x == -20 && r.bones[2].name == "Hip.R"; }), Shows::Nothing, "", choose({2, 3}, 3)},
       {"rig.motion_range", "click \"Edit/Bone/Range of motion...\"\n click Joint/list\n click Joint/Elbow\n key Return",
        edited("Range of motion of Fore", [](const Armature& r) { return r.bones[1].limits.type == JointLimits::Type::Hinge && std::abs(glm::degrees(r.bones[1].limits.maximum) - 150) < 1e-9; }), Shows::Nothing, "", anew({1}, 1)},
+      {"rig.next_leaving", "click \"Edit/Rig/Next bone outside tissue\"", [](Stage& s, const Seen&) { return s.editor().selection.bone == 1 && s.editor().handling->part == Handling::Part::Tail; }, Shows::Nothing, "key G\n key Z\n key -\n key 3\n key 0\n key Return\n wait-idle", anew({1}, 1)},
+      {"view.rig_check", "click \"View/Overlays/Where the rig leaves tissue\"", [](Stage& s, const Seen&) { return !s.editor().handling->rig_check_marks; }},
       {"rig.delete", "key X", edited("Delete Fore", [](const Armature& r) { return r.bones.size() == 1; }), Shows::InBody, "", anew({1}, 1)},
       {"rig.snap", "key Shift+Tab", [](Stage& s, const Seen&) { return s.editor().handling->snapping; }},
       {"snap.joint", "click \"Edit/Snapping/Snap to joints\"", snaps(Snap::Joint)},

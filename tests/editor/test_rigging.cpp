@@ -14,10 +14,15 @@ using limber::test::LimbEditor;
 namespace {
 
 struct RiggingEditor : LimbEditor {
-  explicit RiggingEditor(const glm::ivec2& size = {900, 600}) : LimbEditor(size) {
+  explicit RiggingEditor(const glm::ivec2& size = {900, 600}, double scale = 1) : LimbEditor(size, at_scale(scale)) {
     editor->preferences.reduce_motion = true;
     play("key Ctrl+1\nkey Num1\nkey Num5\nwait-idle");
     choose(1);
+  }
+  static Preferences at_scale(double scale) {
+    Preferences preferences;
+    preferences.scale = scale;
+    return preferences;
   }
   void choose(int bone) {
     editor->selection = {};
@@ -143,4 +148,29 @@ TEST_CASE("rigging: the sidebar sets what a joint allows, one edit each, and res
   CHECK(glm::degrees(limits().maximum) == doctest::Approx(140));
   test.play("key Ctrl+Z\n key Ctrl+Z\n key Ctrl+Z\n key Ctrl+Z");
   CHECK(limits().type == JointLimits::Type::Ball);
+}
+
+TEST_CASE("rigging: the fit check follows a joint that is dragged out of the tissue, and a click goes there") {
+  for (const double scale : {1.0, 2.0}) {
+    RiggingEditor test(scale > 1 ? glm::ivec2(2480, 1500) : glm::ivec2(1240, 750), scale);
+    test.play("click Steps/fold\n click Outliner/fold\n click Tissues/fold\n wait-idle\n click \"Fit check/fold\"\n wait-idle");
+    REQUIRE(rig_check(*test.editor));
+    CHECK(rig_check(*test.editor)->bones.empty());
+    CHECK(test.fact("text:All in tissue") == "shown");
+    // The ball ends 40 mm below its middle: of the new 72 mm the last 32 are outside. Live, and gone again with Escape.
+    test.editor->handling->part = Handling::Part::Tail;
+    test.play("move \"3D view/view\"\n key G\n key Z\n key -\n key 3\n key 6");
+    CHECK(rig_check(*test.editor)->bones[0].share == doctest::Approx(40.0 / 72).epsilon(0.03));
+    CHECK(test.fact("text:tail") == "shown");
+    test.play("key Escape\n wait-idle");
+    CHECK(rig_check(*test.editor)->bones.empty());
+    test.play("key G\n key Z\n key -\n key 3\n key 6\n key Return\n wait-idle");
+    test.editor->selection = {};
+    test.play("click \"Fit check/Fore/name\"\n wait-idle\n wait 1");
+    CHECK(test.editor->selection.bone == 1);
+    CHECK(test.editor->handling->part == Handling::Part::Tail);
+    CHECK(glm::distance(test.editor->views->body.camera.centre, glm::dvec3(0, 0, -72)) < 1e-6);
+    test.play("key Ctrl+Z\n wait-idle");
+    CHECK(rig_check(*test.editor)->bones.empty());
+  }
 }

@@ -17,6 +17,20 @@ TEST_CASE("fit check: a bone half in tissue is half in, and the place where it l
   REQUIRE(check.leaving.size() == 1);
   CHECK(check.leaving[0].bone == 1);
   CHECK(glm::distance(check.leaving[0].place, glm::dvec3(24.5, 2, 2)) < 0.5);
+  REQUIRE(check.outside.size() == 1);
+  CHECK(check.outside[0].tail);
+  CHECK(check.outside[0].place == rig.bones[1].tail);
+}
+
+TEST_CASE("fit check: where bones meet outside, the joint is told once, as a tail") {
+  LabelVolume volume{{{5, 5, 5}, {1, 1, 1}, {0, 0, 0}, glm::dmat3(1)}, std::vector<Label>(125, 1)};
+  Armature rig;
+  rig.bones = {{.name = "A", .parent = -1, .head = {2, 2, 2}, .tail = {9, 2, 2}}, {.name = "B", .parent = 0, .head = {9, 2, 2}, .tail = {2, 2, 4}}, {.name = "C", .parent = 0, .head = {9, 2, 2}, .tail = {2, 4, 2}}};
+  const RigCheck check = check_rig(volume, rig);
+  REQUIRE(check.outside.size() == 1);
+  CHECK(check.outside[0].bone == 0);
+  CHECK(check.outside[0].tail);
+  CHECK(check.leaving.size() == 3);
 }
 
 TEST_CASE("fit check: a rig far outside the grid is outside, whatever the numbers") {
