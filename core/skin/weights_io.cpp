@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -37,31 +39,32 @@ std::string text_of(const glm::ivec3& size) {
   return std::to_string(size.x) + " " + std::to_string(size.y) + " " + std::to_string(size.z);
 }
 
-struct Header {
-  std::map<std::string, std::string> fields;  // "type", "sizes", and keys as "limber_bones"
-  std::size_t data_begin = 0;
-};
+constexpr std::size_t kLongestHeader = 1 << 20;
 
-Header parse_header(const std::string& bytes, const std::string& where) {
-  if (bytes.compare(0, 7, "NRRD000") != 0) throw Error("these are no weights", where, "give a W.nrrd, a folder of weight_NN.mha or Bender's skin map");
+using Header = std::map<std::string, std::string>;  // fields as "type" and "sizes", keys as "limber_bones"
+
+// Up to the empty line that ends it; the data follow.
+Header read_header(std::istream& in, const std::string& where) {
   Header header;
-  std::size_t at = 0;
-  for (;;) {
-    const std::size_t end = bytes.find('\n', at);
-    if (end == std::string::npos) throw Error("the header of the weights has no end", where, kMakeAnew);
-    std::string line = bytes.substr(at, end - at);
-    at = end + 1;
+  std::size_t read = 0;
+  bool begins = true;
+  for (std::string line;; line.clear()) {
+    char c = 0;
+    while (in.get(c) && c != '\n' && ++read < kLongestHeader) line += c;
+    if (begins && line.compare(0, 7, "NRRD000") != 0)
+      throw Error("these are no weights", where, "give a W.nrrd, a folder of weight_NN.mha or Bender's skin map");
+    if (!in || read >= kLongestHeader) throw Error("the header of the weights has no end", where, kMakeAnew);
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty()) break;
-    if (line[0] == '#' || line.compare(0, 4, "NRRD") == 0) continue;
+    if (line.empty()) return header;
+    const bool is_field = !begins && line[0] != '#';
+    begins = false;
+    if (!is_field) continue;
     const std::size_t key_mark = line.find(":="), field_mark = line.find(": ");
     if (key_mark != std::string::npos && key_mark <= field_mark)
-      header.fields[line.substr(0, key_mark)] = line.substr(key_mark + 2);
+      header[line.substr(0, key_mark)] = line.substr(key_mark + 2);
     else if (field_mark != std::string::npos)
-      header.fields[line.substr(0, field_mark)] = line.substr(field_mark + 2);
+      header[line.substr(0, field_mark)] = line.substr(field_mark + 2);
   }
-  header.data_begin = at;
-  return header;
 }
 
 // Place in the rig of each of the file's bones.
@@ -79,20 +82,59 @@ std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::str
   return in_rig;
 }
 
-std::string inflated(const std::string& bytes, std::size_t begin, std::size_t size, const std::string& where) {
-  std::string data(size, '\0');
-  Inflater stream;
-  std::string_view packed = std::string_view(bytes).substr(begin);
-  std::size_t done = 0;
-  for (bool moves = true; moves && !stream.ended();) {
-    const Inflater::Step step = stream.inflate(packed, data.data() + done, size - done);
-    packed.remove_prefix(step.taken);
-    done += step.made;
-    moves = !step.damaged && step.taken + step.made > 0;
+// The numbers behind the header, as they are or inflated.
+class WeightData {
+ public:
+  WeightData(std::istream& in, const std::string& encoding, const std::string& where) : in_(in), where_(where) {
+    if (encoding == "gzip" || encoding == "gz")
+      inflater_.emplace();
+    else if (encoding != "raw")
+      throw Error("the weights are encoded as " + encoding.substr(0, 40), where, "save them raw or gzip");
   }
-  if (!stream.ended() || done < size) throw Error("the compressed weights are damaged or too short", where, kMakeAnew);
-  return data;
-}
+
+  void read(void* to, std::size_t size) {
+    if (!inflater_) {
+      if (!in_.read(static_cast<char*>(to), static_cast<std::streamsize>(size))) fail("too short");
+      return;
+    }
+    for (std::size_t done = 0; done < size;) {
+      const std::size_t made = inflate(static_cast<char*>(to) + done, size - done);
+      if (made == 0) fail("damaged or too short");
+      done += made;
+    }
+  }
+
+  // After the last number.
+  void expect_end() {
+    char beyond;
+    if (inflater_ && (inflate(&beyond, 1) > 0 || !inflater_->ended())) fail("damaged or too long");
+    if (!inflater_ && in_.peek() != std::istream::traits_type::eof()) fail("too long");
+  }
+
+ private:
+  // Nothing where the stream has ended.
+  std::size_t inflate(char* to, std::size_t room) {
+    for (;;) {
+      if (inflater_->ended()) return 0;
+      if (packed_.empty()) {
+        in_.read(buffer_.data(), std::ssize(buffer_));
+        packed_ = {buffer_.data(), static_cast<std::size_t>(in_.gcount())};
+      }
+      const Inflater::Step step = inflater_->inflate(packed_, to, room);
+      packed_.remove_prefix(step.taken);
+      if (step.damaged) fail("damaged");
+      if (step.made > 0 || step.taken == 0) return step.made;
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& how) const { throw Error("the weights are " + how, where_, kMakeAnew); }
+
+  std::istream& in_;
+  const std::string& where_;
+  std::optional<Inflater> inflater_;
+  std::array<char, 1 << 16> buffer_;
+  std::string_view packed_;  // of the buffer, still to be inflated
+};
 
 // By falling weight, bones as the rig numbers them. Throws for what no writer of ours makes.
 void accept(Influence& influence, const std::vector<std::uint16_t>& in_rig, const std::string& where) {
@@ -199,15 +241,15 @@ WeightsFile read_bender_map(const Path& path, const LabelVolume& volume, const T
 }
 }  // namespace
 
-SkinWeights parse_weights(const std::string& bytes, const std::string& where, const LabelVolume& volume,
-                          const TissueVoxels& tissue, const Armature& armature) {
-  const Header header = parse_header(bytes, where);
+SkinWeights parse_weights(std::istream& in, const std::string& where, const LabelVolume& volume, const TissueVoxels& tissue,
+                          const Armature& armature) {
+  const Header header = read_header(in, where);
   auto field = [&](const std::string& name) {
-    const auto found = header.fields.find(name);
-    if (found == header.fields.end()) throw Error("the weights lack the field " + name, where, kMakeAnew);
+    const auto found = header.find(name);
+    if (found == header.end()) throw Error("the weights lack the field " + name, where, kMakeAnew);
     return found->second;
   };
-  const std::string type = field("type"), encoding = field("encoding");
+  const std::string type = field("type");
   if (type != "unsigned short" && type != "ushort" && type != "uint16" && type != "uint16_t")
     throw Error("the weights are of type " + type.substr(0, 40), where, "they should be unsigned short");
   if (field("endian") != "little") throw Error("the weights are not little-endian", where, kMakeAnew);
@@ -216,27 +258,17 @@ SkinWeights parse_weights(const std::string& bytes, const std::string& where, co
     throw Error("the weights belong to another volume", where, "give the volume they were made for, or " + std::string(kMakeAnew));
   const std::vector<std::uint16_t> in_rig = bones_in_rig(field("limber_bones"), where, armature);
 
-  const std::size_t size = static_cast<std::size_t>(tissue.size()) * sizeof(Influence);
-  std::string unpacked;
-  const char* data = bytes.data() + header.data_begin;
-  if (encoding == "gzip" || encoding == "gz") {
-    unpacked = inflated(bytes, header.data_begin, size, where);
-    data = unpacked.data();
-  } else if (encoding != "raw") {
-    throw Error("the weights are encoded as " + encoding.substr(0, 40), where, "save them raw or gzip");
-  } else if (bytes.size() - header.data_begin != size) {
-    throw Error("the weights hold " + std::to_string(bytes.size() - header.data_begin) + " bytes instead of " + std::to_string(size), where, kMakeAnew);
+  WeightData data(in, field("encoding"), where);
+  std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
+  chunks.reserve(tissue.bricks().size());
+  for (const auto& brick : tissue.bricks()) {
+    auto chunk = std::make_shared<SkinWeights::Chunk>(brick.count());
+    data.read(chunk->data(), chunk->size() * sizeof(Influence));
+    for (Influence& influence : *chunk) accept(influence, in_rig, where);
+    chunks.push_back(std::move(chunk));
   }
-
-  SkinWeights weights(names_of(armature), tissue);
-  for (std::int64_t b = 0; b < std::ssize(tissue.bricks()); ++b) {
-    const auto& brick = tissue.bricks()[b];
-    SkinWeights::Chunk chunk(brick.count());
-    std::memcpy(chunk.data(), data + brick.first * sizeof(Influence), chunk.size() * sizeof(Influence));
-    for (Influence& influence : chunk) accept(influence, in_rig, where);
-    weights.set_chunk(b, std::move(chunk));
-  }
-  return weights;
+  data.expect_end();
+  return {names_of(armature), std::move(chunks)};
 }
 
 WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature) {
@@ -244,8 +276,10 @@ WeightsFile read_weights(const Path& path, const LabelVolume& volume, const Tiss
   if (fs::is_directory(path, error)) return read_bender_series(path, volume, tissue, armature);
   const std::string extension = path.extension().string();
   if (extension == ".mha" || extension == ".mhd") return read_bender_map(path, volume, tissue, armature);
-  constexpr std::uint64_t kHeaderLimit = 1 << 20;
-  return {parse_weights(read_file(path, kHeaderLimit + tissue.size() * sizeof(Influence)), path.string(), volume, tissue, armature), {}};
+  if (!fs::is_regular_file(path, error)) throw Error("there is no such file of weights", path.string(), "name a file on disk");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
+  return {parse_weights(in, path.string(), volume, tissue, armature), {}};
 }
 
 void check_weights_writable(const Path& path) {

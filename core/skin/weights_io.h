@@ -9,6 +9,8 @@
 // goes to the rig bone nearest to it, which is said in `warnings`.
 #pragma once
 
+#include <istream>
+
 #include "core/base/file.h"
 #include "core/rig/armature.h"
 #include "core/skin/skin_weights.h"
@@ -29,8 +31,8 @@ void write_weights(const SkinWeights& weights, const LabelVolume& volume, const 
 void write_bender_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
                           const Path& folder);
 
-// The bytes of a W.nrrd; `where` names the file in messages.
-SkinWeights parse_weights(const std::string& bytes, const std::string& where, const LabelVolume& volume,
-                          const TissueVoxels& tissue, const Armature& armature);
+// Of a W.nrrd; `where` names the file in messages.
+SkinWeights parse_weights(std::istream& in, const std::string& where, const LabelVolume& volume, const TissueVoxels& tissue,
+                          const Armature& armature);
 
 }  // namespace limber

@@ -2,6 +2,7 @@
 // Whatever a W.nrrd holds: it is read into weights that sum to one over bones of the rig, or refused with Error.
 #include <cstdint>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 
 #include "core/base/error.h"
@@ -31,8 +32,8 @@ struct Bar {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Bar bar;
   try {
-    const limber::SkinWeights weights =
-        limber::parse_weights(std::string(reinterpret_cast<const char*>(data), size), "f", bar.volume, bar.tissue, bar.armature);
+    std::istringstream in(std::string(reinterpret_cast<const char*>(data), size));
+    const limber::SkinWeights weights = limber::parse_weights(in, "f", bar.volume, bar.tissue, bar.armature);
     if (weights.size() != bar.tissue.size()) std::abort();
     for (std::int64_t c = 0; c < weights.chunk_count(); ++c)
       for (const limber::Influence& influence : weights.chunk(c)) {

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include "core/base/deflate.h"
 #include "core/base/error.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/rig/armature_io.h"
@@ -29,6 +31,10 @@ struct Made {
   TissueVoxels tissue{body.volume};
   SkinWeights weights = diffuse_heat(body.volume, body.tissues, body.armature);
 };
+SkinWeights parse(const std::string& bytes, const LabelVolume& volume, const Armature& armature) {
+  std::istringstream in(bytes);
+  return parse_weights(in, "w.nrrd", volume, TissueVoxels(volume), armature);
+}
 std::string bytes_of(const Made& made, const Path& folder) {
   write_weights(made.weights, made.body.volume, made.tissue, folder / "w.nrrd");
   return read_file(folder / "w.nrrd");
@@ -48,11 +54,30 @@ TEST_CASE("weights io: what is written is read, also when the rig lists its bone
   CHECK(other.chunk(0)[0].of(1) == made.weights.chunk(0)[0].of(0));
 }
 
+TEST_CASE("weights io: packed weights are read, and refused when a byte is wrong or missing") {
+  const Folder folder;
+  const Made made;
+  const std::string raw = bytes_of(made, folder.path);
+  const std::size_t begin = raw.find("\n\n") + 2;
+  std::string header = raw.substr(0, begin), packed;
+  header.replace(header.find("raw"), 3, "gzip");
+  Deflater deflater(Deflater::Wrap::Gzip, [&](const void* bytes, std::size_t size) { packed.append(static_cast<const char*>(bytes), size); });
+  deflater.write(raw.data() + begin, raw.size() - begin);
+  deflater.end();
+
+  auto parse = [&](const std::string& data) { return ::parse(header + data, made.body.volume, made.body.armature); };
+  CHECK(parse(packed) == made.weights);
+  CHECK_THROWS_AS(parse(packed.substr(0, packed.size() - 1)), Error);
+  std::string wrong = packed;
+  wrong[wrong.size() - 6] ^= 1;  // of the checksum
+  CHECK_THROWS_AS(parse(wrong), Error);
+}
+
 TEST_CASE("weights io: damaged weights and weights of another volume or rig are refused") {
   const Folder folder;
   const Made made;
   const std::string whole = bytes_of(made, folder.path);
-  auto parse = [&](const std::string& bytes) { return parse_weights(bytes, "w.nrrd", made.body.volume, made.tissue, made.body.armature); };
+  auto parse = [&](const std::string& bytes) { return ::parse(bytes, made.body.volume, made.body.armature); };
   CHECK(parse(whole) == made.weights);
   CHECK_THROWS_AS(parse(whole.substr(0, whole.size() - 1)), Error);
   CHECK_THROWS_AS(parse(whole + "x"), Error);
@@ -67,10 +92,10 @@ TEST_CASE("weights io: damaged weights and weights of another volume or rig are 
 
   LabelVolume less = made.body.volume;
   less.at({2, 2, 2}) = 0;
-  CHECK_THROWS_WITH_AS(parse_weights(whole, "w.nrrd", less, TissueVoxels(less), made.body.armature), doctest::Contains("another volume"), Error);
+  CHECK_THROWS_WITH_AS(::parse(whole, less, made.body.armature), doctest::Contains("another volume"), Error);
   Armature renamed = made.body.armature;
   renamed.bones[1].name = "Tail";
-  CHECK_THROWS_WITH_AS(parse_weights(whole, "w.nrrd", made.body.volume, made.tissue, renamed), doctest::Contains("Lower"), Error);
+  CHECK_THROWS_WITH_AS(::parse(whole, made.body.volume, renamed), doctest::Contains("Lower"), Error);
 }
 
 TEST_CASE("weights io: Bender's series of weight_NN.mha is written and read again") {
