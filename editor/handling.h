@@ -18,7 +18,7 @@ namespace limber::editor {
 enum class Space { Global, Local, Parent, View };
 const char* name_of(Space space);  // "Global"
 
-enum class Snap { Steps, Joint, BoneMiddle };
+enum class Snap { Steps, Voxel, Joint, BoneMiddle };
 
 struct Handling {
   enum class Part { Whole, Head, Tail };

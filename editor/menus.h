@@ -14,7 +14,7 @@ struct Menu {
   std::vector<std::string> entries;
 };
 std::vector<Menu> menus();
-// A menu that opens at the pointer: "context" (what fits that view), "Views", "Display",
+// A menu that opens at the pointer: "context" (what fits that view), "Views", "Display", "Snap",
 // "Workspaces", and of rows of the outliner "Volume", "Tissue", "Armature", "Result".
 Menu pointer_menu(const std::string& name, ViewId view);
 

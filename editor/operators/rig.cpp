@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Edits of the rig at rest.
+#include "core/base/error.h"
 #include "core/rig/mirror.h"
 #include "core/rig/motion_range.h"
 #include "editor/form.h"
@@ -8,6 +9,7 @@
 #include "editor/operators/polls.h"
 #include "editor/rigging.h"
 #include "editor/tools/rig_tools.h"
+#include "editor/tools/snapping.h"
 
 namespace limber::editor {
 
@@ -136,6 +138,51 @@ Operator edit_operator(const char* id, const char* label, const char* icon, cons
   return {id, label, icon, "Bone", sentence, [verb, change](Editor& e) { edit(e, verb, change); }, needs_rig_bone};
 }
 
+// The chosen joint, or both ends of every chosen bone, each to where `to` takes it.
+void put_joints(Editor& editor, const char* verb, const std::function<std::optional<glm::dvec3>(const Bone&, const glm::dvec3&)>& to) {
+  const std::shared_ptr<const Armature> rig = editor.document().armature;
+  const std::vector<int> bones = bones_chosen_last(editor);
+  Armature next = *rig;
+  bool any = false;
+  for (const BoneEnd& end : chosen_change(editor, RigChange::Kind::Move).ends)
+    if (const auto place = to(rig->bones[end.bone], place_of(*rig, end))) {
+      next = with_moved_ends(next, {end}, [&](const glm::dvec3&) { return *place; });
+      any = true;
+    }
+  if (!any) throw Error("no bone tissue lies there", naming_chosen(editor, "joints of"), "move the joint into a bone first");
+  commit_rig(editor, naming_chosen(editor, verb), mirrored_too(editor, std::move(next)), bones);
+}
+
+void joints_to_bone(Editor& editor) {
+  put_joints(editor, "To bone middle:", [&](const Bone& bone, const glm::dvec3& place) {
+    const glm::dmat3 axes = rest_axes(bone);
+    return middle_of_bone(editor.document(), place, axes[0], axes[2]);
+  });
+}
+
+void joints_to_voxels(Editor& editor) {
+  put_joints(editor, "To voxel:", [&](const Bone&, const glm::dvec3& place) { return nearest_voxel(editor.document(), place); });
+}
+
+const glm::dvec3& chosen_joint(const Editor& editor) { return place_of(*editor.document().armature, {*editor.selection.bone, editor.handling->part == Handling::Part::Tail}); }
+
+// A whole bone keeps its length and direction.
+void joint_to_cross_hair(Editor& editor) {
+  const glm::dvec3 by = editor.views->cross_hair - chosen_joint(editor);
+  const RigChange change = chosen_change(editor, RigChange::Kind::Move);
+  commit_rig(editor, naming_chosen(editor, "To cross-hair:"), mirrored_too(editor, with_moved_ends(change.start, change.ends, [&](const glm::dvec3& p) { return p + by; })), change.chosen);
+}
+
+void cross_hair_to_joint(Editor& editor) {
+  const Box box = world_box(editor.document());
+  editor.views->cross_hair = glm::clamp(chosen_joint(editor), box.low, box.high);
+}
+
+std::string needs_joint_in_volume(const Editor& editor) {
+  const std::string why = needs_rig_bone(editor);
+  return why.empty() ? needs_volume(editor) : why;
+}
+
 Operator snap_operator(const char* id, const char* label, const char* sentence, Snap snap) {
   return {id, label, icon::kSnap, "Bone", sentence, [snap](Editor& e) { e.handling->snap = snap; }, nullptr, [snap](const Editor& e) { return e.handling->snap == snap; }};
 }
@@ -164,12 +211,18 @@ std::vector<Operator> rig_operators() {
       {"rig.recalculate_roll", "Recalculate roll", "", "Bone", "The chosen bones' own z axes look forward.",
        [](Editor& e) { edit(e, "Recalculate roll of", [](const Armature& rig, const std::vector<int>& bones) { return with_z_towards(rig, bones, {0, -1, 0}); }); }, needs_rig_bone},
       {"rig.motion_range", "Range of motion...", "", "Bone", "Limits that are usual for a joint, by its name or as chosen.", ask_motion_range, needs_rig_bone},
+      {"rig.snap_pie", "Snap menu", icon::kSnap, "Bone", "Lists what joints snap to, at the pointer.", [](Editor& e) { e.open_popup = "Snap"; }, needs_rig_workspace},
+      {"rig.joints_to_bone", "Joint to bone middle", "", "Bone", "The chosen joints go to the middle of the bone tissue around them, across their bone.", joints_to_bone, needs_joint_in_volume},
+      {"rig.joints_to_voxels", "Joint to voxel", "", "Bone", "The chosen joints go to the centres of the voxels nearest to them.", joints_to_voxels, needs_joint_in_volume},
+      {"rig.joint_to_cross_hair", "Joint to cross-hair", icon::kCrossHair, "Bone", "The chosen joint or bones go to where the slices meet.", joint_to_cross_hair, needs_joint_in_volume},
+      {"rig.cross_hair_to_joint", "Cross-hair to joint", icon::kCrossHair, "Bone", "The slices go through the chosen joint.", cross_hair_to_joint, needs_joint_in_volume},
       {"rig.next_leaving", "Next bone outside tissue", "", "Bone", "Goes to the next bone that leaves the tissue.", show_next_leaving, needs_leaving},
       {"view.rig_check", "Where the rig leaves tissue", "", "View", "Marks bones and joints outside of tissue in the Rig workspace.", [](Editor& e) { e.handling->rig_check_marks = !e.handling->rig_check_marks; }, nullptr,
        [](const Editor& e) { return e.handling->rig_check_marks; }},
       {"rig.snap", "Snap", icon::kSnap, "Bone", "Transforms snap without Ctrl, and with Ctrl they do not.", [](Editor& e) { e.handling->snapping = !e.handling->snapping; }, nullptr,
        [](const Editor& e) { return e.handling->snapping; }},
       snap_operator("snap.steps", "Snap to steps", "Of 5 mm, 5 degrees or a tenth; with Shift finer.", Snap::Steps),
+      snap_operator("snap.voxel", "Snap to voxels", "A moved joint goes to the centre of the nearest voxel.", Snap::Voxel),
       snap_operator("snap.joint", "Snap to joints", "A moved joint goes where another one is.", Snap::Joint),
       snap_operator("snap.bone_middle", "Bone middle", "A moved joint goes to the middle of the bone tissue under the pointer.", Snap::BoneMiddle),
   };

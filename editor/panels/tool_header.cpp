@@ -143,7 +143,7 @@ void draw_tool_header(Editor& editor) {
     header.line();
   }
   if (editor.workspace == Workspace::Rig && editor.document().armature) {
-    if (header.fits(140, {"snap.steps", "snap.joint", "snap.bone_middle"})) header.choice("Snap", {"snap.steps", "snap.joint", "snap.bone_middle"});
+    if (header.fits(140, {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle"})) header.choice("Snap", {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle"});
     if (header.fits(editor.layout.short_labels ? 36 : 110, {"edit.x_mirror"})) header.toggle("edit.x_mirror");
     if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"})) header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
     header.line();

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "editor/rigging.h"
-#include "editor/tissues.h"
 #include "editor/tools/angle_drag.h"
+#include "editor/tools/snapping.h"
 
 namespace limber::editor {
 
@@ -15,11 +15,6 @@ namespace {
 constexpr double kSnapMillimetres = 5, kSnapFineMillimetres = 1, kSnapDegrees = 5, kSnapFine = 1, kSnapScale = 0.1, kSnapScaleFine = 0.01;
 constexpr double kSnapPixels = 14;  // at scale 1: so near the pointer a joint is snapped to
 constexpr double kLeastScale = 1e-3;
-
-bool is_bone(const Document& document, Label label) {
-  const Tissue* tissue = label && document.tissues ? document.tissues->find(label) : nullptr;
-  return tissue && (tissue->kind == TissueKind::CorticalBone || tissue->kind == TissueKind::CancellousBone || tissue->kind == TissueKind::Marrow || tissue->kind == TissueKind::Bone);
-}
 
 class RigTool final : public TransformTool {
  public:
@@ -86,7 +81,7 @@ class RigTool final : public TransformTool {
     for (int bone = 0; bone < std::ssize(change_.start.bones); ++bone)
       for (const bool tail : {false, true}) {
         const glm::dvec3 place = place_of(change_.start, {bone, tail});
-        const auto pixel = view_.pixel_of(place);
+        const auto pixel = view_.shows(place) ? view_.pixel_of(place) : std::nullopt;
         if (!pixel || is_moved(bone, tail) || glm::distance(*pixel, pointer_) > nearest) continue;
         nearest = glm::distance(*pixel, pointer_);
         found = place;
@@ -94,20 +89,23 @@ class RigTool final : public TransformTool {
     return found;
   }
 
+  // A place held by the lock.
+  glm::dvec3 held(const glm::dvec3& place) const {
+    const glm::dvec3 axis = lock_axis();
+    if (axis == glm::dvec3(0)) return place;
+    const double along = glm::dot(place - pivot_, axis);
+    return lock_.plane ? place - along * axis : pivot_ + along * axis;
+  }
+
   glm::dvec3 moved_to(const Editor& editor) {
     snapped_to_.clear();
     const Snap snap = editor.handling->snap;
-    if (snap != Snap::Steps && editor.input.down(Key::Ctrl) != editor.handling->snapping && !number_.typed()) {
-      const auto place = snap == Snap::Joint ? joint_below(editor) : middle_of_bone(editor, view_, pointer_);
-      if (place) {
-        snapped_to_ = snap == Snap::Joint ? "joint" : "middle of bone tissue";
-        const glm::dvec3 axis = lock_axis();
-        if (axis == glm::dvec3(0)) return *place;
-        const double along = glm::dot(*place - pivot_, axis);
-        return lock_.plane ? *place - along * axis : pivot_ + along * axis;
-      }
-    }
-    return dragged(editor, pivot_, kSnapMillimetres, kSnapFineMillimetres);
+    if (snap == Snap::Steps || editor.input.down(Key::Ctrl) == editor.handling->snapping || number_.typed()) return dragged(editor, pivot_, kSnapMillimetres, kSnapFineMillimetres);
+    const glm::dvec3 free = dragged(editor, pivot_, 0, 0);
+    const auto place = snap == Snap::Joint ? joint_below(editor) : snap == Snap::Voxel ? nearest_voxel(editor.document(), free) : middle_of_bone(editor.document(), view_, pointer_);
+    if (!place) return free;
+    snapped_to_ = snap == Snap::Joint ? "joint" : snap == Snap::Voxel ? "voxel" : "middle of bone tissue";
+    return held(*place);
   }
 
   Armature changed(Editor& editor) {
@@ -190,41 +188,6 @@ RigChange extrusion(const Editor& editor) {
   const BoneEnd from{*editor.selection.bone, editor.handling->part != Handling::Part::Head};
   const int added = static_cast<int>(armature->bones.size());
   return {RigChange::Kind::Move, "Extrude " + armature->bones[from.bone].name, extruded(*armature, from, place_of(*armature, from)), {{added, true}}, {added}};
-}
-
-std::optional<glm::dvec3> middle_of_bone(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
-  const std::shared_ptr<const LabelVolume> volume = editor.document().volume;
-  if (!volume) return std::nullopt;
-  const Document& document = editor.document();
-  const AffineTransform voxel = voxel_from_world(volume->grid);
-  const double step = std::min({volume->grid.spacing.x, volume->grid.spacing.y, volume->grid.spacing.z}) / 2;
-  const double reach = glm::length(volume->grid.spacing * glm::dvec3(volume->grid.size));
-  const auto bone_at = [&](const glm::dvec3& point) { return is_bone(document, volume->at_or_air(glm::ivec3(glm::round(voxel * point)))); };
-  // The middle of the run of bone through a point, along a direction.
-  const auto middle_of_run = [&](const glm::dvec3& point, const glm::dvec3& direction) {
-    double low = 0, high = 0;
-    while (low > -reach && bone_at(point + direction * (low - step))) low -= step;
-    while (high < reach && bone_at(point + direction * (high + step))) high += step;
-    return point + direction * ((low + high) / 2);
-  };
-  if (view.place.id != ViewId::Body) {
-    glm::dvec3 point = view.ray(pixel).origin;
-    if (!bone_at(point)) return std::nullopt;
-    for (int i = 0; i < 4; ++i) point = middle_of_run(middle_of_run(point, view.right), view.up);
-    return point;
-  }
-  const render::Ray sight = view.ray(pixel);
-  const glm::dvec3 middle = world_from_voxel(volume->grid) * ((glm::dvec3(volume->grid.size) - 1.0) * 0.5);
-  const double depth = glm::dot(middle - sight.origin, sight.direction);
-  for (double t = std::max(0.0, depth - reach); t < depth + reach; t += step)
-    if (bone_at(sight.origin + t * sight.direction)) {
-      // From the first hit through to the other side; then across, so that the pointer need not be quite in the middle.
-      glm::dvec3 point = middle_of_run(sight.origin + t * sight.direction, sight.direction);
-      if (!bone_at(point)) return point;
-      for (int i = 0; i < 2; ++i) point = middle_of_run(middle_of_run(point, view.right), view.up);
-      return bone_at(point) ? middle_of_run(point, sight.direction) : point;
-    }
-  return std::nullopt;
 }
 
 }  // namespace limber::editor

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Moving, turning and scaling joints and bones of the rig at rest, as in Blender's edit mode, in the 3D view and in slices.
-// Ends that meet move together. Ctrl snaps: to steps, to another joint, or to the middle of the bone tissue below.
+// Ends that meet move together. Ctrl snaps: to steps, to voxels, to another joint, or to the middle of the bone tissue below.
 #pragma once
 
 #include "core/rig/edit_armature.h"
@@ -26,9 +26,5 @@ RigChange extrusion(const Editor& editor);
 // The chosen bones, the active one last; and an edit of them by name.
 std::vector<int> bones_chosen_last(const Editor& editor);
 std::string naming_chosen(const Editor& editor, const std::string& verb);
-
-// The middle of the bone tissue under a pixel: along the line of sight in the 3D view, in its plane in a slice. Nothing
-// where there is none.
-std::optional<glm::dvec3> middle_of_bone(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel);
 
 }  // namespace limber::editor

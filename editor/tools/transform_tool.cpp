@@ -110,8 +110,8 @@ bool TransformTool::drop(Editor& editor) {
 }
 
 double TransformTool::snapped(const Editor& editor, double value, double step, double fine) const {
-  if (editor.input.down(Key::Ctrl) == editor.handling->snapping) return value;
   const double grid = editor.input.down(Key::Shift) ? fine : step;
+  if (grid <= 0 || editor.input.down(Key::Ctrl) == editor.handling->snapping) return value;
   return std::round(value / grid) * grid;
 }
 

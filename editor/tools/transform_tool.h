@@ -52,7 +52,7 @@ class TransformTool : public Modal {
   glm::dvec3 lock_axis() const;
   std::string lock_text(const char* word) const;  // " about local X"
   std::vector<KeyHint> shared_hints() const;
-  // Where a point goes that the pointer takes along from `from`, held by the lock; `step`, `fine` in mm.
+  // Where a point goes that the pointer takes along from `from`, held by the lock; `step`, `fine` in mm, 0 for none.
   glm::dvec3 dragged(const Editor& editor, const glm::dvec3& from, double step, double fine) const;
 
   SeenFrom view_;

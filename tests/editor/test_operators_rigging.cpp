@@ -41,6 +41,11 @@ const Bone& named(const Armature& rig, const std::string& name) {
   return bone ? rig.bones[*bone] : none;
 }
 
+void tail_of_upper(Stage& s) {
+  anew({0}, 0)(s);
+  s.editor().handling->part = Handling::Part::Tail;
+}
+
 Effect snaps(Snap snap) {
   return [=](Stage& s, const Seen&) { return s.editor().handling->snap == snap; };
 }
@@ -89,6 +94,16 @@ std::vector<Proof> proofs_of_rigging() {
       {"view.rig_check", "click \"View/Overlays/Where the rig leaves tissue\"", [](Stage& s, const Seen&) { return !s.editor().handling->rig_check_marks; }},
       {"rig.delete", "key X", edited("Delete Fore", [](const Armature& r) { return r.bones.size() == 1; }), Shows::InBody, "", anew({1}, 1)},
       {"rig.snap", "key Shift+Tab", [](Stage& s, const Seen&) { return s.editor().handling->snapping; }},
+      {"rig.snap_pie", "key Shift+S", [](Stage& s, const Seen&) { return s.editor().shown_popup == "Snap"; }, Shows::Nothing, "move \"3D view/view\""},
+      {"snap.voxel", "move \"3D view/view\"\n key Shift+S\n wait-idle\n click \"Snap/Snap to voxels\"", snaps(Snap::Voxel)},
+      {"rig.joints_to_bone", "key Shift+S\n wait-idle\n click \"Snap/Joint to bone middle\"", edited("To bone middle: Upper", [](const Armature& r) { return glm::length(glm::dvec2(r.bones[0].tail)) < 3 && r.bones[1].head == r.bones[0].tail; }), Shows::InBody, "key G\n key X\n key 6\n key Return", tail_of_upper},
+      {"rig.joints_to_voxels", "key Shift+S\n wait-idle\n click \"Snap/Joint to voxel\"", edited("To voxel: Upper", [](const Armature& r) { return glm::distance(r.bones[0].tail, {6, 2, 1}) < 1e-9; }), Shows::InBody, "key G\n key X\n key 6\n key Return", tail_of_upper},
+      {"rig.joint_to_cross_hair", "key Shift+S\n wait-idle\n click \"Snap/Joint to cross-hair\"", edited("To cross-hair: Upper", [](const Armature& r) { return r.bones[0].tail == glm::dvec3(10, 2, -20); }), Shows::InBody, "",
+       [](Stage& s) {
+         tail_of_upper(s);
+         s.editor().views->cross_hair = {10, 2, -20};
+       }},
+      {"rig.cross_hair_to_joint", "key Shift+S\n wait-idle\n click \"Snap/Cross-hair to joint\"", [](Stage& s, const Seen&) { return s.editor().views->cross_hair == s.document().armature->bones[0].tail; }, Shows::Nothing, "", tail_of_upper},
       {"snap.joint", "click \"Edit/Snapping/Snap to joints\"", snaps(Snap::Joint)},
       {"snap.bone_middle", "click \"Edit/Snapping/Bone middle\"", snaps(Snap::BoneMiddle)},
       {"snap.steps", "click \"Edit/Snapping/Snap to steps\"", snaps(Snap::Steps)},

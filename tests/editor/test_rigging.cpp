@@ -4,7 +4,7 @@
 #include "editor/handling.h"
 #include "editor/rigging.h"
 #include "editor/seen_from.h"
-#include "editor/tools/rig_tools.h"
+#include "editor/tools/snapping.h"
 #include "tests/editor/small_limb.h"
 
 using namespace limber;
@@ -39,7 +39,10 @@ struct RiggingEditor : LimbEditor {
     host->events.push(ButtonChanged{MouseButton::Left, false});
     player.settle();
   }
-  void pointer_to(const glm::dvec2& pixel) { play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y)); }
+  void pointer_to(const glm::dvec2& pixel) {
+    const glm::dvec2 at = pixel / double(editor->look.scale);
+    play("move " + std::to_string(at.x) + " " + std::to_string(at.y));
+  }
   const Armature& rig() const { return *editor->document().armature; }
 };
 
@@ -90,10 +93,10 @@ TEST_CASE("rigging: with Ctrl a joint snaps to steps, to another joint, or to th
   // The ball's core is bone, 12 mm large about the middle of the world.
   test.editor->handling->snap = Snap::BoneMiddle;
   const SeenFrom view = test.view();
-  const auto middle = middle_of_bone(*test.editor, view, view.pixel_of({3, 0, 4}).value());
+  const auto middle = middle_of_bone(test.editor->document(), view, view.pixel_of({3, 0, 4}).value());
   REQUIRE(middle);
   CHECK(glm::length(*middle) < 5);
-  CHECK(!middle_of_bone(*test.editor, view, view.pixel_of({30, 0, 20}).value()));
+  CHECK(!middle_of_bone(test.editor->document(), view, view.pixel_of({30, 0, 20}).value()));
 }
 
 TEST_CASE("rigging: pose, weights and names follow an edit, and come back with undo") {
@@ -173,4 +176,38 @@ TEST_CASE("rigging: the fit check follows a joint that is dragged out of the tis
     test.play("key Ctrl+Z\n wait-idle");
     CHECK(rig_check(*test.editor)->bones.empty());
   }
+}
+
+TEST_CASE("rigging: a joint that is dragged with Ctrl snaps to a voxel, a joint or the middle of bone, in 3D and in a slice") {
+  for (const double scale : {1.0, 2.0})
+    for (const ViewId id : {ViewId::Body, ViewId::Coronal}) {
+      RiggingEditor test(scale > 1 ? glm::ivec2(1800, 1200) : glm::ivec2(900, 600), scale);
+      INFO("scale ", scale, ", view ", name_of(id));
+      test.editor->tool = Tool::Move;
+      test.editor->views->cross_hair = {0, 0, 0};
+      if (id != ViewId::Body) test.play("click view.four\nwait-idle");
+      const auto snapped = [&](Snap snap, const glm::dvec3& to) {
+        test.editor->handling->snap = snap;
+        test.editor->selection = {};
+        test.pointer_to(test.view(id).pixel_of({0, 0, -36}).value());
+        test.host->events.push(ButtonChanged{MouseButton::Left, true});
+        test.player.settle();
+        test.play("key-down Ctrl");
+        test.pointer_to(test.view(id).pixel_of({5, 0, -30}).value());
+        test.pointer_to(test.view(id).pixel_of(to).value());
+        test.host->events.push(ButtonChanged{MouseButton::Left, false});
+        test.player.settle();
+        test.play("key-up Ctrl");
+        const glm::dvec3 place = test.rig().bones[1].tail;
+        test.play("key Ctrl+Z\nwait-idle");
+        CHECK(test.rig() == *limber::test::small_limb().armature);
+        return place;
+      };
+      const AffineTransform voxel = voxel_from_world(test.editor->document().volume->grid);
+      const glm::dvec3 at = voxel * snapped(Snap::Voxel, {13.3, 0, -21.2});
+      CHECK(glm::length(at - glm::round(at)) < 1e-9);
+      CHECK(glm::distance(at, voxel * glm::dvec3(13.3, 0, -21.2)) < 1);
+      CHECK(glm::distance(snapped(Snap::Joint, {1, 0, 35}), {0, 0, 36}) < 1e-9);
+      CHECK(glm::length(snapped(Snap::BoneMiddle, {4, 0, -4})) < 5);
+    }
 }
