@@ -35,6 +35,12 @@ struct Handling {
   KnownRigCheck rig_check;
   bool rig_check_marks = true;  // over the views
 
+  struct {             // the bone of the outliner whose row is pressed
+    std::string bone;  // "" for none
+    glm::vec2 begin{0};
+    bool moved = false;
+  } row_drag;
+
   std::string library_pose;  // the chosen pose of the library
   struct {                   // the one whose card is pressed, and where that began
     std::string pose;

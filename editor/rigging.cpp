@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/rigging.h"
 
+#include <numeric>
+
 #include "core/skin/carry_weights.h"
 #include "editor/handling.h"
 #include "editor/project.h"
@@ -78,17 +80,34 @@ void commit_rig(Editor& editor, const std::string& label, Armature next, const s
 
 void rename_bone(Editor& editor, int bone, const std::string& name) {
   const std::shared_ptr<const Armature> before = editor.document().armature;
-  Armature next = renamed(*before, bone, name);
+  commit_names(editor, "Rename " + before->bones[bone].name, renamed(*before, bone, name), {bone});
+}
+
+void commit_names(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
   std::vector<int> from(before->bones.size());
-  for (int b = 0; b < std::ssize(from); ++b) from[b] = b;
-  const std::string old = before->bones[bone].name, given = next.bones[bone].name;
-  commit_followed(editor, "Rename " + old, std::move(next), from, {bone});
+  std::iota(from.begin(), from.end(), 0);
+  const std::vector<std::string> given = names_of(next);
+  commit_followed(editor, label, std::move(next), from, chosen);
   Handling& handling = *editor.handling;
-  if (handling.pins.erase(old) > 0) handling.pins.insert(given);
-  if (auto pole = handling.poles.extract(old)) {
-    pole.key() = given;
-    handling.poles.insert(std::move(pole));
+  std::set<std::string> pins;
+  std::map<std::string, glm::dvec3> poles;
+  for (std::size_t bone = 0; bone < from.size(); ++bone) {
+    const std::string& old = before->bones[bone].name;
+    if (handling.pins.contains(old)) pins.insert(given[bone]);
+    if (const auto pole = handling.poles.find(old); pole != handling.poles.end()) poles[given[bone]] = pole->second;
   }
+  handling.pins = std::move(pins);
+  handling.poles = std::move(poles);
+}
+
+void hang_on(Editor& editor, const std::vector<int>& bones, int parent) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  Armature next = parent < 0 ? unparented(*before, bones) : parented(*before, bones, parent, Join::KeepOffset);
+  std::vector<int> chosen;
+  for (const int bone : bones) chosen.push_back(next.find(before->bones[bone].name).value());
+  const std::string what = bones.size() == 1 ? before->bones[bones[0]].name : std::to_string(bones.size()) + " bones";
+  commit_rig(editor, parent < 0 ? "Clear parent of " + what : "Parent " + what + " to " + before->bones[parent].name, std::move(next), chosen);
 }
 
 void drop_missing_bones(Editor& editor) {

@@ -23,8 +23,11 @@ Armature mirrored_too(const Editor& editor, Armature next);
 // One edit; none where nothing changed.
 //   chosen  bones of the new rig, the last of them active
 void commit_rig(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen);
-// The same for a bone that only changes its name.
+// The same for bones that only change their names.
 void rename_bone(Editor& editor, int bone, const std::string& name);
+void commit_names(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen);
+// Bones hang on another one, where they are; on nothing where that is -1.
+void hang_on(Editor& editor, const std::vector<int>& bones, int parent);
 
 // Bones that are still there: after an undo the choice may speak of others.
 void drop_missing_bones(Editor& editor);

@@ -198,6 +198,24 @@ Armature renamed(const Armature& armature, int bone, const std::string& name) {
   return next;
 }
 
+Armature with_names_changed(const Armature& armature, const std::vector<int>& bones, const NameChange& change) {
+  Armature next = armature;
+  for (const int bone : bones) {
+    std::string& name = next.bones.at(bone).name;
+    for (std::size_t at = 0; !change.find.empty() && (at = name.find(change.find, at)) != std::string::npos; at += change.replace.size()) name.replace(at, change.find.size(), change.replace);
+    if (change.other_side) name = mirrored_name(name).value_or(name);
+    name = change.prefix + name + change.suffix;
+  }
+  std::map<std::string, int> owners;
+  for (int bone = 0; bone < std::ssize(next.bones); ++bone) {
+    const std::string& name = next.bones[bone].name;
+    if (name.empty()) throw Error("a bone needs a name", armature.bones[bone].name, "leave a part of it, or add a prefix");
+    if (const auto [owner, free] = owners.insert({name, bone}); !free)
+      throw Error("two bones would have the name '" + name + "'", armature.bones[owner->second].name + " and " + armature.bones[bone].name, "tell them apart by a prefix or a suffix");
+  }
+  return next;
+}
+
 Armature parented(const Armature& armature, const std::vector<int>& bones, int parent, Join join) {
   std::vector<Bone> all = armature.bones;
   for (const int bone : bones) {
@@ -305,6 +323,17 @@ Armature with_mirrored_changes(const Armature& before, const Armature& after) {
     to.tail = image.tail;
     to.roll = image.roll;
     to.limits = image.limits;
+  }
+  std::vector<int> others = pairs;
+  for (int bone = 0; bone < std::ssize(pairs); ++bone) {
+    const Bone& added = after.bones[bone];
+    const auto name = mirrored_name(added.name);
+    if (from[bone] >= 0 || others[bone] != bone || !name || next.find(*name)) continue;
+    Bone image = mirror_image(added, plane);
+    image.name = *name;
+    image.parent = added.parent < 0 ? -1 : others[added.parent];
+    others[bone] = static_cast<int>(next.bones.size());
+    next.bones.push_back(std::move(image));
   }
   return next;
 }

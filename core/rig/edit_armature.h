@@ -48,6 +48,15 @@ Armature duplicated(const Armature& armature, const std::vector<int>& bones);
 // Throws Error for an empty name.
 Armature renamed(const Armature& armature, int bone, const std::string& name);
 
+// What all the names of a list go through, in this order.
+struct NameChange {
+  std::string find, replace;    // every occurrence; nothing where `find` is empty
+  bool other_side = false;      // "Arm.L" becomes "Arm.R"; a name without a side stays
+  std::string prefix, suffix;
+};
+// Throws Error where a name would be empty or belong to two bones.
+Armature with_names_changed(const Armature& armature, const std::vector<int>& bones, const NameChange& change);
+
 enum class Join { Connected, KeepOffset };
 // Connected, a bone moves to the parent's tail with all that hangs on it. Throws Error where a bone would hang on itself.
 Armature parented(const Armature& armature, const std::vector<int>& bones, int parent, Join join);
@@ -62,7 +71,8 @@ Armature rolled(const Armature& armature, const std::vector<int>& bones, double 
 Armature with_z_towards(const Armature& armature, const std::vector<int>& bones, const glm::dvec3& direction);
 // To the other side of the rig, with the names of that side where they are free.
 Armature mirrored_bones(const Armature& armature, const std::vector<int>& bones);
-// What was changed from `before` to `after` happens to the bones on the other side too, where they were left alone.
+// What was changed from `before` to `after` happens to the bones on the other side too, where they were left alone; new
+// bones of one side are added on the other.
 Armature with_mirrored_changes(const Armature& before, const Armature& after);
 
 // For each bone of `after`, which one it was: the one of the same name; -1 for a new one.

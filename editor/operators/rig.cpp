@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Edits of the rig at rest.
+#include <numeric>
+
 #include "core/base/error.h"
 #include "core/rig/mirror.h"
 #include "core/rig/motion_range.h"
@@ -30,6 +32,11 @@ std::string needs_place(const Editor& editor) {
 std::string needs_two(const Editor& editor) {
   if (const std::string why = needs_rig_bone(editor); !why.empty()) return why;
   return editor.selection.bones.size() > 1 ? "" : "Choose the children first, then the parent";
+}
+
+std::string needs_rig_in_workspace(const Editor& editor) {
+  const std::string why = needs_rig_workspace(editor);
+  return !why.empty() || editor.document().armature ? why : "Import a rig first";
 }
 
 std::string needs_leaving(const Editor& editor) {
@@ -134,6 +141,39 @@ void ask_motion_range(Editor& editor) {
                                 {choice_of("Joint", "Ranges of the American Academy of Orthopaedic Surgeons.", joints)}, outcome, act}));
 }
 
+NameChange name_change(const std::vector<FormField>& fields) {
+  return {.find = fields[1].text, .replace = fields[2].text, .other_side = fields[5].chosen == 1, .prefix = fields[3].text, .suffix = fields[4].text};
+}
+
+std::vector<int> bones_to_rename(const Editor& editor, const std::vector<FormField>& fields) {
+  std::vector<int> bones(editor.document().armature->bones.size());
+  std::iota(bones.begin(), bones.end(), 0);
+  if (fields[0].chosen == 0) std::erase_if(bones, [&](int bone) { return !editor.selection.bones.contains(bone); });
+  return bones;
+}
+
+void ask_names(Editor& editor) {
+  const auto outcome = [](const Editor& e, const std::vector<FormField>& fields) {
+    const Armature& before = *e.document().armature;
+    const Armature next = with_names_changed(before, bones_to_rename(e, fields), name_change(fields));
+    int count = 0;
+    std::string first;
+    for (std::size_t bone = 0; bone < next.bones.size(); ++bone)
+      if (next.bones[bone].name != before.bones[bone].name && count++ == 0) first = before.bones[bone].name + " becomes " + next.bones[bone].name;
+    if (count == 0) throw Error("no name changes", "the names", "fill in what is to change");
+    return first + (count == 1 ? "." : ", and " + std::to_string(count - 1) + " more change.");
+  };
+  const auto act = [](Editor& e, const std::vector<FormField>& fields) {
+    const std::vector<int> bones = bones_to_rename(e, fields);
+    commit_names(e, bones.size() == 1 ? "Rename " + e.document().armature->bones[bones[0]].name : "Rename " + std::to_string(bones.size()) + " bones", with_names_changed(*e.document().armature, bones, name_change(fields)), e.selection.bone ? bones_chosen_last(e) : std::vector<int>{});
+  };
+  editor.open_dialog(make_form({"Rename bones", "Changes the names of many bones at once; pose, weights and pins follow.", "Rename",
+                                {choice_of("Bones", "Whose names change.", {"Chosen", "All"}, editor.selection.bones.empty() ? 1 : 0), text_of("Find", "What is looked for in each name.", ""),
+                                 text_of("Replace with", "What stands there instead.", ""), text_of("Prefix", "Before each name.", ""), text_of("Suffix", "Behind each name.", ""),
+                                 choice_of("Side", "Left becomes right and right left: Arm.L is Arm.R then.", {"Stays", "The other"})},
+                                outcome, act}));
+}
+
 Operator edit_operator(const char* id, const char* label, const char* icon, const char* sentence, const char* verb, Armature (*change)(const Armature&, const std::vector<int>&)) {
   return {id, label, icon, "Bone", sentence, [verb, change](Editor& e) { edit(e, verb, change); }, needs_rig_bone};
 }
@@ -211,6 +251,7 @@ std::vector<Operator> rig_operators() {
       {"rig.recalculate_roll", "Recalculate roll", "", "Bone", "The chosen bones' own z axes look forward.",
        [](Editor& e) { edit(e, "Recalculate roll of", [](const Armature& rig, const std::vector<int>& bones) { return with_z_towards(rig, bones, {0, -1, 0}); }); }, needs_rig_bone},
       {"rig.motion_range", "Range of motion...", "", "Bone", "Limits that are usual for a joint, by its name or as chosen.", ask_motion_range, needs_rig_bone},
+      {"rig.batch_rename", "Rename bones...", icon::kRename, "Bone", "Changes the names of many bones: replaces, prefixes, suffixes, sides.", ask_names, needs_rig_in_workspace},
       {"rig.snap_pie", "Snap menu", icon::kSnap, "Bone", "Lists what joints snap to, at the pointer.", [](Editor& e) { e.open_popup = "Snap"; }, needs_rig_workspace},
       {"rig.joints_to_bone", "Joint to bone middle", "", "Bone", "The chosen joints go to the middle of the bone tissue around them, across their bone.", joints_to_bone, needs_joint_in_volume},
       {"rig.joints_to_voxels", "Joint to voxel", "", "Bone", "The chosen joints go to the centres of the voxels nearest to them.", joints_to_voxels, needs_joint_in_volume},

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What the project holds, as a tree: the volume with its tissues, the bones by their parents, the results. A triangle
-// folds, an eye shows and hides, a double click or F2 renames, the right button lists what can be done. The search keeps
-// the parents of what it finds.
+// folds, an eye shows and hides, a double click or F2 renames, the right button lists what can be done. In the Rig workspace
+// a bone is dragged onto its new parent. The search keeps the parents of what it finds.
 #include <algorithm>
 
 #include <imgui_internal.h>
 
 #include "editor/fields.h"
 #include "editor/fuzzy.h"
+#include "editor/handling.h"
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
 #include "editor/prepare.h"
@@ -202,6 +203,34 @@ void draw_bone_icon(const Look& look, const Rect& rect, Colour colour) {
   ImGui::GetWindowDrawList()->AddQuadFilled({middle.x, middle.y - high}, {middle.x + wide, middle.y - high / 3}, {middle.x, middle.y + high}, {middle.x - wide, middle.y - high / 3}, colour);
 }
 
+// A row that is dragged hangs its bone, or all chosen ones with it, on the bone where it is let go; on the armature's row
+// on nothing. Escape leaves them.
+std::vector<int> dragged_bones(const Editor& editor) {
+  const auto bone = editor.document().armature->find(editor.handling->row_drag.bone);
+  if (!bone) return {};
+  const std::set<int>& chosen = editor.selection.bones;
+  return chosen.contains(*bone) ? std::vector<int>(chosen.begin(), chosen.end()) : std::vector<int>{*bone};
+}
+
+void take_drag(Editor& editor, const Row& row, const Pressed& pressed) {
+  auto& drag = editor.handling->row_drag;
+  if (row.kind != Row::Kind::Bone || editor.workspace != Workspace::Rig) return;
+  if (pressed.activated) drag = {row.name, editor.input.pointer, false};
+  if (drag.bone == row.name && pressed.held) drag.moved |= glm::distance(editor.input.pointer, drag.begin) > editor.look.px(6);
+}
+
+void draw_drag(Editor& editor, const Row& row, const Rect& rect) {
+  const auto& drag = editor.handling->row_drag;
+  if (!drag.moved || !rect.contains(editor.input.pointer) || (row.kind != Row::Kind::Bone && row.kind != Row::Kind::Armature)) return;
+  const std::vector<int> bones = dragged_bones(editor);
+  if (row.kind == Row::Kind::Bone && std::find(bones.begin(), bones.end(), row.index) != bones.end()) return;
+  const int parent = row.kind == Row::Kind::Bone ? row.index : -1;
+  outline(rect, editor.look.theme.select, 0, 2 * editor.look.line());
+  editor.touch();
+  if (editor.input.down(MouseButton::Left) || bones.empty()) return;
+  attempt(editor, "Make parent", [&](Editor& e) { hang_on(e, bones, parent); });
+}
+
 void draw_row(Editor& editor, Column& column, int index, const Row& row) {
   const Look& look = editor.look;
   Rect rect;
@@ -235,7 +264,9 @@ void draw_row(Editor& editor, Column& column, int index, const Row& row) {
   const bool faint = row.visible == false && row.kind != Row::Kind::Result;
   put_text(editor, look.fonts.regular, faint ? (row.chosen ? look.theme.text2 : look.theme.text3) : look.theme.text, words, row.name);
   put_text(editor, look.fonts.small, row.chosen ? look.theme.text2 : look.theme.text3, Rect{{end - count, rect.low.y}, {end - look.px(4), rect.high.y}}, row.count, Align::Right);
-  if (pressed.clicked) {
+  take_drag(editor, row, pressed);
+  draw_drag(editor, row, rect);
+  if (pressed.clicked && !editor.handling->row_drag.moved) {
     focus_list(editor, kList, index);
     choose(editor, row, editor.input.down(Key::Ctrl) || editor.input.down(Key::Shift));
   }
@@ -294,7 +325,10 @@ void draw_outliner(Editor& editor, Column& column) {
     draw_search(editor, column);
     const std::vector<Row> rows = Tree(editor).rows;
     take_key(editor, rows);
+    auto& drag = editor.handling->row_drag;
+    if (editor.input.down(Key::Escape)) drag = {};
     for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[i]);
+    if (!editor.input.down(MouseButton::Left)) drag = {};
     if (rows.empty() && editor.outliner.search.empty()) {
       const Rect row = column.row(30);
       put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(14), row.low.y}, row.high}, "Nothing is open");

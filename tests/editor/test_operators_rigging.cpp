@@ -92,6 +92,8 @@ std::vector<Proof> proofs_of_rigging() {
        edited("Range of motion of Fore", [](const Armature& r) { return r.bones[1].limits.type == JointLimits::Type::Hinge && std::abs(glm::degrees(r.bones[1].limits.maximum) - 150) < 1e-9; }), Shows::Nothing, "", anew({1}, 1)},
       {"rig.next_leaving", "click \"Edit/Rig/Next bone outside tissue\"", [](Stage& s, const Seen&) { return s.editor().selection.bone == 1 && s.editor().handling->part == Handling::Part::Tail; }, Shows::Nothing, "key G\n key Z\n key -\n key 3\n key 0\n key Return\n wait-idle", anew({1}, 1)},
       {"view.rig_check", "click \"View/Overlays/Where the rig leaves tissue\"", [](Stage& s, const Seen&) { return !s.editor().handling->rig_check_marks; }},
+      {"rig.batch_rename", "key Ctrl+F2\n click Bones/All\n click Find/text\n type \"er\"\n click \"Replace with/text\"\n type \"ER\"\n click Suffix/text\n type \".L\"\n wait-idle\n key Return",
+       edited("Rename 2 bones", [](const Armature& r) { return r.bones[0].name == "UppER.L" && r.bones[1].name == "Fore.L"; }), Shows::Nothing, "", anew({1}, 1)},
       {"rig.delete", "key X", edited("Delete Fore", [](const Armature& r) { return r.bones.size() == 1; }), Shows::InBody, "", anew({1}, 1)},
       {"rig.snap", "key Shift+Tab", [](Stage& s, const Seen&) { return s.editor().handling->snapping; }},
       {"rig.snap_pie", "key Shift+S", [](Stage& s, const Seen&) { return s.editor().shown_popup == "Snap"; }, Shows::Nothing, "move \"3D view/view\""},

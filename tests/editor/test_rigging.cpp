@@ -211,3 +211,60 @@ TEST_CASE("rigging: a joint that is dragged with Ctrl snaps to a voxel, a joint 
       CHECK(glm::length(snapped(Snap::BoneMiddle, {4, 0, -4})) < 5);
     }
 }
+
+namespace {
+
+// A trunk with an arm at each side.
+void give_two_arms(RiggingEditor& test) {
+  Document next = test.editor->document();
+  Armature rig;
+  rig.bones = {{"Trunk", -1, {0, 0, -30}, {0, 0, 0}, 0, {}}, {"Arm.L", 0, {4, 0, 0}, {20, 0, 4}, 0, {}}, {"Arm.R", 0, {-4, 0, 0}, {-20, 0, 4}, 0, {}}};
+  next.armature = std::make_shared<const Armature>(rig);
+  test.editor->history.commit("Arms", next);
+  test.choose(1);
+  test.play("wait-idle");
+}
+
+}  // namespace
+
+TEST_CASE("rigging: with X-mirror both sides extrude") {
+  RiggingEditor test;
+  give_two_arms(test);
+  test.editor->handling->x_mirror = true;
+  test.editor->handling->part = Handling::Part::Tail;
+  test.play("move \"3D view/view\"\n key E\n key X\n key 9");
+  CHECK(shown_rig(*test.editor)->bones.size() == 5);
+  test.play("key Return\n wait-idle");
+  REQUIRE(test.rig().bones.size() == 5);
+  CHECK(test.rig().bones[3].name == "Arm.L.001");
+  CHECK(test.rig().bones[4].name == "Arm.R.001");
+  CHECK(test.rig().bones[4].parent == 2);
+  CHECK(glm::distance(test.rig().bones[3].tail, {29, 0, 4}) < 1e-9);
+  CHECK(glm::distance(test.rig().bones[4].tail, {-29, 0, 4}) < 1e-9);
+  CHECK(test.editor->selection.bones == std::set<int>{3});
+  test.play("key Ctrl+Z");
+  CHECK(test.rig().bones.size() == 3);
+}
+
+TEST_CASE("rigging: a bone's row is dragged onto its new parent, and onto the armature to be free") {
+  for (const double scale : {1.0, 2.0}) {
+    RiggingEditor test(scale > 1 ? glm::ivec2(2480, 1500) : glm::ivec2(1240, 750), scale);
+    give_two_arms(test);
+    const auto parent_of = [&](const std::string& name) {
+      const int parent = test.rig().bones[test.rig().find(name).value()].parent;
+      return parent < 0 ? std::string() : test.rig().bones[parent].name;
+    };
+    test.play("press \"Outliner/bone Arm.L/name\"\n move \"Outliner/bone Trunk/name\"\n move \"Outliner/bone Arm.R/name\"\n release\n wait-idle\n expect edit \"Parent Arm.L to Arm.R\"");
+    CHECK(parent_of("Arm.L") == "Arm.R");
+    CHECK(parent_of("Arm.R") == "Trunk");
+    // A bone cannot hang on its own child; Escape leaves everything.
+    test.play("press \"Outliner/bone Arm.R/name\"\n move \"Outliner/bone Arm.L/name\"\n release\n wait-idle");
+    CHECK(test.fact("error") != "none");
+    test.play("key Escape\n press \"Outliner/bone Arm.L/name\"\n move \"Outliner/bone Trunk/name\"\n key Escape\n release\n wait-idle");
+    CHECK(parent_of("Arm.L") == "Arm.R");
+    test.play("press \"Outliner/bone Arm.L/name\"\n move \"Outliner/armature/name\"\n release\n wait-idle");
+    CHECK(parent_of("Arm.L").empty());
+    test.play("key Ctrl+Z\n key Ctrl+Z");
+    CHECK(parent_of("Arm.L") == "Trunk");
+  }
+}

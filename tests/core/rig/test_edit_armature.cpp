@@ -174,6 +174,11 @@ TEST_CASE("edited rigs: what is done on one side happens on the other in the mir
   const Armature own = with_moved_ends(rig, {{2, true}, {4, true}}, [](const glm::dvec3& p) { return p + glm::dvec3(5, 6, 7); });
   CHECK(with_mirrored_changes(rig, own) == own);
 
+  // What grows on one side grows on the other.
+  const Armature grown = with_mirrored_changes(rig, extruded(rig, {2, true}, {130, -10, 80}));
+  CHECK(parent_of(grown, "Fore.R.001") == "Fore.R");
+  CHECK(glm::distance(named(grown, "Fore.R.001").tail, {-130, -10, 80}) < 1e-9);
+
   const Armature swapped = mirrored_bones(rig, {1, 2, 3, 4});
   CHECK(glm::distance(named(swapped, "Arm.L").tail, named(rig, "Arm.L").tail) < 1e-9);
   CHECK(swapped.bones[1].name == "Arm.R");
@@ -219,4 +224,16 @@ TEST_CASE("edited rigs: a thousand edits by chance leave a rig that is one") {
     }
     REQUIRE_NOTHROW(check_armature(rig, "test"));
   }
+}
+
+TEST_CASE("edited rigs: many names change at once, sides swap, and no two bones get one name") {
+  Armature rig;
+  rig.bones = {{"Spine", -1, {0, 0, 0}, {0, 0, 9}, 0, {}}, {"Arm.L", 0, {1, 0, 9}, {9, 0, 9}, 0, {}}, {"Arm.R", 0, {-1, 0, 9}, {-9, 0, 9}, 0, {}}};
+  const Armature swapped = with_names_changed(rig, {0, 1, 2}, {.other_side = true});
+  CHECK(swapped.bones[0].name == "Spine");
+  CHECK(swapped.bones[1].name == "Arm.R");
+  CHECK(swapped.bones[2].name == "Arm.L");
+  CHECK(with_names_changed(rig, {1}, {.find = "A", .replace = "AA", .prefix = "x ", .suffix = "!"}).bones[1].name == "x AArm.L!");
+  CHECK_THROWS_AS(with_names_changed(rig, {1}, {.other_side = true}), Error);
+  CHECK_THROWS_AS(with_names_changed(rig, {0}, {.find = "Spine"}), Error);
 }
