@@ -6,6 +6,7 @@
 #include "editor/form.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
+#include "editor/operators/pose_neighbours.h"
 #include "editor/pose_library.h"
 #include "editor/posing.h"
 #include "editor/tools/pose_tools.h"
@@ -234,7 +235,8 @@ std::vector<Operator> pose_operators() {
       {"pose.flex", "Flex a joint...", icon::kRotate, "Pose", "Turns a bone about its hinge by an angle.", ask_flex, needs_rig},
       {"pose.clear", "Clear pose", icon::kUndo, "Pose", "Every bone goes back to rest.", clear_pose, needs_pose},
   };
-  for (Operator& op : pose_library_operators()) operators.push_back(std::move(op));
+  for (auto list : {pose_neighbour_operators, pose_library_operators})
+    for (Operator& op : list()) operators.push_back(std::move(op));
   return operators;
 }
 

@@ -50,12 +50,14 @@ class Blending final : public TransformTool {
 
   Pose pose(Editor& editor) {
     const double dragged = blend_.begin + (pointer_.x - start_.x) / (kPixels * scale_);
-    amount_ = number_.typed() ? number_.value() / 100 : std::clamp(snapped(editor, dragged, kSnap, kSnapFine), 0.0, blend_.most);
-    const double share = blend_.base + blend_.slope * amount_;
+    amount_ = number_.typed() ? number_.value() / 100 : std::clamp(snapped(editor, dragged, kSnap, kSnapFine), blend_.back ? -blend_.most : 0.0, blend_.most);
+    const bool back = blend_.back && amount_ < 0;
+    const double share = back ? -amount_ : blend_.base + blend_.slope * amount_;
+    const Pose& to = back ? *blend_.back : blend_.to;
     Pose next = before_;
     for (const int bone : bones_) {
-      next.rotation[bone] = along(blend_.from.rotation[bone], blend_.to.rotation[bone], share);
-      if (armature_->bones[bone].parent < 0) next.root_translation = glm::mix(blend_.from.root_translation, blend_.to.root_translation, share);
+      next.rotation[bone] = along(blend_.from.rotation[bone], to.rotation[bone], share);
+      if (armature_->bones[bone].parent < 0) next.root_translation = glm::mix(blend_.from.root_translation, to.root_translation, share);
     }
     return limited(editor, std::move(next), bones_);
   }

@@ -22,6 +22,7 @@ struct Blend {
   Pose from, to;
   double base = 0, slope = 1;
   double begin = 0, most = 1;  // the amount at first, and as far as the pointer takes it
+  std::optional<Pose> back = {};  // what amounts below zero lead to, instead of `to`
 };
 std::unique_ptr<TransformTool> begin_blending(Editor& editor, const Blend& blend);
 // The active bone's pole goes with the pointer, and its limb turns towards it.

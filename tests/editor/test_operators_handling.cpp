@@ -56,7 +56,7 @@ std::vector<Proof> proofs_of_handling() {
       {"pose.breakdown", "key Shift+E\n key Return", bent("Breakdown", 9), Shows::InBody},
       {"pose.blend_copied", "click \"Edit/Pose/Blend to copied pose\"\n key 5\n key 0\n key Return", bent("Blend to copied pose", 7), Shows::InBody,
        "key Alt+R\n key R\n key X\n key 5\n key Return\n key Ctrl+C\n key R\n key X\n key 4\n key Return"},
-      {"pose.blend_rest", "key Shift+Alt+E\n key 1\n key 0\n key 0\n key Return", bent("Blend to rest", 0), Shows::InBody, "", choose_fore},
+      {"pose.blend_rest", "click \"Edit/Pose/Blend to rest\"\n key 1\n key 0\n key 0\n key Return", bent("Blend to rest", 0), Shows::InBody, "", choose_fore},
   };
 }
 

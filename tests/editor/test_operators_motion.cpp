@@ -134,6 +134,9 @@ std::vector<Proof> proofs_of_motion() {
       {"motion.key_menu", "key K", [](Stage& s, const Seen&) { return s.editor().shown_popup == "Keys"; }, Shows::Nothing, "", stand_at(0)},
       {"motion.preview_range", "key P", range_is(10, 30), Shows::Nothing, "", with_chosen({10, 30})},
       {"motion.clear_range", "key Alt+P", range_is(0, 60), Shows::Nothing, "key Ctrl+Home", point_at(20)},
+      {"pose.blend_neighbour", "key Shift+Alt+E\n key 5\n key 0\n key Return", [](Stage& s, const Seen& b) { return edit_is("Blend to neighbour")(s, b) && std::abs(bend_of(pose_of(s.document())) - 25) < 1e-6; }, Shows::InBody, "move \"3D view/view\"", with_keys(20, {10, 30})},
+      {"pose.propagate", "key Alt+P", [](Stage& s, const Seen& b) { return edit_is("Propagate pose")(s, b) && std::abs(glm::degrees(glm::angle(shown_clip(s.editor())->keys.bones.at("Fore").at(30))) - 20) < 1e-6; }, Shows::Nothing, "move \"3D view/view\"", with_keys(20, {10, 30})},
+      {"pose.apply_as_rest", "key Ctrl+A", [](Stage& s, const Seen& b) { return edit_is("Apply pose as rest")(s, b) && !s.document().pose && std::abs(s.document().armature->bones[1].tail.y) > 10; }, Shows::Nothing, "", stand_at(40)},
       {"view.timeline", "key Ctrl+T", [](Stage& s, const Seen&) { return !s.editor().arrangement().timeline && s.editor().layout.bottom.empty(); }, Shows::Nothing, "", stand_at(0)},
   };
 }

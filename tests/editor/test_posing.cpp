@@ -4,6 +4,8 @@
 
 #include "core/rig/joint_limits.h"
 #include "editor/posing.h"
+#include "tests/editor/small_clip.h"
+#include "editor/timeline.h"
 #include "tests/editor/small_limb.h"
 
 using namespace limber;
@@ -170,4 +172,30 @@ TEST_CASE("posing: bones are chosen along the rig") {
   CHECK(test.editor->selection.bones == std::set<int>{0, 1});
   test.play("key Alt+A\nkey A");
   CHECK(test.editor->selection.bones.size() == 2);
+}
+
+TEST_CASE("posing: a blend goes right to the next key and left to the one before, and Escape brings the pose back") {
+  for (const double scale : {1.0, 2.0}) {
+    Preferences preferences;
+    preferences.scale = scale;
+    LimbEditor test(scale > 1 ? glm::ivec2(1800, 1200) : glm::ivec2(900, 600), preferences);
+    test.editor->history.reset(limber::test::bending_limb(), "Open limb");
+    test.play("key Ctrl+3\n wait-idle");
+    for (const int frame : {10, 30}) {
+      go_to_frame(*test.editor, frame);
+      run(*test.editor, "motion.insert_key");
+    }
+    go_to_frame(*test.editor, 20);
+    test.play("wait-idle\n move 300 300\n key Shift+Alt+E\n move 400 300\n wait-idle");
+    const auto bend = [&] { return limber::test::bend_of(shown_pose(*test.editor)); };
+    CHECK(bend() == doctest::Approx(25));  // 100 of 200 pixels: half way from 20 to 30
+    test.play("move 150 300\n wait-idle");
+    CHECK(bend() == doctest::Approx(12.5));
+    test.play("key Escape\n wait-idle");
+    CHECK(bend() == doctest::Approx(20));
+    test.play("move 300 300\n key Shift+Alt+E\n key -\n key 1\n key 0\n key 0\n key Return\n wait-idle");
+    CHECK(bend() == doctest::Approx(10));
+    test.play("key Ctrl+Z\n wait-idle");
+    CHECK(bend() == doctest::Approx(20));
+  }
 }
