@@ -15,6 +15,7 @@
 #include "editor/rigging.h"
 #include "editor/tools/pose_tools.h"
 #include "editor/tools/rig_tools.h"
+#include "editor/wipe.h"
 
 namespace limber::editor {
 
@@ -120,7 +121,7 @@ std::optional<int> joint_at(const Editor& editor, const SeenFrom& view, const gl
       nearest = glm::distance(*tail, pixel);
       found = bone;
     }
-  if (!found) found = editor.views->body.picture->pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low)));
+  if (!found) found = body_at_pointer(editor, view.place).pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low)));
   return found;
 }
 
@@ -194,7 +195,7 @@ std::optional<BonePart> bone_part_at(const Editor& editor, const SeenFrom& view,
       found = BonePart{bone, tail ? Handling::Part::Tail : Handling::Part::Head};
     }
   if (found || view.place.id != ViewId::Body) return found;
-  if (const auto bone = editor.views->body.picture->pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low)))) return BonePart{*bone, Handling::Part::Whole};
+  if (const auto bone = body_at_pointer(editor, view.place).pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low)))) return BonePart{*bone, Handling::Part::Whole};
   return std::nullopt;
 }
 

@@ -73,8 +73,8 @@ void show_fit(Editor& editor, const AutoFit& fitted) {
                   100 * fitted.joints[b].confidence, fitted.joints[b].error, 100 * fitted.check.share[b]);
     editor.messages.log.push_back({Severity::Info, line});
   }
+  for (const std::string& warning : fitted.warnings) editor.messages.warn("Look at the fit", warning);
   editor.messages.ok("Skeleton fitted", std::to_string(sure) + " of " + std::to_string(fitted.joints.size()) + " joints with confidence, " + percent(fitted.check.whole) + " of bone length in tissue", "view.console");
-  for (const std::string& warning : fitted.warnings) editor.messages.warn("Skeleton fitted", warning);
 }
 
 void ask_auto_fit(Editor& editor) {

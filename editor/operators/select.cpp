@@ -2,12 +2,14 @@
 #include <algorithm>
 
 #include "core/rig/mirror.h"
+#include "editor/dispatch.h"
 #include "editor/gizmo.h"
 #include "editor/handling.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
 #include "editor/results.h"
 #include "editor/tissues.h"
+#include "editor/wipe.h"
 
 namespace limber::editor {
 
@@ -16,7 +18,7 @@ namespace {
 std::optional<int> bone_here(const Editor& editor) {
   const Rect* place = editor.layout.place_of(ViewId::Body);
   if (!editor.document().armature || editor.views->hover.view != ViewId::Body || !place) return std::nullopt;
-  return editor.views->body.picture->pick_bone(glm::ivec2(editor.input.pointer - place->low));
+  return body_at_pointer(editor, {ViewId::Body, *place}).pick_bone(glm::ivec2(editor.input.pointer - place->low));
 }
 
 void pick(Editor& editor) {
@@ -55,7 +57,8 @@ std::vector<Label> tissues_below(const Editor& editor) {
   const Hover& hover = editor.views->hover;
   std::vector<Label> found;
   if (!hover.inside) return found;
-  const render::Scene& scene = editor.views->scene;
+  const ViewPlace* under = hovered_view(editor);
+  const render::Scene& scene = under ? scene_at_pointer(editor, *under) : editor.views->scene;
   const LabelVolume& volume = *scene.volume;
   const auto add = [&](Label label) {
     if (label != 0 && look_of(editor.document(), label).visible && std::find(found.begin(), found.end(), label) == found.end()) found.push_back(label);

@@ -10,6 +10,7 @@ namespace limber::editor {
 
 namespace {
 
+constexpr char kList[] = "console";
 constexpr Severity kSeverities[] = {Severity::Info, Severity::Ok, Severity::Warning, Severity::Error};
 constexpr const char* kNames[] = {"Notes", "Done", "Warnings", "Errors"};
 
@@ -69,13 +70,15 @@ void draw_console(Editor& editor, const Rect& rect) {
   }
   int index = 0;
   std::string shown_again;
+  if (list_key(editor, kList, static_cast<int>(lines.size())) == ListKey::Activate && !lines.empty() && lines[editor.list_focus.row]->severity == Severity::Error) shown_again = lines[editor.list_focus.row]->text;
   for (const LogLine* line : lines) {
     Rect row;
-    if (!column.list_row(row, index++, false)) continue;
+    if (!column.list_row(row, index++, false, kList)) continue;
     const auto [sign, colour] = sign_of(look.theme, line->severity);
     const Pressed pressed = press_area(editor, "line " + std::to_string(index), row);
     put_icon(look.fonts.regular, colour, Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}}, sign);
     put_text(editor, look.fonts.regular, look.theme.text, Rect{{row.low.x + look.px(36), row.low.y}, {row.high.x - look.px(10), row.high.y}}, line->text);
+    if (pressed.clicked) focus_list(editor, kList, index - 1);
     if (pressed.right_clicked) editor.host.set_clipboard(line->text);
     if (pressed.double_clicked && line->severity == Severity::Error) shown_again = line->text;
   }

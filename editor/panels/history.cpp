@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Every edit in a row, oldest first; a click goes there.
+// Every edit in a row, oldest first; a click goes there, and so do arrow keys.
 #include "editor/panels/panels.h"
 
 namespace limber::editor {
+
+namespace {
+constexpr char kList[] = "history";
+}
 
 void draw_history(Editor& editor, Column& column) {
   const Look& look = editor.look;
@@ -13,11 +17,16 @@ void draw_history(Editor& editor, Column& column) {
       put_text(editor, look.fonts.small, look.theme.text2, Rect{{rect.low.x + look.px(10), rect.low.y}, {rect.high.x - look.px(10), rect.high.y}}, note);
     }
     std::int64_t go_to = -1;
+    const ListKey key = list_key(editor, kList, static_cast<int>(history.steps().size()));
+    if (key == ListKey::Moved || key == ListKey::Activate) go_to = editor.list_focus.row;
     for (std::int64_t i = 0; i < std::ssize(history.steps()); ++i) {
       Rect rect;
       const bool current = i == history.position();
-      if (!column.list_row(rect, static_cast<int>(i), current)) continue;
-      if (press_area(editor, "step " + std::to_string(i), rect).clicked) go_to = i;
+      if (!column.list_row(rect, static_cast<int>(i), current, kList)) continue;
+      if (press_area(editor, "step " + std::to_string(i), rect).clicked) {
+        go_to = i;
+        focus_list(editor, kList, static_cast<int>(i));
+      }
       const Colour colour = current ? look.theme.text : i < history.position() ? look.theme.text2 : look.theme.text3;
       put_text(editor, current ? look.fonts.semibold : look.fonts.regular, colour, Rect{{rect.low.x + look.px(14), rect.low.y}, {rect.high.x - look.px(10), rect.high.y}},
                history.steps()[i].label);

@@ -226,7 +226,6 @@ void draw_drag(Editor& editor, const Row& row, const Rect& rect) {
   if (row.kind == Row::Kind::Bone && std::find(bones.begin(), bones.end(), row.index) != bones.end()) return;
   const int parent = row.kind == Row::Kind::Bone ? row.index : -1;
   outline(rect, editor.look.theme.select, 0, 2 * editor.look.line());
-  editor.touch();
   if (editor.input.down(MouseButton::Left) || bones.empty()) return;
   attempt(editor, "Make parent", [&](Editor& e) { hang_on(e, bones, parent); });
 }

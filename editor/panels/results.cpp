@@ -16,6 +16,7 @@ namespace limber::editor {
 
 namespace {
 
+constexpr char kList[] = "results";
 constexpr float kHead = 30, kTableHead = 26;
 constexpr float kColumns[] = {60, 84, 70};  // of time, volume and overlap
 constexpr float kState = 190, kNarrowState = 116, kNarrow = 640;
@@ -69,7 +70,7 @@ void draw_rest_row(Editor& editor, Column& column, int index) {
   const Look& look = editor.look;
   const bool shown = !shown_result(editor);
   Rect row;
-  if (!column.list_row(row, index, shown)) return;
+  if (!column.list_row(row, index, shown, kList)) return;
   const PathScope path(editor, "At rest");
   const Pressed pressed = press_area(editor, "row", row);
   const std::string side = side_of(editor, nullptr);
@@ -77,7 +78,9 @@ void draw_rest_row(Editor& editor, Column& column, int index) {
   const Colour plain = look.theme.text, second = look.theme.text2;
   put_cells(editor, row, {"At rest", "", "", "", "", side}, {plain, second, second, second, second, plain}, shown ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
   if (pressed.hovered) tooltip(editor, row, "At rest", "The volume that was opened. A click shows it; Shift and a click makes it side A of the comparison.");
-  if (pressed.clicked) choose_side(editor, "");
+  if (!pressed.clicked) return;
+  focus_list(editor, kList, index);
+  choose_side(editor, "");
 }
 
 void draw_result_row(Editor& editor, Column& column, int index, const std::shared_ptr<const Result>& result, bool& open_menu) {
@@ -86,7 +89,7 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
   const bool shown = shown_result(editor) == result;
   const std::string side = side_of(editor, result);
   Rect row;
-  if (!column.list_row(row, index, shown || !side.empty())) return;
+  if (!column.list_row(row, index, shown || !side.empty(), kList)) return;
   const PathScope path(editor, result->name);
   if (editor.renaming_result.result == result->name) return draw_renaming(editor, row, result);
   const Pressed pressed = press_area(editor, "row", row);
@@ -109,6 +112,7 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
     editor.comparison.b = result->name;
     editor.renaming_result = {result->name, result->name};
   } else if (pressed.clicked) {
+    focus_list(editor, kList, index);
     choose_side(editor, result->name);
   }
   if (pressed.right_clicked) {
@@ -195,6 +199,12 @@ void draw_results(Editor& editor, const Rect& rect) {
   bool open_menu = false;
   {
     Column column(editor, "results", {{body.low.x, table_head.high.y}, {middle, body.high.y}});
+    const ListKey key = list_key(editor, kList, static_cast<int>(results.size()) + 1);
+    const auto row = static_cast<std::size_t>(editor.list_focus.row);
+    const std::string name = row == 0 || row > results.size() ? "" : results[results.size() - row]->name;
+    if (key == ListKey::Moved) editor.comparison.b = name, editor.comparison.shows_a = false;
+    if (key == ListKey::Activate) choose_side(editor, name);
+    if (key == ListKey::Rename && !name.empty()) editor.renaming_result = {name, name};
     int index = 0;
     draw_rest_row(editor, column, index++);
     for (auto result = results.rbegin(); result != results.rend(); ++result) draw_result_row(editor, column, index++, *result, open_menu);

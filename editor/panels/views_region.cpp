@@ -11,6 +11,7 @@
 #include "editor/panels/panels.h"
 #include "editor/results.h"
 #include "editor/tissues.h"
+#include "editor/wipe.h"
 
 namespace limber::editor {
 
@@ -19,10 +20,6 @@ namespace {
 void put_picture(unsigned texture, const Rect& rect) {
   ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), im(rect.low), im(rect.high), {0, 1}, {1, 0});
 }
-
-float wipe_line(const Editor& editor, const Rect& rect) { return std::round(glm::mix(rect.low.x, rect.high.x, editor.comparison.share)); }
-
-bool over_other(const Editor& editor, const ViewPlace& place) { return editor.views->other_scene && editor.input.pointer.x < wipe_line(editor, place.rect); }
 
 void draw_picture(Editor& editor, const ViewPlace& place) {
   Views& views = *editor.views;
@@ -65,9 +62,7 @@ void draw_wipe(Editor& editor, const Rect& rect) {
 
 void hover_body(Editor& editor, const ViewPlace& place) {
   Hover& hover = editor.views->hover;
-  const BodyView& body = editor.views->body;
-  const auto& picture = over_other(editor, place) && body.other ? body.other : body.picture;
-  const auto hit = picture->pick(glm::ivec2(editor.input.pointer - place.rect.low));
+  const auto hit = body_at_pointer(editor, place).pick(glm::ivec2(editor.input.pointer - place.rect.low));
   if (!hit) return;
   hover.inside = true;
   hover.label = hit->label;
@@ -75,14 +70,10 @@ void hover_body(Editor& editor, const ViewPlace& place) {
   hover.point = hit->point;
 }
 
-const render::Scene& seen_scene(const Editor& editor, const ViewPlace& place) {
-  return over_other(editor, place) ? *editor.views->other_scene : editor.views->scene;
-}
-
 void hover_slice(Editor& editor, const ViewPlace& place) {
   Hover& hover = editor.views->hover;
   hover.point = world_of(slice_of(*editor.views, place.id).camera, editor.input.pointer - place.rect.low, place.rect.size());
-  const render::Scene& scene = seen_scene(editor, place);  // at rest or posed
+  const render::Scene& scene = scene_at_pointer(editor, place);  // at rest or posed
   const auto voxel = voxel_shown_at(scene, hover.point);
   if (!voxel) return;
   hover.voxel = *voxel;
@@ -154,7 +145,7 @@ void hover_views(Editor& editor) {
   if (!editor.document().volume || editor.drag) return;
   if (place->id == ViewId::Body) hover_body(editor, *place);
   else hover_slice(editor, *place);
-  if (hover.inside && seen_scene(editor, *place).volume == editor.document().volume) hover.weights = weights_at(*editor.views, editor.document(), hover.voxel);
+  if (hover.inside && scene_at_pointer(editor, *place).volume == editor.document().volume) hover.weights = weights_at(*editor.views, editor.document(), hover.voxel);
 }
 
 void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state) {

@@ -95,6 +95,24 @@ TEST_CASE("results: A and B are shown in turn, held against one another, and wip
   };
   CHECK(hovered(-25));
   CHECK_FALSE(hovered(25));
+  // So is what lies behind it: at rest there are four tissues, in Two there is one.
+  test.editor->comparison.a = "";
+  test.play("wait-idle");
+  const auto listed = [&](double millimetres) {
+    hovered(millimetres);
+    test.host->events.push(KeyChanged{Key::Alt, true});
+    for (const bool down : {true, false}) test.host->events.push(ButtonChanged{MouseButton::Left, down});
+    test.player.settle();
+    test.host->events.push(KeyChanged{Key::Alt, false});
+    test.player.settle();
+    const std::vector<Label> tissues = test.editor->pick_list;
+    test.play("key Escape");
+    return std::count(tissues.begin(), tissues.end(), 111);
+  };
+  CHECK(listed(-4) == 1);
+  CHECK(listed(4) == 0);
+  test.editor->comparison.a = "One";
+  test.play("wait-idle");
   test.play("drag \"3D view/wipe\" 200 0\n wait-idle");
   CHECK(test.editor->comparison.share > 0.6f);
   CHECK(hovered(25));
