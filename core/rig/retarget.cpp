@@ -2,7 +2,6 @@
 #include "core/rig/retarget.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -16,6 +15,7 @@ namespace limber {
 
 namespace {
 constexpr BodySide kSides[] = {BodySide::Left, BodySide::Right};
+constexpr double kMostSwing = 0.026;  // radians by which a leg leaves its source's direction for its foot's sake
 
 bool is_trunk(BodyPart part) {
   return part == BodyPart::Pelvis || part == BodyPart::Spine || part == BodyPart::Neck || part == BodyPart::Head;
@@ -306,10 +306,16 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
       if (between_[gap[k]].below < 0) between_[gap[k]] = {below, static_cast<int>(top), double(gap.size() - k) / double(gap.size() + 1)};
   }
 
-  std::vector<int> feet;
-  for (BodySide side : kSides)
-    if (const auto foot = rig.joint.find({BodyPart::Foot, side}); foot != rig.joint.end() && joint_of_bone_[foot->second] >= 0) feet.push_back(foot->second);
-  if (settings.travel != Travel::Locked && !feet.empty()) follow_the_feet(feet);
+  for (BodySide side : kSides) {
+    const auto thigh = rig.joint.find({BodyPart::Thigh, side}), foot = rig.joint.find({BodyPart::Foot, side});
+    if (thigh == rig.joint.end() || foot == rig.joint.end() || joint_of_bone_[foot->second] < 0) continue;
+    int above = foot->second;
+    while (above > thigh->second) above = armature.bones[above].parent;
+    if (above != thigh->second) continue;
+    const double length = glm::length(armature.bones[foot->second].head - armature.bones[thigh->second].head);
+    legs_.push_back({thigh->second, foot->second, kMostSwing * length});
+  }
+  if (settings.travel != Travel::Locked && !legs_.empty()) follow_the_feet();
 }
 
 RetargetMap Retarget::map() const {
@@ -324,48 +330,30 @@ Pose Retarget::at(int frame) const {
     throw Error("the motion has no frame " + std::to_string(frame), "--frame", "choose one from 0 to " + std::to_string(motion_->frame_count - 1));
   Pose pose = carried_over(forward_kinematics(*motion_, frame));
   if (!feet_.empty()) pose.root_translation += feet_[frame];
+  for (std::size_t i = 0; i < legs_.size() && !swing_.empty(); ++i) swing(pose, legs_[i], swing_[frame * legs_.size() + i]);
   return settings_.mirror ? flipped(pose, *armature_) : pose;
 }
 
-namespace {
-// The point of two discs that is nearest to `wanted`; where they do not meet, the point that parts the way between them as
-// their radii do.
-glm::dvec2 nearest_in_both(const glm::dvec2& wanted, const std::array<glm::dvec2, 2>& centre, const std::array<double, 2>& radius) {
-  const auto inside = [&](const glm::dvec2& p, int disc) { return glm::length(p - centre[disc]) <= radius[disc] * (1 + 1e-12); };
-  if (inside(wanted, 0) && inside(wanted, 1)) return wanted;
-  const glm::dvec2 way = centre[1] - centre[0];
-  const double distance = glm::length(way);
-  if (distance >= radius[0] + radius[1]) return centre[0] + way * (radius[0] + radius[1] > 0 ? radius[0] / (radius[0] + radius[1]) : 0.5);
-  for (int disc : {0, 1}) {
-    const glm::dvec2 out = wanted - centre[disc], rim = centre[disc] + out * (radius[disc] / std::max(glm::length(out), 1e-300));
-    if (!inside(wanted, disc) && inside(rim, 1 - disc)) return rim;
-  }
-  // One of the two places where the rims cross.
-  const double along = (distance * distance + radius[0] * radius[0] - radius[1] * radius[1]) / (2 * distance);
-  const double across = std::sqrt(std::max(0.0, radius[0] * radius[0] - along * along));
-  const glm::dvec2 unit = way / distance, foot = centre[0] + along * unit, aside = across * glm::dvec2(-unit.y, unit.x);
-  return glm::length(foot + aside - wanted) < glm::length(foot - aside - wanted) ? foot + aside : foot - aside;
-}
-}  // namespace
-
 // Legs of other proportions take steps of other lengths and bend to other heights, so that a body that travels as the
 // source's hips do slides and floats. From frame to frame, what its feet that stand moved more than the source's is taken
-// off; of two that stand the stiller one counts most, and neither slides further than the source's where that can be. Low
-// feet are as high above where they rest as the source's above their lowest place.
-void Retarget::follow_the_feet(const std::vector<int>& feet) {
+// off the travel, the stiller one's first; where two that stand want different things, each leg swings a little from the hip, and
+// slowly lets go once its foot is lifted. Low feet are as high above where they rest as the source's above their lowest place.
+void Retarget::follow_the_feet() {
   constexpr double kStanding = 200, kStill = 20;  // mm/s: slower feet stand; slower ones are alike
   constexpr double kLifted = 60;                  // mm above its lowest place
   constexpr double kInTheAir = 0.02;              // what a foot that is lifted counts for the height
+  constexpr double kRelease = 0.2;                // s in which a lifted leg's swing is let go, and that of all legs becomes travel
   const int frames = motion_->frame_count;
-  const std::size_t count = feet.size();
+  const std::size_t count = legs_.size();
   std::vector<glm::dvec3> source(frames * count), rig(frames * count);
   parallel_for(frames, 64, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t frame = begin; frame < end; ++frame) {
       const auto joints = forward_kinematics(*motion_, static_cast<int>(frame));
       const auto posed = posed_from_rest(*armature_, carried_over(joints));
       for (std::size_t i = 0; i < count; ++i) {
-        source[frame * count + i] = scale_ * lps_from_bvh(joints[joint_of_bone_[feet[i]]].translation);
-        rig[frame * count + i] = posed[feet[i]] * armature_->bones[feet[i]].head;
+        const int foot = legs_[i].foot;
+        source[frame * count + i] = scale_ * lps_from_bvh(joints[joint_of_bone_[foot]].translation);
+        rig[frame * count + i] = posed[foot] * armature_->bones[foot].head;
       }
     }
   });
@@ -373,31 +361,60 @@ void Retarget::follow_the_feet(const std::vector<int>& feet) {
   std::vector<double> ground(count, 1e300);
   for (std::size_t k = 0; k < source.size(); ++k) ground[k % count] = std::min(ground[k % count], source[k].z);
   feet_.assign(frames, glm::dvec3(0));
+  if (settings_.travel == Travel::Free) swing_.assign(frames * count, glm::dvec2(0));
+  const double release = std::min(1.0, motion_->frame_time / kRelease);
+  std::vector<glm::dvec2> slid_by(count);
+  std::vector<double> stands(count);
   for (int frame = 0; frame < frames; ++frame) {
-    glm::dvec2 slid(0);
-    double weights = 0, standing = 0, lift = 0, lift_weights = 0;
-    std::array<glm::dvec2, 2> centre;
-    std::array<double, 2> radius;
-    bool all_stand = count == 2;
+    glm::dvec2 slid(0), shared(0);
+    double weights = 0, standing = 0, all_stand = 0, lift = 0, lift_weights = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t now = frame * count + i, before = frame > 0 ? now - count : now;
-      const glm::dvec2 moved = source[now] - source[before], ours = rig[now] - rig[before];
-      const double way = glm::length(moved), speed = way / motion_->frame_time, height = source[now].z - ground[i];
-      const double low = std::clamp(2 - height / kLifted, 0.0, 1.0), stands = low * std::clamp(2 - speed / kStanding, 0.0, 1.0);
-      const double weight = stands / (speed * speed + kStill * kStill);
-      slid += weight * (ours - moved);
+      const glm::dvec2 moved = source[now] - source[before];
+      slid_by[i] = glm::dvec2(rig[now] - rig[before]) - moved;
+      const double speed = glm::length(moved) / motion_->frame_time, height = source[now].z - ground[i];
+      const double low = std::clamp(2 - height / kLifted, 0.0, 1.0);
+      stands[i] = low * std::clamp(2 - speed / kStanding, 0.0, 1.0);
+      const double weight = stands[i] / (speed * speed + kStill * kStill);
+      slid += weight * slid_by[i];
       weights += weight;
-      standing = std::max(standing, stands);
-      all_stand = all_stand && stands > 0;
-      if (all_stand) centre[i] = ours, radius[i] = way / stands;
-      lift += (low + kInTheAir) * (height - (rig[now].z - armature_->bones[feet[i]].head.z));
+      standing = std::max(standing, stands[i]);
+      lift += (low + kInTheAir) * (height - (rig[now].z - armature_->bones[legs_[i].foot].head.z));
       lift_weights += low + kInTheAir;
+      if (swing_.empty()) continue;
+      shared += stands[i] * swing_[before];
+      all_stand += stands[i];
     }
-    if (weights > 0) slid *= standing / weights;
-    if (all_stand) slid = nearest_in_both(slid, centre, radius);
-    if (settings_.travel == Travel::Free && frame > 0) feet_[frame] = feet_[frame - 1] - glm::dvec3(slid, 0);
     feet_[frame].z = lift / lift_weights;
+    if (settings_.travel != Travel::Free || frame == 0) continue;
+    if (weights > 0) slid *= standing / weights;
+    if (all_stand > 0) slid -= shared * (release / std::max(all_stand, 1.0));
+    feet_[frame] += glm::dvec3(glm::dvec2(feet_[frame - 1]) - slid, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::dvec2 last = swing_[(frame - 1) * count + i];
+      const glm::dvec2 wanted = last - stands[i] * (slid_by[i] - slid) - (1 - stands[i]) * release * last;
+      swing_[frame * count + i] = wanted * std::min(1.0, legs_[i].farthest / std::max(glm::length(wanted), 1e-300));
+    }
   }
+}
+
+// Turns a leg at the hip until its foot, which keeps its direction, stands `aside` in the plane of the ground.
+void Retarget::swing(Pose& pose, const Leg& leg, const glm::dvec2& aside) const {
+  const auto posed = posed_from_rest(*armature_, pose);
+  const glm::dvec3 hip = posed[leg.thigh] * armature_->bones[leg.thigh].head, way = posed[leg.foot] * armature_->bones[leg.foot].head - hip;
+  const glm::dvec2 flat = glm::dvec2(way) + aside;
+  const double squared_height = glm::dot(way, way) - glm::dot(flat, flat);
+  const glm::dvec3 wanted(flat, squared_height > 0 ? std::copysign(std::sqrt(squared_height), way.z) : way.z);
+  glm::dquat turn = shortest_turn(way, wanted);
+  if (glm::angle(turn) > kMostSwing) turn = glm::angleAxis(kMostSwing, glm::axis(turn));
+  const auto turned_before = [&](int bone, const glm::dquat& world) {
+    const int parent = armature_->bones[bone].parent;
+    const glm::dquat carried = parent < 0 ? glm::dquat(1, 0, 0, 0) : posed[parent].rotation;
+    pose.rotation[bone] = glm::normalize(glm::conjugate(carried) * world * carried * pose.rotation[bone]);
+  };
+  turned_before(leg.thigh, turn);
+  // The foot's parent carries the turn by now, by which the foot turns back.
+  turned_before(leg.foot, glm::conjugate(turn));
 }
 
 Pose Retarget::carried_over(const std::vector<RigidTransform>& source) const {

@@ -50,7 +50,8 @@ void write_retarget_map(const RetargetMap& map, const Path& path);
 enum class Travel {
   Locked,   // stays where it rests
   InPlace,  // goes up and down, so that its feet on the ground stand as high as at rest, and nowhere else
-  Free,     // up and down likewise; and as the source does since frame 0, so that its feet slide no further than the source's
+  Free,     // up and down likewise; and as the source does since frame 0, so that its feet slide no further than the source's:
+            // legs turn at the hip by up to a degree and a half for it
 };
 
 // The moment at which the source stands as the rig rests.
@@ -79,7 +80,12 @@ class Retarget {
  private:
   // Where the source's joints are so; without what the feet add to the travel.
   Pose carried_over(const std::vector<RigidTransform>& source) const;
-  void follow_the_feet(const std::vector<int>& feet);
+  struct Leg {
+    int thigh, foot;  // bones
+    double farthest;  // mm that its foot may be swung
+  };
+  void follow_the_feet();
+  void swing(Pose& pose, const Leg& leg, const glm::dvec2& aside) const;
 
   const Motion* motion_;
   const Armature* armature_;
@@ -94,7 +100,9 @@ class Retarget {
   double scale_ = 1;
   int lead_ = -1;                 // the joint that the body travels with
   glm::dvec3 start_{0};           // where it is at frame 0, in the file's axes
+  std::vector<Leg> legs_;         // with feet that are matched
   std::vector<glm::dvec3> feet_;  // by frame, where the body travels: added to its place
+  std::vector<glm::dvec2> swing_; // by frame and leg, where it travels freely: mm that its foot stands aside
 };
 
 }  // namespace limber
