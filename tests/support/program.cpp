@@ -29,7 +29,7 @@ double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 
   ::dup2(null, 0);
   ::dup2(out_file, 1);
   ::dup2(err_file, 2);
-  ::execv(argv[0], argv.data());
+  ::execvp(argv[0], argv.data());
   ::_exit(127);
 }
 }  // namespace
@@ -62,6 +62,8 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
 }
 
 ProgramRun run_limber(const std::vector<std::string>& arguments) { return run_program(LIMBER_PROGRAM, arguments); }
+
+bool has_program(const std::string& name) { return run_program("/bin/sh", {"-c", "command -v " + name}).exit_code == 0; }
 
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "limber-test-XXXXXX").string();

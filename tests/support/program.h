@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Runs the `limber` program as a user would and keeps what it printed, its exit code and what it cost.
+// A test that compares with another program starts with NEEDS_PROGRAM("blender"), which skips it, loudly, where that is
+// not on PATH.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include <doctest/doctest.h>
 
 namespace limber::test {
 
@@ -18,7 +22,9 @@ struct ProgramRun {
 
 // `program` defaults to the limber that was built beside the tests.
 ProgramRun run_limber(const std::vector<std::string>& arguments);
-ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments);
+ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments);  // a path, or a name on PATH
+
+bool has_program(const std::string& name);  // on PATH
 
 // A folder that is empty at the start and gone at the end.
 class TemporaryFolder {
@@ -35,3 +41,9 @@ class TemporaryFolder {
 };
 
 }  // namespace limber::test
+
+#define NEEDS_PROGRAM(name)                          \
+  if (!limber::test::has_program(name)) {            \
+    MESSAGE("SKIPPED: ", name, " is not installed"); \
+    return;                                          \
+  }

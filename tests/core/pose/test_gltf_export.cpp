@@ -2,6 +2,7 @@
 #include "core/pose/gltf_export.h"
 
 #include <cstring>
+#include <fstream>
 #include <numeric>
 
 #include <doctest/doctest.h>
@@ -14,6 +15,7 @@
 #include "core/skin/geodesic.h"
 #include "core/skin/skin_at.h"
 #include "core/volume/phantom.h"
+#include "tests/support/program.h"
 
 using namespace limber;
 
@@ -150,6 +152,52 @@ TEST_CASE("gltf: the surface moves in every clip as the linear blend moves the s
     }
   }
   CHECK(moved > 0.1 * extent);
+}
+
+// An independent reader and an independent skinning. Blender's axes are the world's own.
+TEST_CASE("gltf: Blender opens the file, and its vertices go where ours go") {
+  NEEDS_PROGRAM("blender");
+  const Arm& body = arm();
+  const test::TemporaryFolder folder;
+  const std::string glb = (folder / "arm.glb").string(), told = (folder / "told.txt").string();
+  write_glb(body.gltf(), body.clips, glb);
+  const Reader file(read_file(glb));
+  std::vector<std::string> arguments{"-b", "--factory-startup", "--python-exit-code", "1", "--python", LIMBER_SOURCE_DIR "/tests/core/pose/blender_gltf.py", "--", glb, told};
+  struct Frame {
+    std::size_t clip;
+    int frame;
+  };
+  std::vector<Frame> frames;
+  for (std::size_t clip = 0; clip < body.clips.size(); ++clip) {
+    const Clip& played = *body.clips[clip];
+    const int last = played.range_end - played.range_start;
+    for (const int frame : {0, last / 3, last}) {
+      frames.push_back({clip, frame});
+      arguments.insert(arguments.end(), {played.name, std::to_string(frame / played.rate)});
+    }
+  }
+  const test::ProgramRun run = test::run_program("blender", arguments);
+  INFO(run.out, run.err);
+  REQUIRE(run.exit_code == 0);
+
+  std::ifstream places(told);
+  double farthest = 0, extent = 0, moved = 0;
+  const auto rest = file.skinned(0, -1);
+  for (const auto& [clip, frame] : frames) {
+    const auto ours = file.skinned(static_cast<int>(clip), frame);
+    for (std::size_t v = 0; v < ours.size(); ++v) {
+      glm::dvec3 theirs;
+      places >> theirs.x >> theirs.y >> theirs.z;
+      REQUIRE(!places.fail());
+      farthest = std::max(farthest, glm::length(theirs - glm::dvec3(ours[v].x, -ours[v].z, ours[v].y)));
+      extent = std::max(extent, glm::length(rest[v] - rest[0]));
+      moved = std::max(moved, glm::length(ours[v] - rest[v]));
+    }
+  }
+  CHECK((places >> std::ws).eof());
+  CHECK(moved > 0.1 * extent);
+  CHECK(farthest < 1e-4 * extent);
+  MESSAGE("farthest ", farthest / extent, " of the extent");
 }
 
 TEST_CASE("gltf: the file is whole, names its bones and reads back as the rig's joints") {
