@@ -19,6 +19,8 @@ constexpr int kTile = 8;             // nodes an edge of what is rasterized agai
 constexpr int kMargin = 3;           // cells around the grid that a rest point may lie in
 constexpr double kFurthest = 32000;  // cells; fixed point holds 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
+constexpr double kNear = 1.0 / 256;  // cells: nodes that chords place this well are left there
+constexpr std::array<glm::ivec3, 8> kCorners = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}};
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 glm::ivec3 tile_of(const glm::ivec3& node) { return {floor_div(node.x, kTile), floor_div(node.y, kTile), floor_div(node.z, kTile)}; }
@@ -40,6 +42,23 @@ Lanes least(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
 Lanes apart(const Lanes& a, const Lanes& b) { return most(a - b, b - a); }
 
 bool any_beyond(const Lanes& a, const Lanes& limit) { return a[0] > limit[0] || a[1] > limit[1] || a[2] > limit[2]; }
+
+// What the bones do together, as one.
+SkinTransform blended(Blend blend, const std::vector<SkinTransform>& bones, std::span<const BoneWeight> influences) {
+  SkinTransform sum;
+  if (blend == Blend::Linear) {
+    for (const auto& [bone, weight] : influences)
+      for (int i = 0; i < 12; ++i) sum.displacement[i] += weight * bones[bone].displacement[i];
+    return sum;
+  }
+  sum.dual_quaternion = {};
+  for (const auto& [bone, weight] : influences) {
+    const auto& q = bones[bone].dual_quaternion;
+    const bool against = sum.dual_quaternion[0] * q[0] + sum.dual_quaternion[1] * q[1] + sum.dual_quaternion[2] * q[2] + sum.dual_quaternion[3] * q[3] < 0;
+    for (int i = 0; i < 8; ++i) sum.dual_quaternion[i] += (against ? -weight : weight) * q[i];
+  }
+  return sum;
+}
 
 // Fills PreviewMap::nodes and its cubes from what cells have claimed.
 class Finish {
@@ -199,7 +218,7 @@ class LivePreview::Tile {
         row[x] = glm::u16vec4(0);
         continue;
       }
-      const glm::dvec3 voxel = (rest_[at] + 0.5) * step - 0.5;
+      const glm::dvec3 voxel = (preview_.in_bent_cell(cell_[at], low_ + glm::ivec3(x, y, z), rest_[at]) + 0.5) * step - 0.5;
       const glm::dvec3 f = glm::clamp((voxel - span.low) * fractions, 0.0, double(PreviewMap::kFullFraction));
       row[x] = glm::u16vec4(std::lrint(f.x), std::lrint(f.y), std::lrint(f.z), PreviewMap::kFullFraction);
     }
@@ -236,6 +255,20 @@ LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const Tissue
   priority_[0] = std::numeric_limits<int>::min();
   for (const Tissue& each : tissues.tissues)
     if (each.label != 0) priority_[each.label] = each.priority;
+
+  std::vector<int> only(lattice_.places(), -1);  // bone that a vertex follows alone
+  for (size_t i = 0; i < lattice_.vertices.size(); ++i)
+    if (lattice_.offsets[i + 1] - lattice_.offsets[i] == 1) only[lattice_.place(lattice_.vertices[i])] = lattice_.influences[lattice_.offsets[i]].bone;
+  motion_of_.assign(lattice_.places(), -1);
+  for (const glm::ivec3& cell : lattice_.cells) {
+    const std::int64_t first = lattice_.place(cell);
+    if (only[first] >= 0 && std::all_of(kCorners.begin(), kCorners.end(), [&](const glm::ivec3& c) { return only[lattice_.place(cell + c)] == only[first]; })) continue;
+    for (const glm::ivec3& c : kCorners) motion_of_[lattice_.place(cell + c)] = 0;
+  }
+  std::int32_t count = 0;
+  for (std::int32_t& motion : motion_of_)
+    if (motion == 0) motion = count++;
+  motion_.resize(count);
 }
 
 std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTransform>& posed_from_rest, Blend blend) {
@@ -259,6 +292,8 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   const std::vector<SkinTransform> bones = skin_transforms(posed_from_rest);
   const AffineTransform world_from_voxel = limber::world_from_voxel(lattice_.grid), voxel_from_world = limber::voxel_from_world(lattice_.grid);
   const double step = lattice_.step;
+  world_from_cell_ = {world_from_voxel.linear * step, world_from_voxel * glm::dvec3(0.5 * step - 0.5)};
+  cell_from_world_ = voxel_from_world.linear / step;
   const auto posed = [&](const glm::ivec3& vertex, std::span<const BoneWeight> influences) {
     const glm::dvec3 world = world_from_voxel * (glm::dvec3(vertex) * step - 0.5);
     const glm::dvec3 moved = blend_point(blend, bones, influences, world) - world;
@@ -275,8 +310,10 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
       moved_[place] = 0;
       if (std::none_of(influences.begin(), influences.end(), [&](const BoneWeight& each) { return bone_moved_[each.bone]; })) continue;
       const FixedPoint fixed = posed(lattice_.vertices[i], influences);
-      moved_[place] = all || fixed != posed_[place];
+      const std::int32_t motion = motion_of_[place];
+      moved_[place] = all || motion >= 0 || fixed != posed_[place];
       posed_[place] = fixed;
+      if (motion >= 0) motion_[motion] = blended(blend, bones, influences);
     }
   });
   parallel_for(std::ssize(lattice_.stiff), 512, [&](std::int64_t begin, std::int64_t end) {
@@ -290,6 +327,32 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   posed_from_rest_ = posed_from_rest;
   blend_ = blend;
   return true;
+}
+
+// The rest point whose image the node is, near `rest`, which is what the chords between the cell's corners say.
+glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, const glm::dvec3& rest) const {
+  const glm::ivec3 middle = this->middle(cell);
+  if (stiff(cell)) return rest;
+  std::array<BoneWeight, 8> corners;
+  for (int i = 0; i < 8; ++i) corners[i].bone = motion_of_[lattice_.place(middle + kCorners[i])];
+  if (std::any_of(corners.begin(), corners.end(), [](const BoneWeight& each) { return each.bone < 0; })) return rest;
+  const auto posed = [&](const glm::dvec3& at) {
+    const glm::dvec3 t = at - glm::dvec3(middle) + 0.5, world = world_from_cell_ * at;
+    for (int i = 0; i < 8; ++i) corners[i].weight = (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z);
+    return at + cell_from_world_ * (blend_point(blend_, motion_, corners, world) - world);
+  };
+  const glm::dvec3 here = posed(rest), missing = glm::dvec3(node) - here;
+  if (glm::all(glm::lessThan(glm::abs(missing), glm::dvec3(kNear)))) return rest;
+  glm::dmat3 slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 beside = rest;
+    const double step = rest[axis] < middle[axis] ? 0.25 : -0.25;
+    beside[axis] += step;
+    slope[axis] = (posed(beside) - here) / step;
+  }
+  if (!(glm::determinant(slope) > 0.05)) return rest;
+  const glm::dvec3 more = glm::inverse(slope) * missing;
+  return glm::all(glm::lessThan(glm::abs(more), glm::dvec3(0.5))) ? rest + more : rest;
 }
 
 bool LivePreview::has_moved(std::int64_t cell) const {

@@ -2,7 +2,9 @@
 // The live preview: where each place of the posed body comes from, coarse enough to be made anew for every picture while a
 // bone is dragged. A PreviewMap holds rest points at nodes that lie `step` voxels apart over the posed body; between nodes
 // it is read linearly. The cells of preview_lattice.h, posed, say which rest point a node is the image of, by the rules of
-// inverse_map.h where two cells claim one node.
+// inverse_map.h where two cells claim one node. Cells that bend are curved, and their corners' chords would take off what
+// bulges: inside them the motions of the corners are blended as those of bones are, and a node's rest point is where that
+// leads to the node, by a step of Newton's from what the chords say.
 //
 // Nodes just outside all cells carry their neighbours' map on, straight; so the eight nodes around any place of the body
 // are there. Where those eight jump, in a fold, two sheets of the body meet between them: a place there reads the nearest
@@ -88,6 +90,7 @@ class LivePreview {
   const glm::ivec3& middle(std::int64_t cell) const { return lattice_.cells[stiff(cell) ? stiff(cell)->cell : cell]; }
   bool has_moved(std::int64_t cell) const;
   PosedCell posed_cell(std::int64_t cell) const;
+  glm::dvec3 in_bent_cell(std::int64_t cell, const glm::ivec3& node, const glm::dvec3& rest) const;
 
   bool pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend);
   void bound_cells();
@@ -98,11 +101,16 @@ class LivePreview {
   std::shared_ptr<const LabelVolume> volume_;
   PreviewLattice lattice_;
   std::vector<int> priority_;  // by label; air lowest
+  std::vector<std::int32_t> motion_of_;  // by place: of motion_, at the corners of cells that can bend; else -1
+
+  AffineTransform world_from_cell_;
+  glm::dmat3 cell_from_world_{1};  // of directions
 
   // The last pose.
   std::vector<RigidTransform> posed_from_rest_;
   Blend blend_ = Blend::Linear;
   std::vector<FixedPoint> posed_;         // by place of the lattice
+  std::vector<SkinTransform> motion_;     // blended from those of bones
   std::vector<std::array<FixedPoint, 8>> posed_stiff_;
   std::vector<std::uint8_t> moved_;       // by place: by the update under way
   std::vector<std::uint8_t> bone_moved_;

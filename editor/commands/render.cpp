@@ -12,7 +12,6 @@
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "core/base/error.h"
@@ -21,6 +20,7 @@
 #include "core/cmd/command.h"
 #include "core/cmd/pose_options.h"
 #include "core/deform/preview_map.h"
+#include "core/deform/skinning.h"
 #include "core/project/project_io.h"
 #include "core/resample/resample.h"
 #include "core/rig/armature_io.h"
@@ -145,55 +145,77 @@ SkinWeights weights_of(const Options& options, const Document& document, Progres
   return std::move(file.weights);
 }
 
+// The tissue where the bones carry it, in voxel coordinates of `grid`: so that a posed body is framed alike however it is drawn.
+std::array<glm::dvec3, 2> box_of_posed(const Grid& rest_grid, const Grid& grid, const TissueVoxels& tissue, const SkinWeights& weights,
+                                       const std::vector<RigidTransform>& posed_from_rest, Blend blend) {
+  const std::vector<SkinTransform> bones = skin_transforms(posed_from_rest);
+  const AffineTransform to_world = world_from_voxel(rest_grid), to_voxel = voxel_from_world(grid);
+  std::vector<std::array<glm::dvec3, 2>> boxes(tissue.bricks().size(), {glm::dvec3(1e300), glm::dvec3(-1e300)});
+  parallel_for(std::ssize(boxes), 16, [&](std::int64_t begin, std::int64_t end) {
+    for (auto brick = begin; brick < end; ++brick) {
+      auto influence = weights.chunk(brick).begin();
+      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+        std::array<BoneWeight, 4> influences;
+        int count = 0;
+        for (; count < 4 && influence->weight[count]; ++count) influences[count] = {influence->bone[count], double(influence->weight[count])};
+        const glm::dvec3 posed = to_voxel * blend_point(blend, bones, {influences.data(), size_t(count)}, to_world * glm::dvec3(voxel));
+        boxes[brick] = {glm::min(boxes[brick][0], posed - 0.5), glm::max(boxes[brick][1], posed + 0.5)};
+        ++influence;
+      });
+    }
+  });
+  std::array<glm::dvec3, 2> all = boxes.at(0);
+  for (const auto& [low, high] : boxes) all = {glm::min(all[0], low), glm::max(all[1], high)};
+  return all;
+}
+
 // The body and its skeleton, posed.
-Scene posed_scene(const Options& options, const Document& document, Progress& progress) {
-  Scene scene{.volume = document.volume, .armature = document.armature};
-  if (!document.armature) return scene;
+struct PosedScene {
+  Scene scene;
+  std::optional<std::array<glm::dvec3, 2>> tissue;  // where a pose carries it: voxel coordinates of the scene's volume
+};
+PosedScene posed_scene(const Options& options, const Document& document, Progress& progress) {
+  PosedScene result{{.volume = document.volume, .armature = document.armature}, {}};
+  Scene& scene = result.scene;
+  if (!document.armature) return result;
   Pose pose = document.pose ? *document.pose : rest_pose(*document.armature);
   if (cmd::wants_pose(options.pose)) pose = cmd::read_pose_options(options.pose, *document.armature);
-  if (pose == rest_pose(*document.armature)) return scene;
+  if (pose == rest_pose(*document.armature)) return result;
   const SkinWeights weights = weights_of(options, document, progress);
   const bool linear = options.method == "lbs";
+  const Blend blend = linear ? Blend::Linear : Blend::DualQuaternion;
+  const TissueVoxels tissue(*document.volume);
   scene.posed_from_rest = posed_from_rest(*document.armature, pose);
   if (options.preview) {
-    const TissueVoxels tissue(*document.volume);
     LivePreview preview(document.volume, *document.tissues, tissue, weights, preview_step(tissue));
-    scene.pose = preview.update(scene.posed_from_rest, linear ? Blend::Linear : Blend::DualQuaternion);
-    return scene;
+    scene.pose = preview.update(scene.posed_from_rest, blend);
+    result.tissue = box_of_posed(document.volume->grid, document.volume->grid, tissue, weights, scene.posed_from_rest, blend);
+    return result;
   }
   Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose,
                          linear ? Method(LinearBlend{}) : Method(DualQuaternion{}), {}, progress);
   scene.volume = std::make_shared<const LabelVolume>(std::move(posed.volume));
-  return scene;
-}
-
-// The nodes of a pose's map that come from tissue, in voxel coordinates.
-std::pair<glm::dvec3, glm::dvec3> box_of_tissue(const LabelVolume& volume, const PreviewMap& map) {
-  glm::dvec3 low(1e300), high(-1e300);
-  for (int z = 0; z < map.size.z; ++z)
-    for (int y = 0; y < map.size.y; ++y)
-      for (int x = 0; x < map.size.x; ++x) {
-        const glm::ivec3 node(x, y, z);
-        if (!map.covers(node) || volume.at_or_air(glm::ivec3(glm::floor(map.rest_of_node(node) + 0.5))) == 0) continue;
-        const glm::dvec3 voxel = (glm::dvec3(map.first + node) + 0.5) * double(map.step) - 0.5;
-        low = glm::min(low, voxel - map.step / 2.0);
-        high = glm::max(high, voxel + map.step / 2.0);
-      }
-  return {low, high};
+  result.tissue = box_of_posed(document.volume->grid, scene.volume->grid, tissue, weights, scene.posed_from_rest, blend);
+  return result;
 }
 
 // The world box of the tissue (and the clip box), which the picture is to show.
-std::array<glm::dvec3, 2> box_of_tissue(const Scene& scene, const render::Clip& clip) {
-  const LabelVolume& volume = *scene.volume;
-  glm::ivec3 low = volume.grid.size, high(-1);
-  size_t i = 0;
-  for (int z = 0; z < volume.grid.size.z; ++z)
-    for (int y = 0; y < volume.grid.size.y; ++y)
-      for (int x = 0; x < volume.grid.size.x; ++x, ++i)
-        if (volume.voxels[i] != 0) low = glm::min(low, glm::ivec3(x, y, z)), high = glm::max(high, glm::ivec3(x, y, z));
-  if (high.x < 0) low = glm::ivec3(0), high = volume.grid.size - 1;
-  glm::dvec3 from = glm::dvec3(low) - 0.5, to = glm::dvec3(high) + 0.5;
-  if (scene.pose) std::tie(from, to) = box_of_tissue(volume, *scene.pose);
+std::array<glm::dvec3, 2> box_of_tissue(const PosedScene& posed, const render::Clip& clip) {
+  const LabelVolume& volume = *posed.scene.volume;
+  glm::dvec3 from, to;
+  if (posed.tissue) {
+    from = (*posed.tissue)[0], to = (*posed.tissue)[1];
+  } else {
+    glm::ivec3 low = volume.grid.size, high(-1);
+    size_t i = 0;
+    for (int z = 0; z < volume.grid.size.z; ++z)
+      for (int y = 0; y < volume.grid.size.y; ++y)
+        for (int x = 0; x < volume.grid.size.x; ++x, ++i)
+          if (volume.voxels[i] != 0) low = glm::min(low, glm::ivec3(x, y, z)), high = glm::max(high, glm::ivec3(x, y, z));
+    if (high.x < 0) low = glm::ivec3(0), high = volume.grid.size - 1;
+    from = glm::dvec3(low) - 0.5;
+    to = glm::dvec3(high) + 0.5;
+  }
   if (clip.box) {
     from = glm::max(from, (*clip.box)[0]);
     to = glm::max(glm::min(to, (*clip.box)[1]), from);
@@ -223,16 +245,16 @@ Image picture_3d(Renderer& renderer, const Scene& scene, const Camera& camera, c
   return view.read();
 }
 
-Image picture_slice(Renderer& renderer, const Scene& scene, const Options& options, const glm::ivec2& size) {
+Image picture_slice(Renderer& renderer, const PosedScene& posed, const Options& options, const glm::ivec2& size) {
   static const std::map<std::string, SliceAxis> axes = {{"axial", SliceAxis::Axial}, {"coronal", SliceAxis::Coronal}, {"sagittal", SliceAxis::Sagittal}};
-  const auto [low, high] = box_of_tissue(scene, {});
+  const auto [low, high] = box_of_tissue(posed, {});
   SliceCamera camera{.axis = axes.at(options.slice), .centre = (low + high) / 2.0};
   const SliceFrame frame = frame_of(camera.axis);
   if (options.at) camera.centre += frame.normal * (*options.at - glm::dot(camera.centre, frame.normal));
   const double width = std::abs(glm::dot(high - low, frame.right)), height = std::abs(glm::dot(high - low, frame.down));
   camera.millimetres_per_pixel = 1.06 * std::max({width / size.x, height / size.y, 1e-6}) / options.zoom;
   SliceView view(renderer);
-  view.draw(scene, camera, options.outline ? SliceDisplay::Outline : SliceDisplay::Labels, size);
+  view.draw(posed.scene, camera, options.outline ? SliceDisplay::Outline : SliceDisplay::Labels, size);
   return view.read();
 }
 
@@ -253,7 +275,8 @@ void run(const Options& options) {
 
   const Document document = read_document(options, progress);
   const Visibility visibility = visibility_of(options, *document.tissues, document.visibility ? *document.visibility : Visibility{});
-  Scene scene = posed_scene(options, document, progress);
+  PosedScene posed = posed_scene(options, document, progress);
+  Scene& scene = posed.scene;
   scene.looks = std::make_shared<const LabelLooks>(looks_of(*document.tissues, visibility));
   scene.display = options.display;
   scene.clip = clip_of(options, visibility);
@@ -266,12 +289,12 @@ void run(const Options& options) {
   const HeadlessContext context;
   Renderer renderer;
   if (!options.slice.empty()) {
-    write_png(picture_slice(renderer, scene, options, size), options.output);
+    write_png(picture_slice(renderer, posed, options, size), options.output);
   } else {
     Camera camera;
     if (options.orthographic) camera.projection = Projection::Orthographic;
     camera = turned(looking_from(options.view, camera), options.turn, options.tilt);
-    const auto [low, high] = box_of_tissue(scene, scene.clip);
+    const auto [low, high] = box_of_tissue(posed, scene.clip);
     camera = zoomed(framing(camera, low, high, double(size.x) / size.y), 1 / options.zoom);
     const int pictures = options.turntable.value_or(1);
     for (int i = 0; i < pictures; ++i) {

@@ -3,10 +3,13 @@
 
 #include "core/deform/preview_map.h"
 #include "core/resample/resample.h"
+#include "core/rig/armature_io.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/volume/phantom.h"
+#include "core/volume/volume_io.h"
 #include "tests/render/studio.h"
 #include "tests/support/bent_tube.h"
+#include "tests/support/shared_data.h"
 
 using namespace limber;
 using namespace limber::render;
@@ -78,6 +81,99 @@ double colours_agree(const Image& a, const Image& b) {
 
 constexpr glm::ivec2 kSize{480, 480};
 
+// What resample() found out of every voxel, as a map that can be drawn: the result before its voxels are cut anew.
+std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Posed& posed) {
+  auto map = std::make_shared<PreviewMap>();
+  map->step = 1;
+  map->grid = volume.grid;
+  const AffineTransform to_voxel = voxel_from_world(volume.grid);
+  constexpr int kAround = 3;  // voxels
+  map->first = glm::ivec3(glm::round(to_voxel * posed.volume.grid.origin)) - kAround;
+  map->size = posed.volume.grid.size + 2 * kAround;
+  map->low = glm::dvec3(-16);
+  map->extent = glm::dvec3(volume.grid.size) + 32.0;
+  const auto count = size_t(map->size.x) * map->size.y * map->size.z;
+  map->nodes.assign(count, glm::u16vec4(0));
+  map->cubes.assign(count, PreviewMap::kNothing);
+  map->reach.resize(count);
+  std::vector<glm::dvec3> moved(count);  // voxels
+  const auto set = [&](const glm::ivec3& n, const glm::dvec3& by) {
+    const glm::dvec3 rest = glm::dvec3(map->first + n) - by, fraction = (rest - map->low) / map->extent;
+    if (glm::any(glm::lessThan(fraction, glm::dvec3(0))) || glm::any(glm::greaterThan(fraction, glm::dvec3(1)))) return;
+    moved[map->index(n)] = by;
+    map->nodes[map->index(n)] = glm::u16vec4(glm::u16vec3(glm::round(fraction * double(PreviewMap::kFullFraction))), PreviewMap::kFullFraction);
+  };
+  const auto each = [&](const auto& body) {
+    for (int z = 0; z < map->size.z; ++z)
+      for (int y = 0; y < map->size.y; ++y)
+        for (int x = 0; x < map->size.x; ++x) body(glm::ivec3(x, y, z));
+  };
+  each([&](const glm::ivec3& n) {
+    const glm::ivec3 v = n - kAround;
+    if (posed.volume.at_or_air(v) != 0) set(n, to_voxel.linear * glm::dvec3(posed.displacement[posed.volume.grid.index(v)]));
+  });
+  // What lies just outside carries on straight.
+  for (int ring = 0; ring < 2; ++ring) {
+    std::vector<std::pair<glm::ivec3, glm::dvec3>> found;
+    each([&](const glm::ivec3& n) {
+      if (map->covers(n) || glm::any(glm::lessThan(n, glm::ivec3(2))) || glm::any(glm::greaterThanEqual(n, map->size - 2))) return;
+      glm::dvec3 sum(0);
+      int neighbours = 0;
+      for (int axis = 0; axis < 3; ++axis)
+        for (int sign : {-1, 1}) {
+          glm::ivec3 next = n, second = n;
+          next[axis] += sign;
+          second[axis] += 2 * sign;
+          if (!map->covers(next) || !map->covers(second)) continue;
+          const glm::dvec3 here = moved[map->index(next)], there = moved[map->index(second)];
+          if (glm::length(here - there) < 2) sum += 2.0 * here - there, ++neighbours;
+        }
+      if (neighbours) found.emplace_back(n, sum / double(neighbours));
+    });
+    for (const auto& [n, by] : found) set(n, by);
+  }
+  each([&](const glm::ivec3& n) {
+    if (glm::any(glm::greaterThanEqual(n, map->size - 1))) return;
+    glm::dvec3 low(1e9), high(-1e9);
+    glm::u16vec3 least(65535), most(0);
+    for (int i = 0; i < 8; ++i) {
+      const glm::ivec3 c = n + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
+      if (!map->covers(c)) continue;
+      low = glm::min(low, map->rest_of_node(c));
+      high = glm::max(high, map->rest_of_node(c));
+      least = glm::min(least, glm::u16vec3(map->nodes[map->index(c)]));
+      most = glm::max(most, glm::u16vec3(map->nodes[map->index(c)]));
+    }
+    if (low.x > high.x) return;
+    map->cubes[map->index(n)] = glm::any(glm::greaterThan(high - low, glm::dvec3(map->jump()))) ? PreviewMap::kBroken : PreviewMap::kWhole;
+    map->reach[map->index(n)] = {least, most};
+  });
+  return map;
+}
+
+// Turning a body's voxels into others shifts its outline by itself, by 0.2 to 1.1 % of its area where an arm only turns; so
+// the labels' own outline is asked for no more than what the dense map's differs from it.
+void check_outline(const std::shared_ptr<const LabelVolume>& volume, const TissueTable& tissues, const Armature& rig, const TissueVoxels& tissue,
+                   const SkinWeights& weights, const Pose& pose, bool linear) {
+  Studio studio;
+  Scene coarse = scene_of(volume, std::make_shared<const LabelLooks>(looks_of(tissues))), fine = coarse, labels = coarse;
+  coarse.pose = LivePreview(volume, tissues, tissue, weights, 4).update(posed_from_rest(rig, pose), linear ? Blend::Linear : Blend::DualQuaternion);
+  const Posed posed = resample(*volume, tissues, rig, weights, pose, linear ? Method(LinearBlend{}) : Method(DualQuaternion{}), {.displacement = true});
+  fine.pose = dense_map(*volume, posed);
+  labels.volume = std::make_shared<const LabelVolume>(posed.volume);
+  const Camera front = camera_of(posed.volume.grid), side = camera_of(posed.volume.grid, Projection::Perspective, StandardView::Left);
+  Camera oblique = front;
+  oblique.world_from_view = glm::angleAxis(0.8, glm::dvec3(0, 0, 1)) * front.world_from_view * glm::angleAxis(-0.6, glm::dvec3(1, 0, 0));
+  for (const Camera& camera : {front, side, oblique}) {
+    const Image a = picture_of(studio.renderer, coarse, camera, kSize), b = picture_of(studio.renderer, fine, camera, kSize),
+                c = picture_of(studio.renderer, labels, camera, kSize);
+    CHECK(covered(b) > 5000);
+    MESSAGE("to the dense map ", silhouette_difference(a, b), ", to the labels ", silhouette_difference(a, c), ", of the dense map to the labels ", silhouette_difference(b, c));
+    CHECK(silhouette_difference(a, b) < 0.005);
+    CHECK(silhouette_difference(a, c) < silhouette_difference(b, c) + 0.002);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("posed body: at rest the picture is that of the volume itself, in every display") {
@@ -94,19 +190,41 @@ TEST_CASE("posed body: at rest the picture is that of the volume itself, in ever
   }
 }
 
-TEST_CASE("posed body: a bent elbow has the outline and the colours of the resampled volume") {
+TEST_CASE("posed body: a bent elbow has the outline of the dense map, from any side, by both methods") {
+  for (const auto& [linear, degrees] : {std::pair{true, 45.0}, std::pair{true, 60.0}, std::pair{false, 60.0}, std::pair{false, 90.0}}) {
+    CAPTURE(linear);
+    CAPTURE(degrees);
+    check_outline(arm().volume, arm().tissues, arm().rig, arm().tissue, arm().weights, arm().bent(degrees), linear);
+  }
+}
+
+TEST_CASE("posed body: so has the elbow of a real arm") {
+  NEEDS_SHARED("data/bender/man-arm-2mm.mha");
+  VolumeFile file = read_volume(shared_path("data/bender/man-arm-2mm.mha"));
+  const TissueTable tissues = merge_tissue_tables(file.tissues, nullptr);
+  const Armature rig = read_armature(shared_path("data/bender/man-arm-2mm-armature.vtk"));
+  const TissueVoxels tissue(file.volume);
+  const SkinWeights weights = diffuse_heat(file.volume, tissues, rig);
+  const auto volume = std::make_shared<const LabelVolume>(std::move(file.volume));
+  for (const auto& [linear, degrees] : {std::pair{true, 60.0}, std::pair{false, 90.0}}) {
+    Pose pose = rest_pose(rig);
+    flex(pose, rig, require_bone(rig, "Forearm"), degrees);
+    CAPTURE(degrees);
+    check_outline(volume, tissues, rig, tissue, weights, pose, linear);
+  }
+}
+
+TEST_CASE("posed body: a bent elbow has the colours of the resampled volume") {
   Studio studio;
   const Pose pose = arm().bent(60);
   for (const bool linear : {true, false}) {
     const Scene posed = arm().posed(pose, linear ? Blend::Linear : Blend::DualQuaternion);
     const Scene dense = arm().resampled(pose, linear ? Method(LinearBlend{}) : Method(DualQuaternion{}));
-    // From the side the outline is long: there an arm that only turns differs by 0.7 %, which are the resampled volume's voxels.
-    for (const auto& [side, most] : {std::pair{StandardView::Front, 0.004}, std::pair{StandardView::Left, 0.0065}}) {
+    for (const StandardView side : {StandardView::Front, StandardView::Left}) {
       const Camera camera = camera_of(dense.volume->grid, Projection::Perspective, side);
       const Image a = picture_of(studio.renderer, posed, camera, kSize), b = picture_of(studio.renderer, dense, camera, kSize);
       INFO("linear ", linear, " side ", int(side));
       CHECK(covered(b) > 5000);
-      CHECK(silhouette_difference(a, b) < most);
       CHECK(colours_agree(a, b) > 0.87);
     }
   }
