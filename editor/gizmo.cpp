@@ -9,6 +9,7 @@
 #include "core/rig/joint_limits.h"
 #include "editor/dispatch.h"
 #include "editor/gizmo_painter.h"
+#include "editor/joint_handles.h"
 #include "editor/paint.h"
 #include "editor/posing.h"
 #include "editor/rig_check.h"
@@ -339,6 +340,7 @@ bool press_gizmo(Editor& editor) {
     begin_tool(editor, begin_dragging_pole(editor, {.held = MouseButton::Left}));
     return true;
   }
+  if (press_joint_handle(editor, view)) return true;
   if (editor.tool == Tool::Reach && editor.workspace == Workspace::Pose && place->id == ViewId::Body && editor.document().armature) return press_joint(editor, view);
   const auto gizmo = gizmo_in(editor, view);
   const auto part = gizmo ? part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer)) : std::nullopt;
@@ -370,6 +372,7 @@ void draw_gizmo(Editor& editor, const ViewPlace& place) {
   draw_rig_check(editor, view);
   draw_marks(editor, view);
   draw_limits(editor, view);
+  if (!editor.modal) draw_joint_handles(editor, view);
   if (editor.modal) return editor.modal->draw(editor, place);
   const auto gizmo = gizmo_in(editor, view);
   if (!gizmo) return;

@@ -16,10 +16,17 @@ constexpr double kSnapMillimetres = 5, kSnapFineMillimetres = 1, kSnapDegrees = 
 constexpr double kSnapPixels = 14;  // at scale 1: so near the pointer a joint is snapped to
 constexpr double kLeastScale = 1e-3;
 
+// A bone rolls about its middle.
+glm::dvec3 pivot_of(const RigChange& change) {
+  const BoneEnd& end = change.ends.front();
+  const Bone& bone = change.start.bones[end.bone];
+  return change.kind == RigChange::Kind::Roll ? (bone.head + bone.tail) / 2.0 : place_of(change.start, end);
+}
+
 class RigTool final : public TransformTool {
  public:
   RigTool(Editor& editor, RigChange change, const Grip& grip)
-      : TransformTool(editor, grip), change_(std::move(change)), pivot_(place_of(change_.start, change_.ends.front())),
+      : TransformTool(editor, grip), change_(std::move(change)), pivot_(pivot_of(change_)),
         angle_(view_, editor.look.scale, pivot_, grip.held && grip.lock.axis >= 0) {
     angle_.about(axis(), start_, pointer_);
     show(editor);

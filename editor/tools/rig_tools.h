@@ -18,6 +18,9 @@ struct RigChange {
 
 std::unique_ptr<TransformTool> begin_rig_change(Editor& editor, const RigChange& change, const Grip& grip = {});
 
+// The axis of the active bone's hinge goes with the pointer, with Ctrl to the nearest of the bone's own axes.
+std::unique_ptr<TransformTool> begin_hinge_change(Editor& editor, const Grip& grip = {});
+
 // Of what is chosen: "Move Forearm". A joint alone is moved; turned and scaled are whole bones.
 RigChange chosen_change(const Editor& editor, RigChange::Kind kind);
 // A bone that grows from the chosen joint.

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "editor/handling.h"
+#include "editor/joint_handles.h"
 #include "editor/rigging.h"
 #include "editor/seen_from.h"
 #include "editor/tools/snapping.h"
@@ -266,5 +267,57 @@ TEST_CASE("rigging: a bone's row is dragged onto its new parent, and onto the ar
     CHECK(parent_of("Arm.L").empty());
     test.play("key Ctrl+Z\n key Ctrl+Z");
     CHECK(parent_of("Arm.L") == "Trunk");
+  }
+}
+
+TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls the bone") {
+  for (const double scale : {1.0, 2.0}) {
+    RiggingEditor test(scale > 1 ? glm::ivec2(1800, 1200) : glm::ivec2(900, 600), scale);
+    INFO("scale ", scale);
+    test.editor->tool = Tool::Rotate;
+    test.player.settle();
+    const SeenFrom view = test.view();
+    const glm::dvec3 head = test.rig().bones[1].head, handle = hinge_handle(*test.editor, view).value();
+    CHECK(glm::distance(glm::normalize(handle - head), {1, 0, 0}) < 1e-9);
+    // From the x axis by 30 degrees towards z, in the plane of the front view.
+    const double reach = glm::distance(handle, head);
+    const glm::dvec3 to = head + reach * glm::dvec3(std::cos(glm::radians(30.0)), 0, std::sin(glm::radians(30.0)));
+    test.drag(view, handle, to);
+    test.play("expect edit \"Hinge of Fore\"");
+    const glm::dvec3 axis = test.rig().bones[1].limits.axis;
+    CHECK(glm::degrees(std::acos(std::min(1.0, glm::dot(axis, glm::normalize(to - head))))) < 0.1);
+    test.play("key Ctrl+Z");
+    CHECK(test.rig() == *limber::test::small_limb().armature);
+
+    const auto press_at = [&](const glm::dvec3& point) {
+      test.pointer_to(view.pixel_of(point).value());
+      test.host->events.push(ButtonChanged{MouseButton::Left, true});
+      test.player.settle();
+    };
+    const auto release = [&] {
+      test.host->events.push(ButtonChanged{MouseButton::Left, false});
+      test.player.settle();
+    };
+    // Ctrl takes the nearest of the bone's own axes, a letter one of the world's, Escape brings the old one back.
+    press_at(handle);
+    test.play("key-down Ctrl");
+    test.pointer_to(view.pixel_of(head + reach * glm::dvec3(0.2, 0, 1)).value());
+    CHECK(std::abs(shown_rig(*test.editor)->bones[1].limits.axis.z) == doctest::Approx(1));
+    test.play("key-up Ctrl\n key Y");
+    CHECK(std::abs(shown_rig(*test.editor)->bones[1].limits.axis.y) == doctest::Approx(1));
+    test.play("key Escape");
+    release();
+    CHECK(test.rig() == *limber::test::small_limb().armature);
+
+    // The knob about the bone's middle: typed, and dropped.
+    press_at(roll_handle(*test.editor, view).value());
+    test.play("key 4\n key 0\n key Return");
+    release();
+    CHECK(glm::degrees(test.rig().bones[1].roll) == doctest::Approx(40));
+    test.play("expect edit \"Roll Fore\"\n key Ctrl+Z");
+    press_at(roll_handle(*test.editor, view).value());
+    test.play("key 4\n key Escape");
+    release();
+    CHECK(test.rig() == *limber::test::small_limb().armature);
   }
 }
