@@ -130,8 +130,10 @@ struct Asked {
     for (size_t i = 0; i < points.size(); i += stage.stride) {
       const AtlasPoint& point = points[i];
       if (!stage.points.empty() && !stage.points[point.bone]) continue;
+      const glm::dvec3 place = mannequin.carried(point.bone, point.place);
+      if (beyond(surface.cuts, place) > 0) continue;
       rest.push_back(point);
-      here.push_back({mannequin.carried(point.bone, point.place), mannequin.turn_at(point.bone, point.place) * point.normal});
+      here.push_back({place, mannequin.turn_at(point.bone, point.place) * point.normal});
     }
     for (size_t i = 0; i < surface.sparse.size(); i += stage.stride)
       if (stage.reach <= 0 || glm::distance(surface.sparse[i].place, stage.around) < stage.reach) goals.push_back(surface.sparse[i]);
@@ -625,8 +627,10 @@ std::vector<double> share_near(const Mannequin& mannequin, const FitSurface& sur
   const auto& points = bones ? mannequin.atlas().bone : mannequin.atlas().skin;
   std::vector<double> all(mannequin.bone_count(), 0), close(all);
   for (const AtlasPoint& point : points) {
+    const glm::dvec3 place = mannequin.carried(point.bone, point.place);
+    if (beyond(surface.cuts, place) > 0) continue;
     ++all[point.bone];
-    close[point.bone] += surface.tree.nearest(mannequin.carried(point.bone, point.place), mannequin.turn_at(point.bone, point.place) * point.normal, near) >= 0;
+    close[point.bone] += surface.tree.nearest(place, mannequin.turn_at(point.bone, point.place) * point.normal, near) >= 0;
   }
   for (size_t b = 0; b < all.size(); ++b) close[b] = all[b] > 0 ? close[b] / all[b] : -1;
   return close;

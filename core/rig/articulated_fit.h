@@ -11,6 +11,7 @@
 #include "core/base/progress.h"
 #include "core/rig/body_atlas.h"
 #include "core/rig/surface_points.h"
+#include "core/rig/tissue_cuts.h"
 
 namespace limber {
 
@@ -52,9 +53,11 @@ class Mannequin {
   std::vector<glm::dmat3> moved_;
 };
 
-// A surface to fit to.
+// A surface to fit to. Beyond its cuts nothing is known: what the atlas has there is not asked for.
 struct FitSurface {
-  explicit FitSurface(std::vector<SurfacePoint> all, double step) : points(std::move(all)), sparse(thinned(points, step)), tree(points) {}
+  explicit FitSurface(std::vector<SurfacePoint> all, double step, std::vector<TissueCut> where = {})
+      : cuts(std::move(where)), points(std::move(all)), sparse(thinned(points, step)), tree(points) {}
+  std::vector<TissueCut> cuts;
   std::vector<SurfacePoint> points, sparse;  // all, and some to ask from
   PointTree tree;
 };
@@ -95,7 +98,7 @@ RodShare rod_share(const Mannequin& mannequin, const std::vector<glm::dvec3>& ce
 //   within  its stride, points, around and reach are used
 double misfit(const Mannequin& mannequin, const FitSurface* skin, const FitSurface* bone, double cap, const FitStage& within);
 
-// Per bone of the atlas: share of its points, 0 .. 1, that lie within `near` mm of the surface; -1 where it has none.
+// Per bone of the atlas: share of its points, 0 .. 1, that lie within `near` mm of the surface; -1 where it has none to ask for.
 std::vector<double> share_near(const Mannequin& mannequin, const FitSurface& surface, bool bones, double near);
 
 }  // namespace limber

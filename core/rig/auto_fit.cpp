@@ -23,6 +23,7 @@
 #include "core/rig/limb_paths.h"
 #include "core/rig/rig_placing.h"
 #include "core/rig/surface_points.h"
+#include "core/rig/tissue_cuts.h"
 #include "core/volume/distance.h"
 
 namespace limber {
@@ -37,6 +38,7 @@ constexpr std::int64_t kBoneCells = 6000;
 // What is fitted to.
 struct Target {
   Occupancy body, rough_body, bone_body;  // rough enough for ways through it
+  std::vector<TissueCut> cuts;
   double length = 0;  // mm, diagonal of the tissue's extent
   double cell = 0;    // mm, the largest side of a cell
   std::optional<FitSurface> skin, bone;
@@ -59,6 +61,12 @@ std::vector<glm::dvec3> filled_cells(const Occupancy& occupancy, std::int64_t mo
   return centres;
 }
 
+std::vector<SurfacePoint> surface_seen(const Occupancy& cells, const std::vector<TissueCut>& cuts) {
+  std::vector<SurfacePoint> points = surface_points(cells);
+  drop_cut_faces(points, cuts, 1.5 * std::max({cells.grid.spacing.x, cells.grid.spacing.y, cells.grid.spacing.z}));
+  return points;
+}
+
 Target make_target(const LabelVolume& volume) {
   const VoxelBox box = tissue_box(volume);
   if (box.voxel_count() == 0) throw Error("a volume without tissue cannot be rigged", "every voxel is air", "give a label volume with tissue");
@@ -71,10 +79,10 @@ Target make_target(const LabelVolume& volume) {
   target.body = occupancy_of(volume, all, spacing);
   close_body(target.body);
   target.rough_body = coarsened(target.body, longest / kRoughCells);
-  std::vector<SurfacePoint> skin = surface_points(target.body);
   target.length = glm::length(sides);
   target.cell = std::max({target.body.grid.spacing.x, target.body.grid.spacing.y, target.body.grid.spacing.z});
-  target.skin.emplace(std::move(skin), longest / 150);
+  target.cuts = tissue_cuts(volume);
+  target.skin.emplace(surface_seen(target.body, target.cuts), longest / 150, target.cuts);
   return target;
 }
 
@@ -91,7 +99,7 @@ void add_bone(Target& target, const LabelVolume& volume, const LabelSet& labels)
     });
   };
   if (filled(target.bone_body) <= kLeastBone * filled(target.body)) return;
-  target.bone.emplace(surface_points(target.bone_body), longest / 200);
+  target.bone.emplace(surface_seen(target.bone_body, target.cuts), longest / 200, target.cuts);
   target.bone_cells = filled_cells(target.bone_body, kBoneCells);
 }
 
@@ -273,6 +281,7 @@ std::string_view to_string(JointFit::How how) {
     case JointFit::How::Ball: return "joint ball";
     case JointFit::How::Carried: return "carried along";
     case JointFit::How::Extents: return "extents";
+    case JointFit::How::Unseen: return "proportion";
   }
   return "";
 }
@@ -303,11 +312,52 @@ Fitted best_start(const std::vector<AtlasKind>& kinds, const Target& target, Pro
       progress.update("starting", done++ / double(2 * kinds.size()));
       if (kind == AtlasKind::Body && mirror) continue;
       Fitted tried{.atlas = std::make_shared<BodyAtlas>(mirror ? mirrored(atlas) : atlas), .body = std::nullopt};
-      take_best_start(tried, target, kind == AtlasKind::Body ? body_starts(*tried.atlas, target.rough_body) : limb_starts(*tried.atlas, target.rough_body, kind));
+      take_best_start(tried, target, kind == AtlasKind::Body ? body_starts(*tried.atlas, target.rough_body, target.cuts) : limb_starts(*tried.atlas, target.rough_body, kind, target.cuts));
       if (tried.body && tried.misfit < best.misfit) best = tried;
     }
   }
   return best;
+}
+
+// The bones that are seen well enough, and from one to the next: those beyond a cut are not, nor a hand whose forearm is cut away.
+std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const Target& target) {
+  constexpr double kLeast = 0.3;  // of a bone's skin
+  const Mannequin& m = *fitted.body;
+  std::vector<double> all(m.bone_count(), 0), inside(all);
+  for (const AtlasPoint& point : m.atlas().skin) ++all[point.bone], inside[point.bone] += beyond(target.cuts, m.carried(point.bone, point.place)) <= 0;
+  // Pieces of the skeleton by their uppermost bone.
+  std::vector<int> piece(m.bone_count(), -1);
+  std::vector<double> weight(m.bone_count(), 0);
+  for (int b = 0; b < m.bone_count(); ++b) {
+    const int parent = m.atlas().rig.bones[b].parent;
+    const bool seen = all[b] > 0 ? inside[b] >= kLeast * all[b] : parent >= 0 && piece[parent] >= 0;
+    if (!seen) continue;
+    piece[b] = parent >= 0 && piece[parent] >= 0 ? piece[parent] : b;
+    weight[piece[b]] += inside[b];
+  }
+  const int largest = static_cast<int>(std::max_element(weight.begin(), weight.end()) - weight.begin());
+  std::vector<std::uint8_t> result;
+  for (int b = 0; b < m.bone_count(); ++b) result.push_back(piece[b] == largest);
+  return result;
+}
+
+// Bones that nothing shows lie as those of the other side do, or as the atlas has them.
+void lay_unseen(Fitted& fitted, const std::vector<std::uint8_t>& seen) {
+  Mannequin& m = *fitted.body;
+  const Armature& rig = m.atlas().rig;
+  const glm::dmat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);
+  std::vector<std::uint8_t> holds_seen = seen;
+  for (int b = m.bone_count(); b-- > 0;)
+    if (holds_seen[b] && rig.bones[b].parent >= 0) holds_seen[rig.bones[b].parent] = 1;
+  for (int b = 0; b < m.bone_count(); ++b) {
+    const int parent = rig.bones[b].parent;
+    if (holds_seen[b] || parent < 0) continue;
+    m.turn[b] = m.turn[parent];
+    const std::string& name = rig.bones[b].name;
+    const auto other = name.starts_with("Left") ? rig.find("Right" + name.substr(4)) : name.starts_with("Right") ? rig.find("Left" + name.substr(5)) : std::nullopt;
+    if (other && seen[*other]) m.turn[b] = m.turn[parent] * mirror * glm::transpose(m.turn[rig.bones[*other].parent]) * m.turn[*other] * mirror;
+  }
+  m.settle();
 }
 
 // Confidence in the heads of the fitted body's bones: how much of the surface on either side of the joint lies where it should.
@@ -339,6 +389,7 @@ std::vector<double> strangeness(const Fitted& fitted, const Target& target) {
   for (const AtlasPoint& point : m.atlas().skin) {
     const glm::dvec3 here = m.carried(point.bone, point.place);
     const int n = target.skin->tree.nearest(here, m.turn_at(point.bone, point.place) * point.normal, reach);
+    if (beyond(target.cuts, here) > 0) continue;
     off[point.bone].push_back(n < 0 ? reach : std::abs(glm::dot(target.skin->points[n].normal, here - target.skin->points[n].place)));
   }
   std::vector<double> result;
@@ -375,9 +426,12 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
     found.how.push_back({.how = rod ? How::BoneAxis : by_bone ? How::BoneSurface : How::Skin, .confidence = rod ? 0.9 : near[b], .error = rod ? kByAxis : kLeastError + strange[b] * other});
   }
   const auto take = [&](const JointLandmark& mark, How how, double weight, double error) {
+    const double off = glm::distance(found.places[mark.bone], mark.place);
     found.places[mark.bone] = glm::mix(found.places[mark.bone], mark.place, weight);
     JointFit& joint = found.how[mark.bone];
     joint.error = std::min(joint.error, glm::mix(joint.error, error, weight));
+    // Two ways of finding it that disagree: skin alone slides along a limb.
+    if (how == How::Girth && joint.how == How::Skin) joint.error = std::max(joint.error, (1 - weight) * off);
     if (weight > 0.5) joint.how = how;
   };
   for (const JointLandmark& mark : girth_landmarks(m, target.body)) {
@@ -389,9 +443,19 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
   }
   if (by_bone)
     for (const JointLandmark& mark : ball_landmarks(m, *target.bone)) take(mark, How::Ball, strange[mark.bone], kByBall);
+  // Where little of the body lies where it should, nothing is sure, whatever was found there.
+  constexpr double kFew = 0.35, kFarOff = 100;  // share, and mm at none
+  // Bodies of other shapes fitted well came out at 0.011 of the tissue's diagonal at most, wrong ones at twice that and more.
+  constexpr double kUnlike = 0.013, kWrong = 6;
+  const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.misfit) - kUnlike * target.length);
   // Half sure of what may lie off by as much as a joint is thick.
   constexpr double kJoint = 40;
-  for (JointFit& joint : found.how) joint.confidence *= 1 / (1 + joint.error / kJoint);
+  for (int b = 0; b < m.bone_count(); ++b) {
+    JointFit& joint = found.how[b];
+    if (joint.how != How::BoneAxis) joint.error = std::max(joint.error, kFarOff * std::max(0.0, kFew - near[b]));
+    joint.error = std::max(joint.error, kWrong * unlike);
+    joint.confidence *= 1 / (1 + joint.error / kJoint);
+  }
   return found;
 }
 
@@ -418,50 +482,32 @@ LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, cons
   return labels;
 }
 
-// Where the grid ends within the tissue: the cells there, of each face of the grid on which they are more than a touch.
-std::vector<glm::dvec3> cut_cells(const Occupancy& body) {
-  constexpr double kTouch = 0.03;  // of the grid's longest side: how wide a cut is at least
-  const glm::ivec3 size = body.grid.size;
-  const glm::dvec3 sides = glm::dvec3(size) * body.grid.spacing;
-  const double least = kTouch * std::max({sides.x, sides.y, sides.z});
-  const AffineTransform to_world = world_from_voxel(body.grid);
-  std::vector<glm::dvec3> cells;
-  for (int axis = 0; axis < 3; ++axis)
-    for (int end : {0, size[axis] - 1}) {
-      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-      std::vector<glm::dvec3> face;
-      for (int j = 0; j < size[v]; ++j)
-        for (int i = 0; i < size[u]; ++i) {
-          glm::ivec3 cell(0);
-          cell[axis] = end, cell[u] = i, cell[v] = j;
-          if (body.filled(cell)) face.push_back(to_world * glm::dvec3(cell));
-        }
-      if (double(face.size()) * body.grid.spacing[u] * body.grid.spacing[v] > least * least) cells.insert(cells.end(), face.begin(), face.end());
-    }
-  return cells;
-}
-
-// A limb that the grid's border cuts off looks short: what is found of it is not to be trusted.
+// What lies beyond a cut is laid on by proportion alone, and a limb that is cut off looks short.
 void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& found, std::vector<std::string>& warnings) {
-  const std::vector<glm::dvec3> cut = cut_cells(target.body);
-  if (cut.empty()) return;
-  constexpr double kNear = 0.08, kStrange = 5;  // of the tissue's diagonal; mm of error from which a joint is of another shape
+  constexpr double kNear = 0.05, kStrange = 5;  // of the tissue's diagonal; mm of error from which a joint is of another shape
+  constexpr double kLeast = 30, kGrowth = 0.25;  // mm off at the cut, and more with every mm beyond it
   const Armature& rig = fitted.atlas->rig;
-  std::set<int> doubted;
-  for (int b = 0; b < std::ssize(rig.bones); ++b) {
-    if (is_digit(rig.bones[b].name) || found.how[b].error < kStrange) continue;
-    const double reach = kNear * target.length;
-    if (std::none_of(cut.begin(), cut.end(), [&](const glm::dvec3& cell) { return glm::distance(cell, found.places[b]) < reach; })) continue;
-    doubted.insert(b);
-    if (ends_with_any(rig.bones[b].name, {"Foot", "Toes", "Hand"}) && rig.bones[b].parent >= 0) doubted.insert(rig.bones[b].parent);
+  const std::vector<std::uint8_t> seen = seen_bones(fitted, target);
+  std::string unseen, doubted;
+  const auto list = [&](std::string& names, int b) { names += (names.empty() ? "" : ", ") + rig.bones[b].name; };
+  for (int b = 0; b < std::ssize(rig.bones) && !target.cuts.empty(); ++b) {
+    const double out = beyond(target.cuts, found.places[b]);
+    JointFit& joint = found.how[b];
+    const int parent = rig.bones[b].parent;
+    if (out > 0 || (!seen[b] && (parent < 0 || !seen[parent]))) {
+      const double from_cut = out > 0 ? out : 0.1 * target.length;
+      joint = {.how = JointFit::How::Unseen, .confidence = 0, .error = std::max(joint.error, kLeast + kGrowth * from_cut)};
+      // Each bone on the way from what is seen may be turned otherwise.
+      if (parent >= 0 && !seen[parent]) joint.error = std::max(joint.error, found.how[parent].error + kGrowth * glm::distance(found.places[parent], found.places[b]));
+      if (!is_digit(rig.bones[b].name)) list(unseen, b);
+    } else if (out > -kNear * target.length && joint.error > kStrange) {
+      joint.confidence *= 0.4;
+      joint.error = std::max(joint.error, kLeast);
+      if (!is_digit(rig.bones[b].name)) list(doubted, b);
+    }
   }
-  std::string names;
-  for (int b : doubted) {
-    names += (names.empty() ? "" : ", ") + rig.bones[b].name;
-    found.how[b].confidence *= 0.4;
-    found.how[b].error = std::max(found.how[b].error, 0.05 * target.length);
-  }
-  if (!names.empty()) warnings.push_back("the grid's border cuts the tissue off; what goes on beyond it is not seen and these joints may lie far off: " + names);
+  if (!unseen.empty()) warnings.push_back("the tissue is cut off, and beyond the cut these joints are laid on by proportion alone: " + unseen);
+  if (!doubted.empty()) warnings.push_back("the tissue is cut off close to these joints, which may lie far off: " + doubted);
 }
 
 AutoFit by_extents(const LabelVolume& volume, const Armature& rig, const std::string& reason) {
@@ -479,7 +525,7 @@ void warn_of_joints(AutoFit& result) {
   for (size_t b = 0; b < result.joints.size(); ++b) {
     const JointFit& joint = result.joints[b];
     const auto list = [&](std::string& names) { names += (names.empty() ? "" : ", ") + result.armature.bones[b].name; };
-    const bool found = joint.how != JointFit::How::Carried && joint.how != JointFit::How::Extents;
+    const bool found = joint.how != JointFit::How::Carried && joint.how != JointFit::How::Extents && joint.how != JointFit::How::Unseen;
     if (found && joint.confidence < kDoubtful) list(doubtful);
     else if (found && joint.error > kFarOff) list(far_off), farthest = std::max(farthest, joint.error);
     if (result.check.share[b] < kOutside) list(outside);
@@ -526,11 +572,12 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
     progress.update("fitting", 0.3);
     add_bone(target, volume, bone_labels(volume, tissues, fitted, result.warnings));
     refine(fitted, target, progress);
+    if (!target.cuts.empty()) lay_unseen(fitted, seen_bones(fitted, target));
     FoundJoints found = found_joints(fitted, target);
     doubt_cut_limbs(fitted, target, found, result.warnings);
     const PlacedRig placed = place_rig(rig, *fitted.body, found.places);
     result.armature = placed.armature;
-    draw_inside(result.armature, target.body);
+    draw_inside(result.armature, target.body, target.cuts);
     result.misfit_mm = fitted.misfit;
     for (size_t b = 0; b < rig.bones.size(); ++b) {
       const int match = placed.joint_of[b];

@@ -8,6 +8,9 @@
 //      their axes instead. Without a table bone is the label that the long bones run through (core/rig/bone_tissue.h);
 //   4  where the skin is not that of the known body, landmarks of the volume's own shape put joints right
 //      (core/rig/joint_landmarks.h).
+// Of a body that was cut off (core/rig/tissue_cuts.h) only what is there is fitted; what lies beyond is laid on by proportion,
+// and said to be.
+//
 // The joints of any rig are then put where the body's joints came to lie, matched by what their names mean
 // (core/rig/joint_names.h); those between and below ride along. A rig whose names mean nothing is laid into the tissue's
 // extents.
@@ -27,7 +30,7 @@
 namespace limber {
 
 struct JointFit {
-  enum class How { Skin, BoneSurface, BoneAxis, Girth, Ball, Carried, Extents };
+  enum class How { Skin, BoneSurface, BoneAxis, Girth, Ball, Carried, Extents, Unseen };  // Unseen: beyond a cut
   How how = How::Carried;
   double confidence = 0;  // 0 .. 1
   double error = 0;       // mm that it may lie off, by how joints found in such a way came out on bodies whose joints are known

@@ -98,16 +98,60 @@ std::pair<glm::dvec3, glm::dvec3> extent_of(const Occupancy& body) {
 
 }  // namespace
 
-std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body) {
+namespace {
+
+constexpr double kStature = 1748, kHips = 925, kHalfSpan = 610;  // mm, of the atlas: heights above the soles, and from the middle to a hand
+
+bool is_cut(const std::vector<TissueCut>& cuts, const glm::dvec3& way) {
+  return std::any_of(cuts.begin(), cuts.end(), [&](const TissueCut& cut) { return glm::dot(cut.normal, way) > 0.9; });
+}
+
+// One number, or some from one to the other.
+std::vector<double> ladder(double from, double to, int steps) {
+  std::vector<double> rungs;
+  for (int k = 0; k < steps; ++k) rungs.push_back(steps > 1 ? from + (to - from) * k / (steps - 1) : from);
+  return rungs;
+}
+
+// Standing in LPS, with the extent that is seen laid on that of the whole body in every way that the cuts leave open.
+void add_cut_bodies(const BodyAtlas& atlas, const glm::dvec3& low, const glm::dvec3& high, const std::vector<TissueCut>& cuts, std::vector<Mannequin>& starts) {
+  const bool no_feet = is_cut(cuts, {0, 0, -1}), no_head = is_cut(cuts, {0, 0, 1});
+  const bool no_right = is_cut(cuts, {-1, 0, 0}), no_left = is_cut(cuts, {1, 0, 0});
+  const double height = high.z - low.z;
+  std::vector<double> scales{1, 0.8, 0.64};
+  if (!no_feet && !no_head) scales = {height / kStature};
+  for (double scale : scales) {
+    const double whole = scale * kStature;
+    std::vector<double> soles{low.z};
+    if (no_feet) soles = {high.z - whole};
+    if (no_feet && no_head) soles = ladder(low.z, high.z - whole, std::max(1, static_cast<int>(std::ceil((whole - height) / (0.07 * whole)))));
+    std::vector<double> middles{(low.x + high.x) / 2};
+    if (no_left && !no_right) middles = {high.x, low.x + scale * kHalfSpan};
+    if (no_right && !no_left) middles = {low.x, high.x - scale * kHalfSpan};
+    for (double sole : soles)
+      for (double middle : middles)
+        for (double raised : {0.0, -0.6, 0.8}) {
+          Mannequin m(atlas);
+          put_body(m, glm::dmat3(1), scale, {middle, (low.y + high.y) / 2, sole + scale * kHips});
+          for (const auto& [name, side] : {std::pair("LeftUpperArm", -1.0), std::pair("RightUpperArm", 1.0)})
+            if (const auto arm = atlas.rig.find(name)) m.turn_branch(*arm, glm::mat3_cast(glm::angleAxis(side * raised, glm::dvec3(0, 1, 0))));
+          starts.push_back(m);
+        }
+  }
+}
+
+}  // namespace
+
+std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body, const std::vector<TissueCut>& cuts) {
   std::vector<Mannequin> starts;
   const auto [low, high] = extent_of(body);
+  if (!cuts.empty()) add_cut_bodies(atlas, low, high, cuts, starts);
   const auto paths = limb_paths(body, PathCentre::Thickest);
   const Armature& rig = atlas.rig;
-  const double stature = 1748;
   {
     Mannequin upright(atlas);
-    const double scale = (high.z - low.z) / stature;
-    put_body(upright, glm::dmat3(1), scale, glm::dvec3((low.x + high.x) / 2, (low.y + high.y) / 2, low.z + 925 * scale));
+    const double scale = (high.z - low.z) / kStature;
+    put_body(upright, glm::dmat3(1), scale, glm::dvec3((low.x + high.x) / 2, (low.y + high.y) / 2, low.z + kHips * scale));
     starts.push_back(upright);
   }
   if (paths.size() < 3) return starts;
@@ -145,7 +189,22 @@ std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body
   return starts;
 }
 
-std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body, AtlasKind kind) {
+namespace {
+
+// Straight on, before the way's first point or beyond its last one.
+void extend(LimbPath& path, double by, bool before) {
+  if (path.points.size() < 2) return;
+  constexpr size_t kSteps = 8;  // that tell the way on
+  if (before) std::reverse(path.points.begin(), path.points.end());
+  const glm::dvec3 last = path.points.back(), out = last - path.points[path.points.size() - 1 - std::min(path.points.size() - 1, kSteps)];
+  for (double along = path.step; along <= by && glm::length(out) > 0; along += path.step) path.points.push_back(last + along * glm::normalize(out));
+  path.length = path.step * double(path.points.size() - 1);
+  if (before) std::reverse(path.points.begin(), path.points.end());
+}
+
+}  // namespace
+
+std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body, AtlasKind kind, const std::vector<TissueCut>& cuts) {
   // Flesh goes on some way beyond the joint that a limb begins with.
   constexpr double beyond_root = 40;
   const Chain chain = chain_for(kind, atlas.rig);
@@ -155,18 +214,29 @@ std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body
   LimbPath path = paths[0];
   const Armature& rig = atlas.rig;
   const double length = beyond_root + length_from(rig, chain, 0);
-  const double scale = path.length / length;
+  // As long as what is there; or of an adult's size, whose tip or root was cut off.
+  struct Lie {
+    double scale;
+    bool no_tip;
+  };
+  std::vector<Lie> lies{{path.length / length, false}};
+  if (!cuts.empty() && path.length < 0.9 * length) lies.insert(lies.end(), {{1, true}, {1, false}});
   for (int way = 0; way < 2; ++way) {
-    for (int roll = 0; roll < 8; ++roll) {
-      Mannequin m(atlas);
-      const glm::dvec3 start = path.at(path.length - beyond_root * scale), on = path.at(path.length - (beyond_root + 0.4 * (length - beyond_root)) * scale) - start;
-      if (!(glm::length(on) > 0)) return starts;
-      const glm::dvec3 first = rig.bones[chain.bones[0]].head, rest = (chain.bones.size() > 1 ? rig.bones[chain.bones[1]].head : rig.bones[chain.last].tail) - first;
-      const glm::dmat3 lie = turn_between(rest, on);
-      const glm::dmat3 about = glm::mat3_cast(glm::angleAxis(roll * kPi / 4, glm::normalize(on)));
-      put_body(m, about * lie, scale, start);
-      lay_chain(m, chain, path, scale);
-      starts.push_back(m);
+    for (const auto& [scale, no_tip] : lies) {
+      LimbPath whole = path;
+      extend(whole, scale * length - path.length, no_tip);
+      for (int roll = 0; roll < 8; ++roll) {
+        Mannequin m(atlas);
+        const double root = scale * (length - beyond_root);
+        const glm::dvec3 start = whole.at(root), on = whole.at(0.6 * root) - start;
+        if (!(glm::length(on) > 0)) break;
+        const glm::dvec3 first = rig.bones[chain.bones[0]].head, rest = (chain.bones.size() > 1 ? rig.bones[chain.bones[1]].head : rig.bones[chain.last].tail) - first;
+        const glm::dmat3 lie = turn_between(rest, on);
+        const glm::dmat3 about = glm::mat3_cast(glm::angleAxis(roll * kPi / 4, glm::normalize(on)));
+        put_body(m, about * lie, scale, start);
+        lay_chain(m, chain, whole, scale);
+        starts.push_back(m);
+      }
     }
     std::reverse(path.points.begin(), path.points.end());
   }

@@ -7,14 +7,17 @@
 
 #include "core/rig/articulated_fit.h"
 #include "core/rig/surface_points.h"
+#include "core/rig/tissue_cuts.h"
 
 namespace limber {
 
-// Upright in the tissue's extents; and, where ends can be told for head and feet, along the limbs, facing either way.
+// Upright in the tissue's extents; and, where ends can be told for head and feet, along the limbs, facing either way. Of a body
+// that was cut off: upright and of several sizes, with the end that is there in its place, arms lowered, aside and raised.
 //   body  cells of some 10 mm will do
-std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body);
+std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body, const std::vector<TissueCut>& cuts);
 
-// A single limb runs from its farthest end to the other one; it may run either way, turned about itself in eight ways.
-std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body, AtlasKind kind);
+// A single limb runs from its farthest end to the other one; it may run either way, turned about itself in eight ways. One
+// that was cut off may also be longer than what is there.
+std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body, AtlasKind kind, const std::vector<TissueCut>& cuts);
 
 }  // namespace limber

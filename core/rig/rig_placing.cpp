@@ -227,13 +227,13 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vecto
   return result;
 }
 
-void draw_inside(Armature& rig, const Occupancy& body) {
+void draw_inside(Armature& rig, const Occupancy& body, const std::vector<TissueCut>& cuts) {
   const AffineTransform to_cell = voxel_from_world(body.grid), to_world = world_from_voxel(body.grid);
   const double cell = std::min({body.grid.spacing.x, body.grid.spacing.y, body.grid.spacing.z});
   // The nearest cell that is filled like all beside it.
   const auto inside = [&](const glm::dvec3& place, double reach) {
     const glm::ivec3 at(glm::clamp(glm::floor(to_cell * place + 0.5), glm::dvec3(-1), glm::dvec3(body.grid.size)));
-    if (body.filled(at)) return place;
+    if (body.filled(at) || beyond(cuts, place) > 0) return place;
     constexpr double kMostCells = 16;
     const int cells = static_cast<int>(std::min(kMostCells, reach / cell));
     double least = reach;
