@@ -314,10 +314,26 @@ std::string joint_heading(const BvhJoint& joint, const std::string& indent) {
   for (BvhChannel channel : joint.channels) text += std::string(" ") + kNames[static_cast<int>(channel)];
   return text + "\n";
 }
+
+// The order in which a text nests: each followed by all that hangs on it, siblings as they came.
+template <class Items>
+std::vector<int> depth_first(const Items& items) {
+  const int count = static_cast<int>(items.size());
+  std::vector<std::vector<int>> below(items.size());
+  std::vector<int> ready, order;
+  for (int i = count; i-- > 0;) (items[i].parent < 0 ? ready : below[items[i].parent]).push_back(i);
+  while (!ready.empty()) {
+    const int i = ready.back();
+    ready.pop_back();
+    ready.insert(ready.end(), below[i].begin(), below[i].end());
+    order.push_back(i);
+  }
+  return order;
+}
 }  // namespace
 
 std::string bvh_text(const Motion& motion) {
-  const int count = static_cast<int>(motion.joints.size());
+  const std::vector<int> order = depth_first(motion.joints);
   std::string text = "HIERARCHY\n";
   std::vector<int> open;
   // Deeper than anyone looks, the text stops moving right: a chain of thousands would be mostly blanks.
@@ -328,7 +344,7 @@ std::string bvh_text(const Motion& motion) {
       text += indentation() + "}\n";
     }
   };
-  for (int j = 0; j < count; ++j) {
+  for (int j : order) {
     const BvhJoint& joint = motion.joints[j];
     close_until(joint.parent);
     const std::string indent = indentation();
@@ -340,9 +356,14 @@ std::string bvh_text(const Motion& motion) {
   close_until(-1);
 
   text += "MOTION\nFrames: " + std::to_string(motion.frame_count) + "\nFrame Time: " + digits(motion.frame_time) + "\n";
-  for (size_t i = 0; i < motion.values.size(); ++i) {
-    text += digits(motion.values[i]);
-    text += (i + 1) % motion.channel_count ? ' ' : '\n';
+  for (int frame = 0; frame < motion.frame_count; ++frame) {
+    const float* row = motion.values.data() + std::int64_t{frame} * motion.channel_count;
+    int written = 0;
+    for (int j : order)
+      for (size_t c = 0; c < motion.joints[j].channels.size(); ++c) {
+        text += digits(row[motion.joints[j].first_channel + c]);
+        text += ++written < motion.channel_count ? ' ' : '\n';
+      }
   }
   return text;
 }
@@ -404,14 +425,8 @@ Motion motion_of(const Armature& armature) {
   for (const Bone& bone : armature.bones)
     if (bone.parent >= 0) ++children[bone.parent];
 
-  // Depth first, because the text nests.
-  std::vector<std::vector<int>> below(armature.bones.size());
-  std::vector<int> ready, place(armature.bones.size());
-  for (int i = static_cast<int>(armature.bones.size()); i-- > 0;) (armature.bones[i].parent < 0 ? ready : below[armature.bones[i].parent]).push_back(i);
-  while (!ready.empty()) {
-    const int i = ready.back();
-    ready.pop_back();
-    ready.insert(ready.end(), below[i].begin(), below[i].end());
+  std::vector<int> place(armature.bones.size());
+  for (int i : depth_first(armature.bones)) {
     const Bone& bone = armature.bones[i];
     BvhJoint joint;
     joint.name = bone.name;

@@ -50,7 +50,8 @@ struct Motion {
 Motion read_bvh(const Path& path);
 Motion parse_bvh(const std::string& text, const std::string& where);
 
-// What reads back as the same joints and values. A joint's name keeps its spaces and loses line breaks and braces.
+// What reads back as the same joints and values; joints that do not follow their parents are put behind them, since the
+// text nests. A joint's name keeps its spaces and loses line breaks and braces.
 void write_bvh(const Motion& motion, const Path& path);
 std::string bvh_text(const Motion& motion);
 

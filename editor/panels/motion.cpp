@@ -59,18 +59,21 @@ void draw_motion(Editor& editor, Column& column) {
       operator_button(editor, "file.import_motion", {{row.low.x + look.px(10), row.low.y}, {row.high.x - look.px(10), row.low.y + look.px(26)}}, "Import BVH...");
     } else {
       draw_clip_row(editor, column);
+      clip = shown_clip(editor);  // perhaps another one was chosen
       const ClipOnRig* on_rig = clip_on_rig(editor);
-      if (clip->motion && on_rig) {
+      if (clip && clip->motion && on_rig) {
+        // What is chosen below replaces the clip and how it lies on the rig.
+        bool mirrored = clip->retarget.mirror;
+        const std::string problem = on_rig->problem();
         draw_match(editor, column, *on_rig);
         choice_of_operators(editor, column.property("Travel"), "Travel", {"motion.travel_locked", "motion.travel_in_place", "motion.travel_free"});
         choice_of_operators(editor, column.property("Stands as"), "Stands as", {"motion.reference_found", "motion.reference_rest", "motion.reference_first"});
         const Rect mirror = column.property("Options");
-        bool on = clip->retarget.mirror;
-        if (checkbox(editor, "motion.mirror", mirror, "Mirror", on)) run(editor, "motion.mirror");
+        if (checkbox(editor, "motion.mirror", mirror, "Mirror", mirrored)) run(editor, "motion.mirror");
         if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, "motion.mirror"), mirror);
-        if (!on_rig->problem().empty()) {
+        if (!problem.empty()) {
           const Rect row = column.row(40);
-          put_wrapped(editor, look.fonts.small, look.theme.warn, {row.low.x + look.px(10), row.low.y}, row.width() - look.px(20), on_rig->problem(), 2);
+          put_wrapped(editor, look.fonts.small, look.theme.warn, {row.low.x + look.px(10), row.low.y}, row.width() - look.px(20), problem, 2);
         }
       }
     }

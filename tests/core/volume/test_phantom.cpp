@@ -87,7 +87,7 @@ TEST_CASE("every bone of the body phantom is a piece of its own, with marrow cor
   CHECK(large(marrow, 30) >= 12);  // humeri, radii, ulnae, femora, tibiae, fibulae
 }
 
-TEST_CASE("a phantom's motion is its own rig's: at rest each joint lies on its bone's head, and feet alternate") {
+TEST_CASE("a phantom's motion is its own rig's: at rest each joint lies on its bone's head, feet alternate, and it is read as it is written") {
   for (const Phantom& phantom : {make_arm_phantom(6), make_body_phantom(10)}) {
     CHECK(phantom.motion.frame_count == 60);
     REQUIRE(phantom.motion.joints.size() == phantom.armature.bones.size());
@@ -101,6 +101,14 @@ TEST_CASE("a phantom's motion is its own rig's: at rest each joint lies on its b
     CHECK(worst < 1e-9);
   }
   const Phantom body = make_body_phantom(10);
+  const Motion read = parse_bvh(bvh_text(body.motion), "walk.bvh");
+  const auto rest = forward_kinematics(body.motion, 30), again = forward_kinematics(read, 30);
+  double worst = 0;
+  for (std::size_t i = 0; i < read.joints.size(); ++i)
+    worst = std::max(worst, glm::length(again[i].translation - rest[require_bone(body.armature, read.joints[i].name)].translation));
+  CHECK(read.joints.size() == rest.size());
+  CHECK(worst < 1e-9);
+
   const auto ahead = [&](int frame) {  // of the left ankle before the right one, mm
     const auto pose = forward_kinematics(body.motion, frame);
     const auto at = [&](const char* name) { return pose[require_bone(body.armature, name)].translation.z; };
