@@ -319,20 +319,21 @@ Fitted best_start(const std::vector<AtlasKind>& kinds, const Target& target, Pro
   return best;
 }
 
-// The bones that are seen well enough, and from one to the next: those beyond a cut are not, nor a hand whose forearm is cut away.
+// The bones that are seen well enough, and from one to the next: those beyond a cut are not, nor a hand whose forearm is cut
+// away; but both legs of a body without hips are, since they hang from one bone.
 std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const Target& target) {
   constexpr double kLeast = 0.3;  // of a bone's skin
   const Mannequin& m = *fitted.body;
   std::vector<double> all(m.bone_count(), 0), inside(all);
   for (const AtlasPoint& point : m.atlas().skin) ++all[point.bone], inside[point.bone] += beyond(target.cuts, m.carried(point.bone, point.place)) <= 0;
-  // Pieces of the skeleton by their uppermost bone.
+  // Pieces of the skeleton by the bone they hang from.
   std::vector<int> piece(m.bone_count(), -1);
   std::vector<double> weight(m.bone_count(), 0);
   for (int b = 0; b < m.bone_count(); ++b) {
     const int parent = m.atlas().rig.bones[b].parent;
     const bool seen = all[b] > 0 ? inside[b] >= kLeast * all[b] : parent >= 0 && piece[parent] >= 0;
     if (!seen) continue;
-    piece[b] = parent >= 0 && piece[parent] >= 0 ? piece[parent] : b;
+    piece[b] = parent < 0 ? b : piece[parent] >= 0 ? piece[parent] : parent;
     weight[piece[b]] += inside[b];
   }
   const int largest = static_cast<int>(std::max_element(weight.begin(), weight.end()) - weight.begin());

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <doctest/doctest.h>
-
 namespace limber::test {
 
 struct ProgramRun {

@@ -12,7 +12,9 @@
 #include "core/pose/pose.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/fit_check.h"
+#include "core/resample/resample.h"
 #include "core/rig/templates.h"
+#include "core/skin/heat_diffusion.h"
 #include "core/volume/phantom.h"
 #include "core/volume/volume_io.h"
 #include "tests/support/shared_data.h"
@@ -216,6 +218,31 @@ TEST_CASE("auto-fit: the main joints of a real body lie within 18 mm") {
       if (name.ends_with(part)) CHECK(error < 18);
   }
   CHECK(fitted.check.whole > 0.99);
+}
+
+TEST_CASE("auto-fit: the legs of a body without its upper half lie where they are, each for itself") {
+  const Phantom body = make_body_phantom(8);
+  Pose stride = rest_pose(body.armature);
+  flex(stride, body.armature, require_bone(body.armature, "LeftThigh"), 25);
+  flex(stride, body.armature, require_bone(body.armature, "RightShank"), 20);
+  const SkinWeights weights = diffuse_heat(body.volume, body.tissues, body.armature);
+  LabelVolume posed = resample(body.volume, body.tissues, body.armature, weights, stride, DualQuaternion{}).volume;
+  const std::vector<RigidTransform> moved = posed_from_rest(body.armature, stride);
+
+  const AffineTransform to_world = world_from_voxel(posed.grid);
+  const double hips = body.armature.bones[require_bone(body.armature, "LeftThigh")].head.z;
+  const int kept = static_cast<int>((voxel_from_world(posed.grid) * glm::dvec3(0, 0, hips - 30)).z);
+  posed.voxels.resize(std::int64_t{posed.grid.size.x} * posed.grid.size.y * kept);
+  posed.grid.size.z = kept;
+  REQUIRE((to_world * glm::dvec3(0, 0, kept)).z < hips);
+
+  const AutoFit fitted = auto_fit(posed, body.tissues, rig_template("adult"));
+  for (const char* name : {"LeftShank", "RightShank", "LeftFoot", "RightFoot"}) {
+    const int b = require_bone(body.armature, name);
+    CAPTURE(name);
+    CHECK(glm::distance(fitted.armature.bones[require_bone(fitted.armature, name)].head, moved[b] * body.armature.bones[b].head) < 15);
+    CHECK(fitted.joints[require_bone(fitted.armature, name)].how != JointFit::How::Unseen);
+  }
 }
 
 TEST_CASE("auto-fit: of a body cut at the hips what is there lies within 8 mm, behind a padding of air too, and what is not is said") {
