@@ -413,7 +413,7 @@ struct FoundJoints {
 FoundJoints found_joints(const Fitted& fitted, const Target& target) {
   using How = JointFit::How;
   // mm that joints lay off on segmented adults, beside those that another shape adds.
-  constexpr double kLeastError = 3, kByBone = 10, kBySkin = 22, kHipsBySkin = 40, kByGirth = 10, kByBall = 6, kByAxis = 10;
+  constexpr double kLeastError = 3, kByBone = 10, kBySkin = 22, kHipsBySkin = 40, kByGirth = 10, kNeckByGirth = 20, kByBall = 6, kByAxis = 10;
   const Mannequin& m = *fitted.body;
   const Armature& rig = m.atlas().rig;
   const bool by_bone = target.bone && !fitted.is_rods;
@@ -440,7 +440,7 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
     // Bones tell elbow and wrist themselves. Of the knee they show the condyles' middle and skin the gap below it; rigs
     // bend in between.
     const double share = name == "Neck" ? 1 : by_bone ? (name.ends_with("Shank") ? 0.5 : 0) : fitted.is_rods ? double(name.ends_with("Hand")) : 1;
-    take(mark, How::Girth, share * strange[mark.bone], kByGirth);
+    take(mark, How::Girth, share * strange[mark.bone], name == "Neck" ? kNeckByGirth : kByGirth);
   }
   if (by_bone)
     for (const JointLandmark& mark : ball_landmarks(m, *target.bone)) take(mark, How::Ball, strange[mark.bone], kByBall);
