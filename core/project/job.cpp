@@ -242,7 +242,7 @@ JobStatus Jobs::status(int id) const {
 
 bool Jobs::busy() const {
   const std::lock_guard lock(board_->mutex);
-  return std::any_of(jobs_.begin(), jobs_.end(), [](const auto& job) { return job->status.active(); });
+  return board_->changed || std::any_of(jobs_.begin(), jobs_.end(), [](const auto& job) { return job->status.active(); });
 }
 
 void Jobs::dismiss(int id) {

@@ -63,7 +63,7 @@ class Jobs {
   // Oldest first. Jobs that ended stay until dismissed.
   std::vector<JobStatus> statuses() const;
   JobStatus status(int id) const;
-  bool busy() const;  // any job active
+  bool busy() const;  // any job active, or ended since the last poll()
   void dismiss(int id);
   void dismiss_ended();
 
