@@ -19,7 +19,7 @@ constexpr int kTile = 8;             // nodes an edge of what is rasterized agai
 constexpr int kMargin = 3;           // cells around the grid that a rest point may lie in
 constexpr double kFurthest = 32000;  // cells; fixed point holds 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
-constexpr double kNear = 1.0 / 256;  // cells: nodes that chords place this well are left there
+constexpr double kNear = 1.0 / 32;  // cells: nodes that chords place this well are left there
 constexpr std::array<glm::ivec3, 8> kCorners = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}};
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
