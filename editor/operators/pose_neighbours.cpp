@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/operators/pose_neighbours.h"
 
+#include <algorithm>
+
 #include "core/pose/apply_pose.h"
 #include "editor/icons.h"
 #include "editor/posing.h"
@@ -82,8 +84,10 @@ void apply_as_rest(Editor& editor) {
   next.armature = std::make_shared<const Armature>(with_pose_as_rest(*next.armature, pose_of(next)));
   next.pose = nullptr;
   const bool weights = next.weights != nullptr;
+  const bool poses = !next.poses.empty() || std::any_of(next.clips.begin(), next.clips.end(), [](const auto& clip) { return !clip->keys.bones.empty(); });
   commit(editor, "Apply pose as rest", std::move(next));
   if (weights) editor.messages.info("Apply pose as rest", "The weights are those of the rig before: compute them again");
+  if (poses) editor.messages.warn("Apply pose as rest", "Keys and poses of the library turn the bones from the new rest now: look at them again");
 }
 
 }  // namespace
