@@ -43,23 +43,6 @@ Lanes apart(const Lanes& a, const Lanes& b) { return most(a - b, b - a); }
 
 bool any_beyond(const Lanes& a, const Lanes& limit) { return a[0] > limit[0] || a[1] > limit[1] || a[2] > limit[2]; }
 
-// What the bones do together, as one.
-SkinTransform blended(Blend blend, const std::vector<SkinTransform>& bones, std::span<const BoneWeight> influences) {
-  SkinTransform sum;
-  if (blend == Blend::Linear) {
-    for (const auto& [bone, weight] : influences)
-      for (int i = 0; i < 12; ++i) sum.displacement[i] += weight * bones[bone].displacement[i];
-    return sum;
-  }
-  sum.dual_quaternion = {};
-  for (const auto& [bone, weight] : influences) {
-    const auto& q = bones[bone].dual_quaternion;
-    const bool against = sum.dual_quaternion[0] * q[0] + sum.dual_quaternion[1] * q[1] + sum.dual_quaternion[2] * q[2] + sum.dual_quaternion[3] * q[3] < 0;
-    for (int i = 0; i < 8; ++i) sum.dual_quaternion[i] += (against ? -weight : weight) * q[i];
-  }
-  return sum;
-}
-
 // Fills PreviewMap::nodes and its cubes from what cells have claimed.
 class Finish {
  public:
@@ -313,7 +296,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
       const std::int32_t motion = motion_of_[place];
       moved_[place] = all || motion >= 0 || fixed != posed_[place];
       posed_[place] = fixed;
-      if (motion >= 0) motion_[motion] = blended(blend, bones, influences);
+      if (motion >= 0) motion_[motion] = blended_transform(blend, bones, influences);
     }
   });
   parallel_for(std::ssize(lattice_.stiff), 512, [&](std::int64_t begin, std::int64_t end) {

@@ -64,6 +64,13 @@ glm::dvec3 transform(const std::array<double, 8>& dq, const glm::dvec3& p) {
   return p + move * (2 / squared_length);
 }
 
+// On the side of what is there already: q and -q are the same rotation.
+void add_aligned(std::array<double, 8>& sum, const std::array<double, 8>& q, double weight) {
+  const double dot = sum[0] * q[0] + sum[1] * q[1] + sum[2] * q[2] + sum[3] * q[3];
+  const double signed_weight = dot < 0 ? -weight : weight;
+  for (int i = 0; i < 8; ++i) sum[i] += signed_weight * q[i];
+}
+
 template <bool Stretched>
 glm::dvec3 blend_dual(std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
                       const glm::dvec3& p) {
@@ -71,10 +78,7 @@ glm::dvec3 blend_dual(std::span<const SkinTransform> bones, std::span<const Bone
   std::array<double, 12> stretch{};
   double total = 0;
   for (const auto& [bone, weight] : influences) {
-    const auto& q = bones[bone].dual_quaternion;
-    const double dot = sum[0] * q[0] + sum[1] * q[1] + sum[2] * q[2] + sum[3] * q[3];
-    const double signed_weight = dot < 0 ? -weight : weight;
-    for (int i = 0; i < 8; ++i) sum[i] += signed_weight * q[i];
+    add_aligned(sum, bones[bone].dual_quaternion, weight);
     if constexpr (Stretched)
       for (int i = 0; i < 12; ++i) stretch[i] += weight * bones[bone].stretch[i];
     total += weight;
@@ -124,6 +128,18 @@ SkinTransform skin_transform(const glm::dmat4& posed_from_rest, const glm::dmat4
   bone.displacement = columns(linear - glm::dmat3(1), glm::dvec3(posed_from_rest[3]));
   bone.dual_quaternion = dual_quaternion(glm::normalize(glm::quat_cast(glm::dmat3(rigid))), glm::dvec3(rigid[3]));
   return bone;
+}
+
+SkinTransform blended_transform(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences) {
+  SkinTransform sum;
+  if (blend == Blend::DualQuaternion) sum.dual_quaternion = {};
+  for (const auto& [bone, weight] : influences) {
+    if (blend == Blend::DualQuaternion)
+      add_aligned(sum.dual_quaternion, bones[bone].dual_quaternion, weight);
+    else
+      for (int i = 0; i < 12; ++i) sum.displacement[i] += weight * bones[bone].displacement[i];
+  }
+  return sum;
 }
 
 glm::dvec3 blend_point(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,

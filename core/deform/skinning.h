@@ -41,6 +41,9 @@ std::vector<SkinTransform> skin_transforms(const std::vector<RigidTransform>& po
 // axes, and the bone's own y (head to tail) keeps its direction. Both affine, world_from_bone invertible.
 SkinTransform skin_transform(const glm::dmat4& posed_from_rest, const glm::dmat4& world_from_bone);
 
+// What rigid bones do together, as one that `blend` may blend further. Weights sum to one; no bone stretches.
+SkinTransform blended_transform(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences);
+
 // Weights need not sum to one (they are divided by their sum); a sum of zero leaves the point at rest.
 glm::dvec3 blend_point(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
                        const glm::dvec3& rest_point);
