@@ -24,7 +24,7 @@ void guess_bones(Body& body, const std::string& volume) {
   const double value = body.tissues.find(guess->label)->file_value;
   body.tissues = with_bones(std::move(body.tissues), {value});
   char text[200];
-  std::snprintf(text, sizeof text, ": label %.0f, through which %.0f %% of the rig runs, is taken for it; say others with --bones or --tissues",
+  std::snprintf(text, sizeof text, ": label %.0f, which lies along %.0f %% of the long bones, is taken for it; say others with --bones or --tissues",
                 value, 100 * guess->share_of_rig);
   warn("no table says what is bone: " + volume + text);
 }

@@ -18,6 +18,7 @@
 #include "core/rig/body_atlas.h"
 #include "core/rig/body_skeleton.h"
 #include "core/rig/bone_tissue.h"
+#include "core/rig/draw_inside.h"
 #include "core/rig/fit_starts.h"
 #include "core/rig/joint_landmarks.h"
 #include "core/rig/limb_paths.h"
@@ -460,8 +461,8 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
   return found;
 }
 
-// The labels that are bone, as the table says. Where it says nothing of any label: the one through which the long bones of the
-// body run, as it lies by its skin.
+// The labels that are bone, as the table says. Where it says nothing of any label: the one that lies along the long bones of the
+// body, as it lies by its skin.
 LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, const Fitted& fitted, std::vector<std::string>& warnings) {
   LabelSet labels(65536, 0);
   const std::vector<TissueKind> kinds = tissues.kinds();
@@ -475,7 +476,7 @@ LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, cons
   if (const auto guess = guess_bone_tissue(volume, tissues, long_bones)) {
     const Tissue* tissue = tissues.find(guess->label);
     char text[160];
-    std::snprintf(text, sizeof text, "no table says what is bone: label %.0f, through which %.0f %% of the limbs' length runs, is taken for it",
+    std::snprintf(text, sizeof text, "no table says what is bone: label %.0f, which lies along %.0f %% of the long bones, is taken for it",
                   tissue ? tissue->file_value : double(guess->label), 100 * guess->share_of_rig);
     warnings.push_back(text);
     labels[guess->label] = 1;
@@ -577,8 +578,6 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
     FoundJoints found = found_joints(fitted, target);
     doubt_cut_limbs(fitted, target, found, result.warnings);
     const PlacedRig placed = place_rig(rig, *fitted.body, found.places);
-    result.armature = placed.armature;
-    draw_inside(result.armature, target.body, target.cuts);
     result.misfit_mm = fitted.misfit;
     for (size_t b = 0; b < rig.bones.size(); ++b) {
       const int match = placed.joint_of[b];
@@ -588,6 +587,11 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
       else if (rig.bones[b].parent >= 0) joint.confidence = 0.7 * result.joints[rig.bones[b].parent].confidence, joint.error = 1.4 * result.joints[rig.bones[b].parent].error;
       result.joints.push_back(joint);
     }
+    // A joint gives way by what it may be off, not by much more.
+    constexpr double kGivesWay = 1.5;
+    std::vector<double> free;
+    for (const JointFit& joint : result.joints) free.push_back(kGivesWay * joint.error);
+    result.armature = drawn_inside(placed.armature, volume, target.cuts, free);
     constexpr double kUnlike = 0.022;  // of the tissue's diagonal
     if (result.misfit_mm > kUnlike * target.length) result.warnings.push_back("the tissue looks little like the body that this rig is of; check every joint by eye");
   }

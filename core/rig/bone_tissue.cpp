@@ -3,34 +3,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <vector>
 
 namespace limber {
 
 namespace {
 
-constexpr double kShareOfRig = 0.6;
-constexpr double kEnrichment = 4;
 constexpr double kEnds = 0.15;  // of a bone's length at either end, where joints are and no bone tissue need be
-constexpr int kMostSamples = 1000;
+// Distances from the axis as shares of the bone's length: a rig may run beside the bone by half the limb's thickness, and
+// limbs are some 0.15 thick.
+constexpr double kBeside = 0.09, kAroundFrom = 0.11, kAroundTo = 0.19;
+constexpr double kLeastOfDisc = 0.05;  // so much of the disc beside the axis: the label is there
+// Bone came out at 0.5 to 0.94 and 30 times and more; others at 8 times had 0.33, others at 0.4 had 5 times.
+constexpr double kShareOfRig = 0.4, kEnrichment = 8;
+constexpr double kLong = 0.5;  // of the longest bone: shorter ones are as thick as long, and tell nothing
+constexpr int kSlices = 60, kPoints = 120;  // per bone, and per slice
 
-// mm of the rig in each label; a bone's samples lie at most half a voxel apart, or are kMostSamples.
-std::vector<double> length_in(const LabelVolume& volume, const Armature& armature) {
-  std::vector<double> length(65536, 0);
+struct Lengths {
+  double in_tissue = 0;
+  std::map<Label, double> with;             // mm of the rig that have the label beside them
+  std::map<Label, double> beside, around;   // mm by the share of tissue
+};
+
+// Points of a disc of radius 1, evenly spread [Vogel 1979, the sunflower's head].
+std::vector<glm::dvec2> disc() {
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  std::vector<glm::dvec2> points;
+  for (int k = 0; k < kPoints; ++k) points.push_back(std::sqrt((k + 0.5) / kPoints) * glm::dvec2(std::cos(k * golden), std::sin(k * golden)));
+  return points;
+}
+
+Lengths lengths_of(const LabelVolume& volume, const Armature& armature) {
   const AffineTransform to_voxel = voxel_from_world(volume.grid);
-  const double spacing = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
+  const auto label_at = [&](const glm::dvec3& place) -> Label {
+    const glm::dvec3 at = glm::floor(to_voxel * place + 0.5);
+    const bool inside = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, glm::dvec3(volume.grid.size)));
+    return inside ? volume.at(glm::ivec3(at)) : Label(0);
+  };
+  const std::vector<glm::dvec2> points = disc();
+  Lengths lengths;
+  double longest = 0;
+  for (const Bone& bone : armature.bones) longest = std::max(longest, glm::distance(bone.head, bone.tail));
   for (const Bone& bone : armature.bones) {
-    const double whole = glm::distance(bone.head, bone.tail);
-    if (!(whole > 0)) continue;
-    const int samples = static_cast<int>(std::clamp(2 * whole / spacing, 1.0, double(kMostSamples)));
-    for (int s = 0; s < samples; ++s) {
-      const double along = kEnds + (1 - 2 * kEnds) * (s + 0.5) / samples;
-      const glm::dvec3 at = glm::floor(to_voxel * glm::mix(bone.head, bone.tail, along) + 0.5);
-      const bool inside = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, glm::dvec3(volume.grid.size)));
-      if (inside) length[volume.at(glm::ivec3(at))] += whole / samples;
+    const double whole = glm::distance(bone.head, bone.tail), slice = whole / kSlices;
+    if (!(whole > 0) || whole < kLong * longest) continue;
+    const glm::dvec3 axis = (bone.tail - bone.head) / whole;
+    const glm::dvec3 u = glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0))), v = glm::cross(axis, u);
+    for (int s = 0; s < kSlices; ++s) {
+      const glm::dvec3 centre = glm::mix(bone.head, bone.tail, kEnds + (1 - 2 * kEnds) * (s + 0.5) / kSlices);
+      if (label_at(centre) == 0) continue;
+      lengths.in_tissue += slice;
+      std::map<Label, int> beside, around;
+      int near = 0, far = 0;
+      for (const glm::dvec2& point : points) {
+        const glm::dvec2 p = kAroundTo * point;
+        const double off = glm::length(p);
+        if (off > kBeside && off < kAroundFrom) continue;
+        const Label label = label_at(centre + whole * (p.x * u + p.y * v));
+        if (label == 0) continue;
+        if (off <= kBeside) ++beside[label], ++near;
+        else ++around[label], ++far;
+      }
+      for (const auto& [label, count] : beside) {
+        lengths.beside[label] += slice * count / near;
+        if (count >= kLeastOfDisc * near) lengths.with[label] += slice;
+      }
+      for (const auto& [label, count] : around) lengths.around[label] += slice * count / far;
     }
   }
-  return length;
+  return lengths;
 }
 
 }  // namespace
@@ -40,21 +83,15 @@ std::optional<BoneTissueGuess> guess_bone_tissue(const LabelVolume& volume, cons
                                            [](const Tissue& tissue) { return tissue.kind != TissueKind::Unknown; });
   if (something_known) return std::nullopt;
 
-  std::vector<double> length = length_in(volume, armature);
-  length[0] = 0;
-  double in_tissue = 0;
-  for (double l : length) in_tissue += l;
-  const Label label = static_cast<Label>(std::max_element(length.begin(), length.end()) - length.begin());
-  const double share = in_tissue > 0 ? length[label] / in_tissue : 0;
-  if (share < kShareOfRig) return std::nullopt;
-
-  std::int64_t own = 0, all = 0;
-  for (Label voxel : volume.voxels) {
-    own += voxel == label;
-    all += voxel != 0;
+  const Lengths lengths = lengths_of(volume, armature);
+  std::optional<BoneTissueGuess> best;
+  for (const auto& [label, length] : lengths.with) {
+    const auto around = lengths.around.find(label);
+    if (around != lengths.around.end() && lengths.beside.at(label) < kEnrichment * around->second) continue;
+    const double share = length / lengths.in_tissue;
+    if (share >= kShareOfRig && (!best || share > best->share_of_rig)) best = BoneTissueGuess{label, share};
   }
-  if (share * double(all) < kEnrichment * double(own)) return std::nullopt;
-  return BoneTissueGuess{label, share};
+  return best;
 }
 
 }  // namespace limber

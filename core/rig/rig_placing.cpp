@@ -227,47 +227,6 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vecto
   return result;
 }
 
-void draw_inside(Armature& rig, const Occupancy& body, const std::vector<TissueCut>& cuts) {
-  const AffineTransform to_cell = voxel_from_world(body.grid), to_world = world_from_voxel(body.grid);
-  const double cell = std::min({body.grid.spacing.x, body.grid.spacing.y, body.grid.spacing.z});
-  // The nearest cell that is filled like all beside it.
-  const auto inside = [&](const glm::dvec3& place, double reach) {
-    const glm::ivec3 at(glm::clamp(glm::floor(to_cell * place + 0.5), glm::dvec3(-1), glm::dvec3(body.grid.size)));
-    if (body.filled(at) || beyond(cuts, place) > 0) return place;
-    constexpr double kMostCells = 16;
-    const int cells = static_cast<int>(std::min(kMostCells, reach / cell));
-    double least = reach;
-    glm::dvec3 best = place;
-    for (int z = -cells; z <= cells; ++z)
-      for (int y = -cells; y <= cells; ++y)
-        for (int x = -cells; x <= cells; ++x) {
-          const glm::ivec3 there = at + glm::ivec3(x, y, z);
-          const glm::dvec3 centre = to_world * glm::dvec3(there);
-          if (const double d = glm::distance(centre, place); d < least && body.filled(there)) {
-            bool deep = true;
-            for (int axis = 0; axis < 3 && deep; ++axis) {
-              glm::ivec3 step(0);
-              step[axis] = 1;
-              deep = body.filled(there + step) && body.filled(there - step);
-            }
-            if (deep) least = d, best = centre;
-          }
-        }
-    return best;
-  };
-  std::vector<int> child;
-  for (int b = 0; b < std::ssize(rig.bones); ++b) child.push_back(child_at_tail(rig, b));
-  for (Bone& bone : rig.bones) {
-    constexpr double kShare = 0.5, kMost = 30;  // of the bone's length, and mm
-    const double reach = std::min(kMost, kShare * glm::distance(bone.head, bone.tail));
-    const glm::dvec3 tail = inside(bone.tail, reach);
-    if (bone.parent >= 0) bone.head = inside(bone.head, reach);
-    if (glm::distance(bone.head, tail) > 0.5 * reach) bone.tail = tail;
-  }
-  for (int b = 0; b < std::ssize(rig.bones); ++b)
-    if (child[b] >= 0) rig.bones[b].tail = rig.bones[child[b]].head;
-}
-
 Armature moved_rig(const Armature& rig, const glm::dmat3& turn, double scale, const glm::dvec3& from, const glm::dvec3& to) {
   Armature result = rig;
   for (size_t b = 0; b < rig.bones.size(); ++b) {

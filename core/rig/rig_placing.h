@@ -8,8 +8,6 @@
 
 #include "core/rig/armature.h"
 #include "core/rig/articulated_fit.h"
-#include "core/rig/surface_points.h"
-#include "core/rig/tissue_cuts.h"
 
 namespace limber {
 
@@ -20,10 +18,6 @@ struct PlacedRig {
 
 //   joints  where the body's joints lie, by its bones
 PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vector<glm::dvec3>& joints);
-
-// Joints and ends that came to lie in air go to the nearest tissue, by at most half their bone's length; what lies beyond a
-// cut stays.
-void draw_inside(Armature& rig, const Occupancy& body, const std::vector<TissueCut>& cuts);
 
 // Every bone by one turn, scale and shift.
 Armature moved_rig(const Armature& rig, const glm::dmat3& turn, double scale, const glm::dvec3& from, const glm::dvec3& to);

@@ -78,9 +78,9 @@ TEST_CASE("auto-fit: every joint of the procedural arm lies within 8 mm of the t
   CHECK(with.check.whole == doctest::Approx(1).epsilon(0.01));
   for (const JointFit& joint : with.joints) CHECK(joint.how == JointFit::How::BoneSurface);
 
-  TissueTable unknown = arm().tissues;
-  for (Tissue& tissue : unknown.tissues) tissue.kind = TissueKind::Unknown;
-  const AutoFit without = auto_fit(arm().volume, unknown, rig_template("arm"));
+  LabelVolume flesh = arm().volume;
+  for (Label& voxel : flesh.voxels) voxel = voxel != 0;
+  const AutoFit without = auto_fit(flesh, {}, rig_template("arm"));
   CHECK(median_of_main(errors(without.armature, arm().armature)) < 8);
   CHECK(without.joints[0].how == JointFit::How::Skin);
 }

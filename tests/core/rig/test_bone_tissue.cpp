@@ -14,13 +14,13 @@ struct Bar {
   Armature rig;
 
   Bar() {
-    volume.grid.size = {21, 21, 60};
+    volume.grid.size = {21, 21, 160};
     volume.grid.spacing = {2, 2, 1};
     volume.voxels.assign(volume.grid.voxel_count(), 0);
-    for (int z = 2; z < 58; ++z)
+    for (int z = 2; z < 158; ++z)
       for (int y = 2; y < 19; ++y)
         for (int x = 2; x < 19; ++x) {
-          const bool core = std::abs(x - 10) <= 1 && std::abs(y - 10) <= 1 && std::abs(z - 30) > 1;
+          const bool core = std::abs(x - 10) <= 1 && std::abs(y - 10) <= 1 && std::abs(z - 80) > 1;
           volume.at({x, y, z}) = core ? 2 : 1;
         }
     for (Label label : {1, 2}) {
@@ -29,7 +29,7 @@ struct Bar {
       tissue.file_value = label;
       tissues.tissues.push_back(tissue);
     }
-    rig.bones = {{"lower", -1, {20, 20, 3}, {20, 20, 30}}, {"upper", 0, {20, 20, 30}, {20, 20, 57}}};
+    rig.bones = {{"lower", -1, {20, 20, 3}, {20, 20, 80}}, {"upper", 0, {20, 20, 80}, {20, 20, 157}}};
   }
 };
 
@@ -41,6 +41,16 @@ TEST_CASE("bone tissue: the thin label that the rig runs through is taken for bo
   REQUIRE(guess);
   CHECK(guess->label == 2);
   CHECK(guess->share_of_rig > 0.95);
+}
+
+TEST_CASE("bone tissue: bones are told where the rig runs between two of them, and muscle beside one bone of the rig is none") {
+  Bar forearm;
+  for (int z = 2; z < 158; ++z)
+    for (int y = 2; y < 19; ++y)
+      for (int x = 2; x < 19; ++x) forearm.volume.at({x, y, z}) = x != 10 && std::abs(x - 10) < 3 && std::abs(y - 10) <= 1 ? 2 : z < 50 && std::abs(y - 10) <= 1 ? 3 : 1;
+  const auto guess = guess_bone_tissue(forearm.volume, forearm.tissues, forearm.rig);
+  REQUIRE(guess);
+  CHECK(guess->label == 2);
 }
 
 TEST_CASE("bone tissue: nothing is guessed where a table knows a tissue, the rig runs elsewhere, or the label is most of the body") {
