@@ -159,7 +159,14 @@ void take_best_start(Fitted& result, const Target& target, std::vector<Mannequin
 bool follow_rods(Mannequin& m, const Target& target) {
   const double L = target.length;
   Mannequin rods = m;
-  fit_rods(rods, target.bone_cells, *target.skin, {.iterations = 40, .wide = 0.02 * L, .narrow = 0.006 * L, .bone_share = 0.8, .stride = 3});
+  // Ribs, skull and hip bones stand far off any rig's lines: told after a few steps.
+  constexpr double kNearlyAll = 0.9;
+  FitStage stage{.iterations = 8, .wide = 0.02 * L, .narrow = 0.02 * L, .bone_share = 0.8, .stride = 6};
+  fit_rods(rods, target.bone_cells, *target.skin, stage);
+  if (rod_share(rods, target.bone_cells, target.bone_body, 0.03 * L).near < kNearlyAll) return false;
+  rods = m;
+  stage.iterations = 40, stage.narrow = 0.006 * L, stage.stride = 3;
+  fit_rods(rods, target.bone_cells, *target.skin, stage);
   split_rods(rods, target.bone_cells);
   const RodShare share = rod_share(rods, target.bone_cells, target.bone_body, 0.015 * L);
   if (share.near < 0.9 || share.inside < 0.85) return false;

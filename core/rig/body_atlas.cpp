@@ -177,11 +177,11 @@ void add_bones(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carrier
     if (!part.solid.box.touches(region)) continue;
     const auto distance = [&](const glm::dvec3& p) { return part.solid.distance(p); };
     const Box box = part.solid.box.grown(4);
-    std::vector<AtlasPoint> points = points_on(box, kFineBoneStep * 1.5, distance);
-    if (points.empty()) continue;
-    int carrier = carriers.carrier(points);
     // A kneecap glides on the thigh, the heel is of the foot, fingers and metacarpals are told apart by their own segments.
-    if (!is_fine(atlas.rig.bones[carrier].name)) points = points_on(box, kBoneStep, distance);
+    std::vector<AtlasPoint> points = points_on(box, kBoneStep, distance);
+    if (points.empty() || is_fine(atlas.rig.bones[carriers.carrier(points)].name)) points = points_on(box, kFineBoneStep * 1.5, distance);
+    if (points.empty()) continue;
+    const int carrier = carriers.carrier(points);
     for (AtlasPoint& point : points) {
       point.bone = carrier;
       atlas.bone.push_back(point);

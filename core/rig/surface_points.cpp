@@ -199,21 +199,21 @@ std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, doubl
   return result;
 }
 
-PointTree::PointTree(const std::vector<SurfacePoint>& points) : points_(points), order_(points.size()), axis_(points.size(), 0) {
-  for (size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::int32_t>(i);
-  build(0, static_cast<int>(order_.size()));
+PointTree::PointTree(const std::vector<SurfacePoint>& points) : nodes_(points.size()), axis_(points.size(), 0) {
+  for (size_t i = 0; i < nodes_.size(); ++i) nodes_[i] = {points[i], static_cast<std::int32_t>(i)};
+  build(0, static_cast<int>(nodes_.size()));
 }
 
 void PointTree::build(int begin, int end) {
   if (end - begin <= kLeaf) return;
   glm::dvec3 low(1e300), high(-1e300);
-  for (int i = begin; i < end; ++i) low = glm::min(low, points_[order_[i]].place), high = glm::max(high, points_[order_[i]].place);
+  for (int i = begin; i < end; ++i) low = glm::min(low, nodes_[i].point.place), high = glm::max(high, nodes_[i].point.place);
   const glm::dvec3 extent = high - low;
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   const int middle = (begin + end) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](std::int32_t a, std::int32_t b) {
-    const double u = points_[a].place[axis], v = points_[b].place[axis];
-    return u < v || (u == v && a < b);
+  std::nth_element(nodes_.begin() + begin, nodes_.begin() + middle, nodes_.begin() + end, [&](const Node& a, const Node& b) {
+    const double u = a.point.place[axis], v = b.point.place[axis];
+    return u < v || (u == v && a.number < b.number);
   });
   axis_[middle] = static_cast<std::uint8_t>(axis);
   build(begin, middle);
@@ -221,32 +221,31 @@ void PointTree::build(int begin, int end) {
 }
 
 int PointTree::nearest(const glm::dvec3& place, const glm::dvec3& normal, double reach) const {
-  double squared = reach * reach;
-  int best = -1;
-  search(0, static_cast<int>(order_.size()), place, normal, squared, best);
-  return best;
+  Search search{place, normal, normal == glm::dvec3(0) ? -2 : kSameSide, reach * reach};
+  look_in(0, static_cast<int>(nodes_.size()), search);
+  return search.best;
 }
 
-void PointTree::search(int begin, int end, const glm::dvec3& place, const glm::dvec3& normal, double& squared, int& best) const {
-  const auto look = [&](int number) {
-    const SurfacePoint& point = points_[number];
-    const glm::dvec3 to = point.place - place;
+void PointTree::look_in(int begin, int end, Search& search) const {
+  const auto look = [&](const Node& node) {
+    const glm::dvec3 to = node.point.place - search.place;
     const double d = glm::dot(to, to);
-    if (d > squared || (d == squared && (best < 0 || number > best))) return;
-    if (normal != glm::dvec3(0) && glm::dot(point.normal, normal) < kSameSide) return;
-    squared = d;
-    best = number;
+    if (d > search.squared || (d == search.squared && (search.best < 0 || node.number > search.best))) return;
+    if (glm::dot(node.point.normal, search.normal) < search.least_facing) return;
+    search.squared = d;
+    search.best = node.number;
   };
   if (end - begin <= kLeaf) {
-    for (int i = begin; i < end; ++i) look(order_[i]);
+    for (int i = begin; i < end; ++i) look(nodes_[i]);
     return;
   }
   const int middle = (begin + end) / 2, axis = axis_[middle];
-  const double side = place[axis] - points_[order_[middle]].place[axis];
-  const auto visit = [&](bool low) { low ? search(begin, middle, place, normal, squared, best) : search(middle + 1, end, place, normal, squared, best); };
+  const double side = search.place[axis] - nodes_[middle].point.place[axis];
+  const auto visit = [&](bool low) { low ? look_in(begin, middle, search) : look_in(middle + 1, end, search); };
   visit(side <= 0);
-  look(order_[middle]);
-  if (side * side <= squared) visit(side > 0);
+  if (side * side > search.squared) return;
+  look(nodes_[middle]);
+  visit(side > 0);
 }
 
 }  // namespace limber

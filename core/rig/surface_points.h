@@ -48,10 +48,18 @@ class PointTree {
   int nearest(const glm::dvec3& place, const glm::dvec3& normal, double reach) const;
 
  private:
+  struct Node {
+    SurfacePoint point;
+    std::int32_t number = 0;  // among those given
+  };
+  struct Search {
+    glm::dvec3 place, normal;
+    double least_facing, squared;
+    int best = -1;
+  };
   void build(int begin, int end);
-  void search(int begin, int end, const glm::dvec3& place, const glm::dvec3& normal, double& squared, int& best) const;
-  std::vector<SurfacePoint> points_;
-  std::vector<std::int32_t> order_;
+  void look_in(int begin, int end, Search& search) const;
+  std::vector<Node> nodes_;  // a range's middle parts it across `axis_`
   std::vector<std::uint8_t> axis_;
 };
 
