@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/base/pages.h"
 
+#include <cstring>
+
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -23,17 +25,14 @@ Pages pages_of(void* begin, std::int64_t bytes) {
 
 }  // namespace
 
-// In both a refusal costs time or memory, nothing else.
+// A refusal costs time, nothing else.
 void want_large_pages(void* begin, std::int64_t bytes) {
   if (const Pages pages = pages_of(begin, bytes); pages.bytes) madvise(pages.begin, pages.bytes, MADV_HUGEPAGE);
 }
 
-void give_back_zeros(void* begin, std::int64_t bytes) {
-  const Pages pages = pages_of(begin, bytes);
-  if (!pages.bytes) return;
-  // Large pages would be filled whole for one voxel.
-  madvise(pages.begin, pages.bytes, MADV_NOHUGEPAGE);
-  madvise(pages.begin, pages.bytes, MADV_DONTNEED);
+bool is_all_zero(const void* begin, std::size_t bytes) {
+  const auto* byte = static_cast<const unsigned char*>(begin);
+  return bytes == 0 || (*byte == 0 && std::memcmp(byte, byte + 1, bytes - 1) == 0);
 }
 
 }  // namespace limber

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/pages.h"
 
 namespace limber {
 
@@ -40,7 +39,7 @@ class Claims {
     map_.use_row(claim.voxel);
     map_.cell[at] = cell;
     map_.rest[at] = claim.rest;
-    map_.posed_per_rest[at] = static_cast<float>(claim.posed_per_rest);
+    if (map_.has_volume_ratio) map_.posed_per_rest[at] = static_cast<float>(claim.posed_per_rest);
     map_.flags[at] = (map_.flags[at] & ~InverseMap::kInverted) | (claim.posed_per_rest < 0 ? InverseMap::kInverted : 0);
   }
 
@@ -64,22 +63,24 @@ class Claims {
   const TissueDepth* depth_;
 };
 
-// The steps from the first point of a straight row on, at least 0, after which its points can lie in a box; one more on
-// either side. Empty when first > last.
+// The steps from the first point of a straight row on, at least 0, after which its points can lie in a box. Empty when
+// first > last.
 struct Steps {
   int first, last;
 };
 Steps within(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& point, const glm::dvec3& next) {
-  constexpr double kMost = 1 << 20;
+  constexpr double kMost = 1 << 20, kSlack = 1e-3;  // steps; of points that rounding could take for out or in
   double first = 0, last = kMost;
   for (int axis = 0; axis < 3; ++axis) {
     const double step = next[axis] - point[axis];
     if (std::abs(step) < 1e-6) continue;
     const double a = (low[axis] - point[axis]) / step, b = (high[axis] - point[axis]) / step;
-    first = std::max(first, std::min(a, b) - 1);
-    last = std::min(last, std::max(a, b) + 1);
+    first = std::max(first, std::min(a, b) - kSlack);
+    last = std::min(last, std::max(a, b) + kSlack);
   }
-  return first > last ? Steps{1, 0} : Steps{static_cast<int>(first), static_cast<int>(last)};
+  if (first > last) return {1, 0};
+  const int whole = static_cast<int>(first);
+  return {whole + (whole < first), static_cast<int>(last)};
 }
 
 // A cell of a brick, by its place there.
@@ -160,6 +161,7 @@ void InverseMap::reset(const VoxelRange& new_range) {
   const size_t rows = size_t(size.y) * size.z, voxels = size.x * rows;
   range = new_range;
   lost.clear();
+  if (has_volume_ratio) posed_per_rest.resize(voxels);
   if (size == old_size && row_used.size() == rows) {
     for (size_t row = 0; row < rows; ++row) {
       if (!row_used[row]) continue;
@@ -171,7 +173,6 @@ void InverseMap::reset(const VoxelRange& new_range) {
     return;
   }
   rest.resize(voxels);
-  posed_per_rest.resize(voxels);
   cell.assign(voxels, kNoCell);
   bone.assign(voxels, kNoBone);
   flags.assign(voxels, 0);
@@ -231,10 +232,10 @@ void RigidBones::find_pieces() {
   const LabelVolume& volume = lattice_->volume();
   for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
     std::map<int, VoxelRange> ranges;
-    const std::int64_t first = tissue.bricks()[brick].first;
-    tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+    auto influence = weights_->chunk(brick).begin();
+    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
+      const int bone = (influence++)->bone[0];
       if (!(*is_bone_)[volume.at(v)]) return;
-      const int bone = weights_->chunk(brick)[place - first].bone[0];
       auto [range, is_new] = ranges.try_emplace(bone, VoxelRange{v, v});
       range->second = {glm::min(range->second.low, v), glm::max(range->second.high, v)};
     });
@@ -280,7 +281,7 @@ int RigidBones::owner(const glm::ivec3& voxel) const {
 
 LabelVolume RigidBones::numbered() const {
   const LabelVolume& volume = lattice_->volume();
-  LabelVolume result{volume.grid, sparse_zeros<Label>(volume.grid.voxel_count())};
+  LabelVolume result{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
   const TissueVoxels& tissue = lattice_->tissue();
   for (std::int64_t last = -1; const Piece& piece : pieces_) {
     if (piece.brick == last) continue;
@@ -292,6 +293,16 @@ LabelVolume RigidBones::numbered() const {
     });
   }
   return result;
+}
+
+RowSet RigidBones::rest_rows() const {
+  const glm::ivec3 size = lattice_->volume().grid.size;
+  RowSet rows(std::int64_t{size.y} * size.z);
+  for (const Piece& piece : pieces_)
+    for (int z = std::max(0, piece.rest.low.z); z <= std::min(size.z - 1, piece.rest.high.z); ++z)
+      for (int y = std::max(0, piece.rest.low.y); y <= std::min(size.y - 1, piece.rest.high.y); ++y)
+        rows[y + std::int64_t{size.y} * z] = 1;
+  return rows;
 }
 
 bool RigidBones::has(int bone, const glm::dvec3& rest, const LabelSampler& sampler, bool nearest) const {
@@ -341,7 +352,7 @@ void RigidBones::paint(InverseMap& map, const std::vector<std::int64_t>& pieces,
           map.use_row({x, y, z});
           map.bone[at] = static_cast<std::uint16_t>(bone);
           map.rest[at] = rest;
-          map.posed_per_rest[at] = 1;
+          if (map.has_volume_ratio) map.posed_per_rest[at] = 1;
         }
       }
   }

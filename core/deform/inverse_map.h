@@ -34,6 +34,7 @@ struct InverseMap {
   std::vector<std::uint32_t> cell;   // place in the rest grid of the voxel whose cell covers it, kNoCell outside all
   std::vector<std::uint16_t> bone;   // the rig bone that paints it, kNoBone where none does
   std::vector<std::uint8_t> flags;
+  bool has_volume_ratio = true;      // whether it is wanted
   std::vector<float> posed_per_rest; // volume ratio of the map
   std::vector<Label> lost;           // of each claim that a cell lost to one that is no neighbour
   RowSet row_used;                   // whether any voxel of the row is covered; the other rows are clear
@@ -81,6 +82,7 @@ class RigidBones {
   int owner(const glm::ivec3& voxel) const;
   // 1 + the rig bone of every voxel of bone tissue at rest, 0 elsewhere.
   LabelVolume numbered() const;
+  RowSet rest_rows() const;  // of the rest volume that may hold bone tissue
   // Whether bone tissue of this rig bone is what the rest volume has there.
   bool has(int bone, const glm::dvec3& rest, const LabelSampler& sampler, bool nearest) const;
 

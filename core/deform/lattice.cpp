@@ -161,17 +161,16 @@ void for_each_outermost(const Body& body) {
 // body(i, j, k) for every corner of the brick's tissue voxels, in order of place.
 template <class Body>
 void for_each_corner(const TissueVoxels::Brick& brick, const Body& body) {
-  std::array<bool, PosedLattice::kSide * PosedLattice::kSide * PosedLattice::kSide> used{};
+  constexpr int kSide = PosedLattice::kSide;
+  std::array<unsigned, kSide * kSide> row{};  // a bit per corner
   for (int z = 0; z < TissueVoxels::kBrick; ++z)
-    for (std::uint64_t word = brick.mask[z]; word; word &= word - 1) {
-      const int bit = std::countr_zero(word), x = bit & 7, y = bit >> 3;
-      for (int c = 0; c < 8; ++c) used[PosedLattice::place(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))] = true;
+    for (int y = 0; y < TissueVoxels::kBrick; ++y) {
+      const unsigned voxels = brick.mask[z] >> (8 * y) & 0xff, corners = voxels | voxels << 1;
+      for (int step : {0, 1, kSide, kSide + 1}) row[y + kSide * z + step] |= corners;
     }
-  int place = 0;
-  for (int k = 0; k < PosedLattice::kSide; ++k)
-    for (int j = 0; j < PosedLattice::kSide; ++j)
-      for (int i = 0; i < PosedLattice::kSide; ++i)
-        if (used[place++]) body(i, j, k);
+  for (int k = 0; k < kSide; ++k)
+    for (int j = 0; j < kSide; ++j)
+      for (unsigned bits = row[j + kSide * k]; bits; bits &= bits - 1) body(std::countr_zero(bits), j, k);
 }
 
 }  // namespace
@@ -276,13 +275,15 @@ FixedPoint PosedLattice::posed(const glm::ivec3& corner, std::span<const BoneWei
   return fixed(rest, voxel_from_world_.linear * (blend_point(blend_, bones_, influences, world) - world), bone);
 }
 
+void PosedLattice::throw_torn(int bone) const {
+  throw Error("the pose tears the tissue too far apart", "bone " + weights_->bones()[bone],
+              "check the pose and the rig, or use a coarser spacing");
+}
+
 //   moved  posed - rest, in voxel coordinates    bone  for the message
 FixedPoint PosedLattice::fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const {
   const glm::dvec3 at = output_.from_rest(rest + moved);
-  for (int axis = 0; axis < 3; ++axis)
-    if (!(std::abs(at[axis]) < kFurthest))
-      throw Error("the pose tears the tissue too far apart", "bone " + weights_->bones()[bone],
-                  "check the pose and the rig, or use a coarser spacing");
+  if (!(std::abs(at.x) < kFurthest && std::abs(at.y) < kFurthest && std::abs(at.z) < kFurthest)) throw_torn(bone);
   // One instruction each; std::floor would be a call.
   return {std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne)};
 }

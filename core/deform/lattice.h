@@ -88,6 +88,7 @@ class PosedLattice {
  private:
   FixedPoint posed(const glm::ivec3& corner, std::span<const BoneWeight> influences) const;
   FixedPoint fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const;
+  [[noreturn]] void throw_torn(int bone) const;
   FixedPoint posed_by(int bone, const glm::ivec3& corner) const;
   struct BrickBounds {
     FixedBox box;

@@ -69,7 +69,12 @@ PosedCell::Inverse PosedCell::affine_inverse() const {
   for (int axis = 0; axis < 3; ++axis)
     if (std::int64_t{box_.high[axis]} - box_.low[axis] >= kLargestExtent / kFixedOne) return inverse;
   std::array<Lanes, 8> from_first;
-  for (int i = 0; i < 8; ++i) from_first[i] = lanes(corner(i)) - lanes(corner(0));
+  const Lanes first = lanes_of_two(lowest_)[0];
+  for (int i = 0; i < 8; i += 2) {
+    const auto [even, odd] = lanes_of_two(&corner(i));
+    from_first[i] = even - first;
+    from_first[i + 1] = odd - first;
+  }
   const auto c = trilinear_coefficients(from_first);
   const glm::dvec3 x = voxels_of(c[1]), y = voxels_of(c[2]), z = voxels_of(c[4]);  // half edges
   const glm::dmat3 faces(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
@@ -93,10 +98,17 @@ int PosedCell::find_tet(const glm::ivec3& voxel, const glm::dvec3& place, double
   return found;
 }
 
-int PosedCell::find_tet_exactly(const glm::ivec3& voxel) const {
+template <class Whole>
+int PosedCell::first_tet_with(const glm::ivec3& voxel) const {
   for (int t = 0; t < kTets; ++t)
-    if (TetFaces<__int128>(posed_tet(t)).contains(voxel)) return t;
+    if (TetFaces<Whole>(posed_tet(t)).contains(voxel)) return t;
   return -1;
+}
+
+int PosedCell::find_tet_exactly(const glm::ivec3& voxel) const {
+  const glm::ivec3 size = box_.high - box_.low;  // up to two voxels less than the cube's extent
+  const bool is_small = std::max({size.x, size.y, size.z}) + 2 <= kSmallExtent && box_.contains(voxel);
+  return is_small ? first_tet_with<std::int64_t>(voxel) : first_tet_with<__int128>(voxel);
 }
 
 std::array<FixedPoint, 4> PosedCell::posed_tet(int t) const {

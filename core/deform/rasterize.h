@@ -19,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "core/deform/lattice.h"
 
@@ -36,8 +37,10 @@ VoxelRange voxels_in_box(const std::array<FixedPoint, N>& points) {
   return {(low + (kFixedOne - 1)) >> 16, high >> 16};
 }
 
+constexpr int kSmallExtent = 16;  // voxels
+
 // The side of a tet's four faces a voxel centre lies on, exactly. `Whole` holds the products: std::int64_t for tets
-// within 16 voxels, __int128 for all.
+// within kSmallExtent, __int128 for all.
 template <class Whole>
 class TetFaces {
  public:
@@ -102,8 +105,18 @@ void visit_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& range, 
   const TetFaces<Whole> faces(posed);
   const int orientation = faces.orientation();
   if (orientation == 0) return;
+  const bool is_short = range.high.x - range.low.x < 4;  // asking each voxel takes less than dividing
   for (int z = range.low.z; z <= range.high.z; ++z)
     for (int y = range.low.y; y <= range.high.y; ++y) {
+      if (is_short) {
+        std::array<Whole, 4> side;
+        for (int f = 0; f < 4; ++f) side[f] = faces.side(f, {range.low.x, y, z});
+        for (int x = range.low.x; x <= range.high.x; ++x) {
+          if (side[0] > 0 && side[1] > 0 && side[2] > 0 && side[3] > 0) visit(glm::ivec3(x, y, z), orientation);
+          for (int f = 0; f < 4; ++f) side[f] += faces.step_x(f);
+        }
+        continue;
+      }
       Whole first = range.low.x, last = range.high.x;
       for (int f = 0; f < 4 && first <= last; ++f)
         clip_row<Whole>(faces.side(f, {int(first), y, z}), faces.step_x(f), first, last);
@@ -124,7 +137,7 @@ void rasterize_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& cli
   }
   std::int64_t extent = 0;
   for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, std::int64_t{high[axis]} - low[axis]);
-  if (extent <= 16 * kFixedOne)
+  if (extent <= kSmallExtent * kFixedOne)
     visit_tet<std::int64_t>(posed, range, visit);
   else
     visit_tet<__int128>(posed, range, visit);
@@ -143,7 +156,16 @@ CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<
 
 // Four whole numbers in one register, the last unused.
 using Lanes = int __attribute__((vector_size(16)));
-inline Lanes lanes(const FixedPoint& p) { return Lanes{p.x, p.y, p.z, 0}; }
+
+// Two points that lie one behind the other in memory, in two loads.
+inline std::array<Lanes, 2> lanes_of_two(const FixedPoint* points) {
+  constexpr Lanes kThree{-1, -1, -1, 0};
+  std::array<Lanes, 2> two;
+  std::memcpy(&two[0], points, sizeof(Lanes));                                                  // x y z x
+  std::memcpy(&two[1], reinterpret_cast<const char*>(points + 2) - sizeof(Lanes), sizeof(Lanes));  // z x y z
+  two[1] = __builtin_shuffle(two[1], Lanes{1, 2, 3, 0});
+  return {two[0] & kThree, two[1] & kThree};
+}
 
 // A tissue voxel's posed cube.
 class PosedCell {
@@ -153,12 +175,12 @@ class PosedCell {
   // rest_voxel  its centre is the middle of the cube at rest
   PosedCell(const FixedPoint* lowest, int row, int slice, const glm::ivec3& rest_voxel)
       : lowest_(lowest), row_(row), slice_(slice), rest_voxel_(rest_voxel) {
-    Lanes low = lanes(*lowest), high = low;
-    for (int offset : {1, row, row + 1, slice, slice + 1, slice + row, slice + row + 1}) {
-      const Lanes c = lanes(lowest[offset]);
-      low = c < low ? c : low;
-      high = c > high ? c : high;
-    }
+    Lanes low = lanes_of_two(lowest)[0], high = low;
+    for (int offset : {0, row, slice, slice + row})
+      for (const Lanes c : lanes_of_two(lowest + offset)) {
+        low = c < low ? c : low;
+        high = c > high ? c : high;
+      }
     low = (low + (kFixedOne - 1)) >> 16;  // shifts of negative numbers round down
     high >>= 16;
     box_ = {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
@@ -213,6 +235,8 @@ class PosedCell {
   Inverse affine_inverse() const;
   int find_tet(const glm::ivec3& voxel, const glm::dvec3& place, double slack) const;  // of a voxel inside the cube
   int find_tet_exactly(const glm::ivec3& voxel) const;                                // -1: outside
+  template <class Whole>
+  int first_tet_with(const glm::ivec3& voxel) const;
   std::array<FixedPoint, 4> posed_tet(int t) const;
   CellClaim claim_in(int t, const glm::ivec3& voxel) const;
 

@@ -6,7 +6,6 @@
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/base/pages.h"
 #include "core/project/bytes.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
@@ -373,11 +372,11 @@ class Reading {
     const std::int64_t bytes = checked_voxel_bytes(grid, in);
     in.require(std::ssize(node.leaves) == (bytes + kLeafBytes - 1) / kLeafBytes);
     take_memory(bytes, "volume");
-    volume.voxels = sparse_zeros<Label>(grid.voxel_count());
+    volume.voxels.resize(grid.voxel_count());
     char* to = reinterpret_cast<char*>(volume.voxels.data());
     for_leaves(node.leaves, 0, "volume", [&](std::int64_t i, const std::string& leaf) {
       in.require(std::ssize(leaf) == std::min(kLeafBytes, bytes - i * kLeafBytes));
-      std::memcpy(to + i * kLeafBytes, leaf.data(), leaf.size());
+      if (!is_all_zero(leaf.data(), leaf.size())) std::memcpy(to + i * kLeafBytes, leaf.data(), leaf.size());
     });
     return volume;
   }

@@ -12,9 +12,10 @@ namespace {
 // What the heap adds to a block, and a shared_ptr's counts.
 constexpr std::int64_t kBlock = 32;
 
-template <class T>
-std::int64_t heap_bytes(const std::vector<T>& values) {
-  return values.capacity() == 0 ? 0 : static_cast<std::int64_t>(values.capacity() * sizeof(T)) + kBlock;
+template <class Vector>
+  requires requires(const Vector& values) { values.capacity(); values.data(); }
+std::int64_t heap_bytes(const Vector& values) {
+  return values.capacity() == 0 ? 0 : static_cast<std::int64_t>(values.capacity() * sizeof(*values.data())) + kBlock;
 }
 std::int64_t heap_bytes(const std::string& text) { return static_cast<std::int64_t>(text.capacity()) + kBlock; }
 

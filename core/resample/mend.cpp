@@ -307,21 +307,22 @@ class Mending {
 }  // namespace
 
 std::int64_t mend(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft, const RestPoint& rest_point,
-                  const RowSet* posed_rows, const RowSet* rest_rows) {
-  const Components of_rest = connected_components(rest, rest_rows);
-  LabelSet rigid(soft.size());
-  for (size_t label = 1; label < soft.size(); ++label) rigid[label] = !soft[label];
-  const Components posed_bones = connected_components(posed, posed_rows, &rigid);
-  const std::int64_t parted = part_bones(posed, posed_bones, rest, of_rest, soft, rest_point);
-  Components of_posed = connected_components(posed, posed_rows);
+                  const MendRows& rows, const MendRows& bone_rows) {
+  LabelSet asked(soft.size());
+  for (size_t label = 1; label < soft.size(); ++label) asked[label] = !soft[label];
+  const std::int64_t parted = part_bones(posed, connected_components(posed, bone_rows.posed, &asked), rest,
+                                         connected_components(rest, bone_rows.rest, &asked), soft, rest_point);
+  Components of_posed = connected_components(posed, rows.posed);
+  // Soft tissue that hangs together was not torn.
+  for (const auto& [label, parts] : large_parts(of_posed)) asked[label] |= parts.size() > 1;
+  const Components of_rest = connected_components(rest, rows.rest, &asked);
   return parted + std::ssize(Mending(posed, std::move(of_posed), rest, of_rest, posed, soft, rest_point).run());
 }
 
 std::vector<glm::ivec3> mend_bones(LabelVolume& posed_bones, const LabelVolume& rest_bones, const LabelVolume& tissue,
-                                   const LabelSet& soft, const RestPoint& rest_point, const RowSet* posed_rows,
-                                   const RowSet* rest_rows) {
-  const Components of_rest = connected_components(rest_bones, rest_rows);
-  Components of_posed = connected_components(posed_bones, posed_rows);
+                                   const LabelSet& soft, const RestPoint& rest_point, const MendRows& rows) {
+  const Components of_rest = connected_components(rest_bones, rows.rest);
+  Components of_posed = connected_components(posed_bones, rows.posed);
   return Mending(posed_bones, std::move(of_posed), rest_bones, of_rest, tissue, soft, rest_point).run();
 }
 

@@ -18,19 +18,23 @@
 
 namespace limber {
 
+// Rows that hold what is mended, where they are known.
+struct MendRows {
+  const RowSet *posed = nullptr, *rest = nullptr;
+};
+
 //   soft     tissues that are not bone
 //   posed    voxels of bridges are changed
-//   posed_rows, rest_rows  that hold tissue, where they are known
+//   bone_rows  that hold bone tissue
 //   returns  the number of voxels changed
 std::int64_t mend(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft, const RestPoint& rest_point,
-                  const RowSet* posed_rows = nullptr, const RowSet* rest_rows = nullptr);
+                  const MendRows& rows = {}, const MendRows& bone_rows = {});
 
 // The same for rigid bones as wholes: they take soft voxels.
 //   posed_bones  1 + the rig bone of each voxel of bone tissue, 0 elsewhere; what is taken is added
 //   rest_bones   the same at rest        tissue  the posed tissue, on the grid of posed_bones: soft voxels may be taken
 //   returns      the voxels taken
 std::vector<glm::ivec3> mend_bones(LabelVolume& posed_bones, const LabelVolume& rest_bones, const LabelVolume& tissue,
-                                   const LabelSet& soft, const RestPoint& rest_point,
-                                   const RowSet* posed_rows = nullptr, const RowSet* rest_rows = nullptr);
+                                   const LabelSet& soft, const RestPoint& rest_point, const MendRows& rows = {});
 
 }  // namespace limber

@@ -7,7 +7,6 @@
 #include <map>
 
 #include "core/base/parallel.h"
-#include "core/base/pages.h"
 #include "core/deform/inverse_map.h"
 #include "core/resample/mend.h"
 #include "core/resample/output_grid.h"
@@ -130,7 +129,7 @@ class GreySampler {
   AffineTransform voxel_from_world_;
 };
 
-// A posed voxel of soft tissue that was covered by skin at rest.
+// A posed voxel of soft tissue, maybe bare, that was covered by skin at rest.
 struct UnderSkin {
   std::int64_t at;
   Label skin;
@@ -139,7 +138,7 @@ struct UnderSkin {
 // What one tile saw.
 struct TileCounts {
   VoxelRange range;
-  RowSet row_used;  // of the range
+  RowSet row_used, row_has_bone;  // of the range
   std::int64_t holes = 0, overlap = 0, bone_overlap = 0;
   std::vector<Label> lost;
   std::vector<UnderSkin> under_skin;
@@ -165,11 +164,12 @@ class Resampling {
         output_(output), mends_(mends), posed_(posed), sampler_(volume), world_from_rest_(world_from_voxel(volume.grid)) {
     posed.volume.grid = output.grid;
     const std::int64_t voxels = output.grid.voxel_count();
-    posed.volume.voxels = sparse_zeros<Label>(voxels);
+    posed.volume.voxels.resize(voxels);
     rows_.resize(std::int64_t{output.grid.size.y} * output.grid.size.z);
-    if (mends) posed_bones_ = {output.grid, sparse_zeros<Label>(voxels)};
-    if (settings.displacement) posed.displacement = sparse_zeros<glm::vec3>(voxels);
-    if (settings.jacobian) posed.jacobian = sparse_zeros<float>(voxels);
+    bone_rows_ = rows_;
+    if (mends) posed_bones_ = {output.grid, ZeroedVector<Label>(voxels)};
+    if (settings.displacement) posed.displacement.resize(voxels);
+    if (settings.jacobian) posed.jacobian.resize(voxels);
     if (settings.grey) start_grey();
   }
 
@@ -195,9 +195,9 @@ class Resampling {
     const auto of_bone = [&](const glm::ivec3& voxel) {
       return bones_.rest_point(posed_bones_.at(voxel) - 1, glm::dvec3(output_.range.low + voxel));
     };
-    const RowSet rest_rows = lattice_.tissue().rows();
+    const RowSet rest_rows = lattice_.tissue().rows(), bone_rest_rows = bones_.rest_rows();
     const auto bridges =
-        mend_bones(posed_bones_, bones_.numbered(), posed_.volume, labels_.soft, of_bone, &rows_, &rest_rows);
+        mend_bones(posed_bones_, bones_.numbered(), posed_.volume, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
     for (const glm::ivec3& voxel : bridges) {
       map.reset({output_.range.low + voxel, output_.range.low + voxel});
       map.bone[0] = static_cast<std::uint16_t>(posed_bones_.at(voxel) - 1);
@@ -213,7 +213,8 @@ class Resampling {
       return glm::dvec3(map.rest[0]);
     };
     posed_.report.mended_voxels = std::ssize(bridges) + close_skin() +
-                                  mend(posed_.volume, volume_, labels_.soft, rest_point, &rows_, &rest_rows);
+                                  mend(posed_.volume, volume_, labels_.soft, rest_point, {&rows_, &rest_rows},
+                                       {&bone_rows_, &bone_rest_rows});
   }
 
  private:
@@ -233,6 +234,7 @@ class Resampling {
 
   void run_tile(const VoxelRange& range, TileCounts& counts) {
     thread_local InverseMap map;
+    map.has_volume_ratio = settings_.jacobian;
     if (fill(map, range) || settings_.grey) write(map, counts);
   }
 
@@ -255,6 +257,7 @@ class Resampling {
   void write(const InverseMap& map, TileCounts& counts) {
     counts.range = map.range;
     counts.row_used = map.row_used;
+    counts.row_has_bone.assign(map.row_used.size(), 0);
     counts.lost = map.lost;
     const std::int64_t length = map.range.high.x - map.range.low.x + 1;
     std::int64_t map_row = 0;
@@ -265,21 +268,38 @@ class Resampling {
         const std::int64_t row = output_.grid.index(glm::ivec3(0, v.y, v.z) - output_.range.low);
         std::int64_t i = map_row * length;
         for (v.x = map.range.low.x; v.x <= map.range.high.x; ++v.x, ++i) {
-          const bool covered = map.cell[i] != InverseMap::kNoCell || map.bone[i] != InverseMap::kNoBone;
+          const bool covered = is_covered(map, i);
           if (settings_.grey) posed_.grey.voxels[row + v.x] = covered ? moved_grey(map.rest[i]) : still_grey(v);
-          if (covered) write_voxel(map, i, v, row + v.x, counts);
+          if (covered) counts.row_has_bone[map_row] |= write_voxel(map, i, v, row + v.x, counts);
         }
       }
   }
 
-  void write_voxel(const InverseMap& map, std::int64_t i, const glm::ivec3& v, std::int64_t at, TileCounts& counts) {
+  // Whether it is bone.
+  bool write_voxel(const InverseMap& map, std::int64_t i, const glm::ivec3& v, std::int64_t at, TileCounts& counts) {
     const Label label = label_of(map, i);
     posed_.volume.voxels[at] = label;
     if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
-    if (mends_ && labels_.soft[label] && !labels_.skin[label])
+    if (mends_ && labels_.soft[label] && !labels_.skin[label] && may_touch_air(map, i, v))
       if (const Label skin = skin_over(map.rest[i])) counts.under_skin.push_back({at, skin});
     write_fields(map, i, v, at);
     count(map, i, v, label, counts);
+    return map.bone[i] != InverseMap::kNoBone || labels_.bone[label];
+  }
+
+  static bool is_covered(const InverseMap& map, std::int64_t i) {
+    return map.cell[i] != InverseMap::kNoCell || map.bone[i] != InverseMap::kNoBone;
+  }
+
+  // Whether a voxel at one of its faces is air, or lies in another tile.
+  static bool may_touch_air(const InverseMap& map, std::int64_t i, const glm::ivec3& v) {
+    const glm::ivec3 size = map.range.high - map.range.low + 1;
+    std::int64_t stride = 1;
+    for (int axis = 0; axis < 3; stride *= size[axis++]) {
+      if (v[axis] == map.range.low[axis] || v[axis] == map.range.high[axis]) return true;
+      if (!is_covered(map, i - stride) || !is_covered(map, i + stride)) return true;
+    }
+    return false;
   }
 
   // The skin that touches the rest point's voxel, 0 when there is none or the voxel lay bare itself.
@@ -351,7 +371,9 @@ class Resampling {
     for (std::int64_t i = 0; i < std::ssize(tile.row_used); ++i) {
       const int height = tile.range.high.y - tile.range.low.y + 1;
       const glm::ivec3 row(output_.range.low.x, tile.range.low.y + i % height, tile.range.low.z + i / height);
-      if (tile.row_used[i]) rows_[output_.grid.index(row - output_.range.low) / output_.grid.size.x] = 1;
+      const std::int64_t at = output_.grid.index(row - output_.range.low) / output_.grid.size.x;
+      rows_[at] |= tile.row_used[i];
+      bone_rows_[at] |= tile.row_has_bone[i];
     }
     report.new_hole_voxels += tile.holes;
     report.overlap_voxels += tile.overlap;
@@ -375,7 +397,7 @@ class Resampling {
   Posed& posed_;
   const double skin_reach_ = kSkinReach * largest(volume_.grid.spacing);  // mm below air
   std::vector<UnderSkin> under_skin_;
-  RowSet rows_;  // of the output that hold tissue
+  RowSet rows_, bone_rows_;  // of the output that hold tissue, and bone
   LabelVolume posed_bones_;  // 1 + the rig bone of each voxel that a bone paints
   LabelSampler sampler_;
   AffineTransform world_from_rest_;

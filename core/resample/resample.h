@@ -50,8 +50,8 @@ struct DeformReport {
 struct Posed {
   LabelVolume volume;
   DeformReport report;
-  std::vector<glm::vec3> displacement;  // posed - rest, mm, on the output grid; zero in air
-  std::vector<float> jacobian;          // on the output grid; zero in air
+  ZeroedVector<glm::vec3> displacement;  // posed - rest, mm, on the output grid; zero in air
+  ZeroedVector<float> jacobian;          // on the output grid; zero in air
   GreyVolume grey;
 };
 

@@ -36,9 +36,11 @@ int end_of_run(const Label* row, int begin, int size) {
   return x;
 }
 
-std::vector<Run> runs_of_slice(const LabelVolume& volume, const RowSet* in_rows, const LabelSet* of_labels, int z,
+//   expected  about how many there will be
+std::vector<Run> runs_of_slice(const LabelVolume& volume, const RowSet* in_rows, const LabelSet* of_labels, int z, std::size_t expected,
                                std::int64_t* runs_in_row) {
   std::vector<Run> runs;
+  runs.reserve(expected);
   const glm::ivec3 size = volume.grid.size;
   for (int y = 0; y < size.y; ++y) {
     if (in_rows && !(*in_rows)[y + std::int64_t{size.y} * z]) continue;
@@ -76,8 +78,11 @@ Components connected_components(const LabelVolume& volume, const RowSet* in_rows
   result.first_run.assign(rows + 1, 0);
   std::vector<std::vector<Run>> of_slice(size.z);
   parallel_for(size.z, 4, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t z = begin; z < end; ++z)
-      of_slice[z] = runs_of_slice(volume, in_rows, of_labels, static_cast<int>(z), &result.first_run[1 + z * size.y]);
+    std::size_t expected = 0;
+    for (std::int64_t z = begin; z < end; ++z) {
+      of_slice[z] = runs_of_slice(volume, in_rows, of_labels, static_cast<int>(z), expected, &result.first_run[1 + z * size.y]);
+      expected = of_slice[z].size() + of_slice[z].size() / 4;  // as many as in the slice before, and some more
+    }
   });
   std::partial_sum(result.first_run.begin(), result.first_run.end(), result.first_run.begin());
   if (result.first_run.back() > INT32_MAX)

@@ -76,7 +76,7 @@ LabelSampler::LabelSampler(const LabelVolume& volume)
     : volume_(&volume), row_(volume.grid.size.x), slice_(std::int64_t{volume.grid.size.x} * volume.grid.size.y) {}
 
 // False when the point is so far outside the grid (or not a number) that all eight are air.
-bool LabelSampler::neighbours(const glm::dvec3& point, Neighbours& out) const {
+inline bool LabelSampler::neighbours(const glm::dvec3& point, Neighbours& out) const {
   const glm::ivec3 size = volume_->grid.size;
   const bool near_grid = point.x >= -1 && point.y >= -1 && point.z >= -1 && point.x < size.x && point.y < size.y &&
                          point.z < size.z;

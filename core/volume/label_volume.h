@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/zeroed_vector.h"
 #include "core/volume/grid.h"
 
 namespace limber {
@@ -19,7 +20,7 @@ using RowSet = std::vector<std::uint8_t>;
 
 struct LabelVolume {
   Grid grid;
-  std::vector<Label> voxels;  // grid.voxel_count(), x fastest
+  ZeroedVector<Label> voxels;  // grid.voxel_count(), x fastest
 
   Label at(const glm::ivec3& v) const { return voxels[grid.index(v)]; }
   Label& at(const glm::ivec3& v) { return voxels[grid.index(v)]; }

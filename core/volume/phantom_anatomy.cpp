@@ -242,7 +242,7 @@ JointLimits ball(double cone_degrees, double twist_minimum_degrees, double twist
 LabelVolume voxelize(const Anatomy& anatomy, double spacing, Progress& progress) {
   LabelVolume volume{grid_around(anatomy, spacing), {}};
   const Grid& grid = volume.grid;
-  volume.voxels.assign(grid.voxel_count(), kAir);
+  volume.voxels.resize(grid.voxel_count());
   std::vector<std::uint8_t> part(grid.voxel_count(), 0);
 
   const glm::ivec3 blocks = (grid.size + kBlock - 1) / kBlock;

@@ -24,7 +24,7 @@ struct AxisMap {
 };
 
 LabelVolume permuted(const LabelVolume& volume, const Grid& grid, const AxisMap& map) {
-  LabelVolume result{grid, std::vector<Label>(volume.voxels.size())};
+  LabelVolume result{grid, ZeroedVector<Label>(volume.voxels.size())};
   parallel_for(grid.size.z, 4, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t z = begin; z < end; ++z)
       for (int y = 0; y < grid.size.y; ++y)
@@ -44,7 +44,7 @@ LabelVolume boxed(const LabelVolume& volume, const glm::ivec3& low, const glm::i
   LabelVolume result{volume.grid, {}};
   result.grid.size = size;
   result.grid.origin = world_from_voxel(volume.grid) * glm::dvec3(low);
-  result.voxels.assign(result.grid.voxel_count(), 0);
+  result.voxels.resize(result.grid.voxel_count());
   const glm::ivec3 first = glm::max(low, glm::ivec3(0)), end = glm::min(low + size, volume.grid.size);
   parallel_for(std::max(0, end.z - first.z), 4, [&](std::int64_t from, std::int64_t to) {
     for (std::int64_t k = from; k < to; ++k)

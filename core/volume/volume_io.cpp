@@ -18,6 +18,7 @@ namespace limber {
 
 namespace {
 constexpr std::size_t kChunkVoxels = 1 << 14;  // small enough to stay in cache between decoding and storing
+constexpr std::size_t kPageVoxels = 1 << 11;   // labels in a page of memory
 
 void check_memory(const Grid& grid, std::int64_t bytes_per_voxel, const Path& path) {
   // A tenth is left for everything else.
@@ -94,12 +95,21 @@ VolumeFile read_volume(const Path& path, Progress& progress) {
   VolumeFile file{{header.grid, {}}, {}, type_of(header), header.warnings};
   LabelDecoder decoder;
   auto& voxels = file.volume.voxels;
-  voxels.reserve(static_cast<std::size_t>(header.grid.voxel_count()));
-  want_large_pages(voxels.data(), header.grid.voxel_count() * std::int64_t{sizeof(Label)});
+  voxels.resize(static_cast<std::size_t>(header.grid.voxel_count()));
   for_chunks(opened, progress, [&](const void* chunk, std::size_t count, std::int64_t first) {
-    voxels.resize(static_cast<std::size_t>(first) + count);
-    const auto problem = decoder.decode(chunk, count, header.voxel_type, header.slope, header.intercept, &voxels[static_cast<std::size_t>(first)]);
-    if (problem != LabelDecoder::Problem::None) throw no_label(problem, decoder.bad_value(), path);
+    const std::size_t voxel_bytes = static_cast<std::size_t>(size_of(header.voxel_type));
+    for (std::size_t done = 0; done < count; done += kPageVoxels) {
+      const std::size_t page = std::min(count - done, kPageVoxels);
+      const char* from = static_cast<const char*>(chunk) + done * voxel_bytes;
+      const auto decode = [&](std::size_t some, Label* to) {
+        const auto problem = decoder.decode(from, some, header.voxel_type, header.slope, header.intercept, to);
+        if (problem != LabelDecoder::Problem::None) throw no_label(problem, decoder.bad_value(), path);
+      };
+      // Zeros are all what the first of them is: mostly air, which is there already.
+      Label first_label = 1;
+      if (is_all_zero(from, page * voxel_bytes)) decode(1, &first_label);
+      if (first_label != 0) decode(page, &voxels[static_cast<std::size_t>(first) + done]);
+    }
   });
   append(file.warnings, opened.voxels->finish());
   file.tissues = tissues_of(decoder.values(), header.named);

@@ -11,6 +11,7 @@
 // colours, what does not fit in memory. Read with a warning: data that are whole despite a wrong header field.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -82,7 +83,7 @@ void check_writable(const Path& path);
 void write_volume(const LabelVolume& volume, const Path& path, const TissueTable& tissues = {}, const FileType& type = {});
 void write_grey_volume(const GreyVolume& volume, const Path& path);
 // Three floats a voxel, mm, world axes (a displacement field).
-void write_vector_volume(const Grid& grid, const std::vector<glm::vec3>& voxels, const Path& path);
-void write_scalar_volume(const Grid& grid, const std::vector<float>& voxels, const Path& path);
+void write_vector_volume(const Grid& grid, std::span<const glm::vec3> voxels, const Path& path);
+void write_scalar_volume(const Grid& grid, std::span<const float> voxels, const Path& path);
 
 }  // namespace limber

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -381,7 +382,7 @@ void write_grey_volume(const GreyVolume& volume, const Path& path) {
   writer(voxels, path);
 }
 
-void write_vector_volume(const Grid& grid, const std::vector<glm::vec3>& vectors, const Path& path) {
+void write_vector_volume(const Grid& grid, std::span<const glm::vec3> vectors, const Path& path) {
   Voxels voxels{grid, VoxelType::Float32, 3, true, {}, {}, 1};
   voxels.fill = [&vectors](std::int64_t first, std::size_t count, void* to) {
     std::memcpy(to, &vectors[static_cast<std::size_t>(first)], count * sizeof(glm::vec3));
@@ -389,7 +390,7 @@ void write_vector_volume(const Grid& grid, const std::vector<glm::vec3>& vectors
   checked_writer(path)(voxels, path);
 }
 
-void write_scalar_volume(const Grid& grid, const std::vector<float>& values, const Path& path) {
+void write_scalar_volume(const Grid& grid, std::span<const float> values, const Path& path) {
   Voxels voxels{grid, VoxelType::Float32, 1, true, {}, {}, 1};
   voxels.fill = [&values](std::int64_t first, std::size_t count, void* to) {
     std::memcpy(to, &values[static_cast<std::size_t>(first)], count * sizeof(float));

@@ -12,7 +12,7 @@ using namespace limber;
 namespace {
 
 LabelVolume volume_of(const Grid& grid, const auto& inside) {
-  LabelVolume volume{grid, std::vector<Label>(grid.voxel_count(), 0)};
+  LabelVolume volume{grid, ZeroedVector<Label>(grid.voxel_count(), 0)};
   for (int z = 0; z < grid.size.z; ++z)
     for (int y = 0; y < grid.size.y; ++y)
       for (int x = 0; x < grid.size.x; ++x) volume.voxels[grid.index({x, y, z})] = inside(glm::ivec3(x, y, z)) ? 1 : 0;

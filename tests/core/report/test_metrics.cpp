@@ -104,7 +104,7 @@ TEST_CASE("metrics: voxels, components, surface and enclosed air equal what floo
 }
 
 TEST_CASE("metrics: a snake that folds back on itself is one component") {
-  LabelVolume volume{{.size = {41, 5, 41}}, std::vector<Label>(41 * 5 * 41)};
+  LabelVolume volume{{.size = {41, 5, 41}}, ZeroedVector<Label>(41 * 5 * 41)};
   for (int z = 0; z < 41; z += 2) {
     fill(volume, {0, 2, z}, {41, 3, z + 1}, 7);
     if (z + 2 < 41) fill(volume, {z % 4 ? 0 : 40, 2, z + 1}, {z % 4 ? 1 : 41, 3, z + 2}, 7);
@@ -114,7 +114,7 @@ TEST_CASE("metrics: a snake that folds back on itself is one component") {
 
 TEST_CASE("metrics: a volume compared with itself has changed nowhere, on any grid") {
   const LabelVolume volume = random_volume({12, 12, 12}, 2, 0.3, 5);
-  LabelVolume moved{{.size = {20, 18, 16}, .origin = {5, 6, 7}}, std::vector<Label>(20 * 18 * 16)};
+  LabelVolume moved{{.size = {20, 18, 16}, .origin = {5, 6, 7}}, ZeroedVector<Label>(20 * 18 * 16)};
   for (int z = 0; z < 12; ++z)
     for (int y = 0; y < 12; ++y)
       for (int x = 0; x < 12; ++x) moved.at({x + 3, y + 2, z + 1}) = volume.at({x, y, z});
@@ -133,11 +133,11 @@ TEST_CASE("metrics: a volume compared with itself has changed nowhere, on any gr
 }
 
 TEST_CASE("metrics: volume and mass change by hand, over different spacings") {
-  LabelVolume before{{.size = {10, 10, 10}, .spacing = {2, 2, 2}}, std::vector<Label>(1000)};
+  LabelVolume before{{.size = {10, 10, 10}, .spacing = {2, 2, 2}}, ZeroedVector<Label>(1000)};
   fill(before, {1, 1, 1}, {9, 9, 9}, 1);
   fill(before, {2, 2, 2}, {8, 8, 8}, 2);
   fill(before, {4, 4, 4}, {5, 5, 5}, 0);
-  LabelVolume after{{.size = {10, 10, 10}, .spacing = {1, 2, 4}}, std::vector<Label>(1000)};
+  LabelVolume after{{.size = {10, 10, 10}, .spacing = {1, 2, 4}}, ZeroedVector<Label>(1000)};
   fill(after, {1, 1, 1}, {9, 9, 9}, 2);
   const VolumeMetrics metrics = compare(before, after, table());
   REQUIRE(metrics.tissues.size() == 2);
@@ -154,7 +154,7 @@ TEST_CASE("metrics: volume and mass change by hand, over different spacings") {
 }
 
 TEST_CASE("metrics: air that a fold has closed off is trapped") {
-  LabelVolume before{{.size = {12, 12, 12}}, std::vector<Label>(1728)}, after = before;
+  LabelVolume before{{.size = {12, 12, 12}}, ZeroedVector<Label>(1728)}, after = before;
   fill(before, {2, 2, 2}, {10, 10, 6}, 2);
   fill(after, {2, 2, 2}, {10, 10, 10}, 2);
   fill(after, {4, 4, 4}, {6, 6, 6}, 0);

@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 LabelVolume box_of(Label label, int edge) {
-  LabelVolume volume{{.size = {20, 20, 20}, .spacing = {2, 2, 2}}, std::vector<Label>(8000)};
+  LabelVolume volume{{.size = {20, 20, 20}, .spacing = {2, 2, 2}}, ZeroedVector<Label>(8000)};
   for (int z = 5; z < 5 + edge; ++z)
     for (int y = 5; y < 5 + edge; ++y)
       for (int x = 5; x < 5 + edge; ++x) volume.at({x, y, z}) = label;

@@ -125,7 +125,7 @@ TEST_CASE("auto-fit: a rig whose names mean nothing is laid into the tissue's ex
 }
 
 TEST_CASE("auto-fit: strange volumes are refused or rigged, never fatal") {
-  LabelVolume volume{{{6, 5, 4}, {1, 1, 1}, {0, 0, 0}, glm::dmat3(1)}, std::vector<Label>(120, 0)};
+  LabelVolume volume{{{6, 5, 4}, {1, 1, 1}, {0, 0, 0}, glm::dmat3(1)}, ZeroedVector<Label>(120, 0)};
   CHECK_THROWS_AS(auto_fit(volume, {}, rig_template("adult")), Error);
   for (const char* name : {"arm", "adult", "quadruped"}) {
     std::fill(volume.voxels.begin(), volume.voxels.end(), 0);
@@ -250,7 +250,9 @@ TEST_CASE("auto-fit: of a body cut at the hips what is there lies within 8 mm, b
   Grid& grid = body.volume.grid;
   const int cut = static_cast<int>(0.46 * grid.size.z), padding = 3;
   std::fill_n(body.volume.voxels.begin(), std::int64_t{grid.size.x} * grid.size.y * cut, 0);
-  body.volume.voxels.erase(body.volume.voxels.begin(), body.volume.voxels.begin() + std::int64_t{grid.size.x} * grid.size.y * (cut - padding));
+  ZeroedVector<Label> kept;
+  kept.assign(body.volume.voxels.begin() + std::int64_t{grid.size.x} * grid.size.y * (cut - padding), body.volume.voxels.end());
+  body.volume.voxels = std::move(kept);
   grid.origin = world_from_voxel(grid) * glm::dvec3(0, 0, cut - padding);
   grid.size.z -= cut - padding;
   const double height = (world_from_voxel(grid) * glm::dvec3(0, 0, padding - 0.5)).z;

@@ -23,7 +23,7 @@ TEST_CASE("fit check: a bone half in tissue is half in, and the place where it l
 }
 
 TEST_CASE("fit check: where bones meet outside, the joint is told once, as a tail") {
-  LabelVolume volume{{{5, 5, 5}, {1, 1, 1}, {0, 0, 0}, glm::dmat3(1)}, std::vector<Label>(125, 1)};
+  LabelVolume volume{{{5, 5, 5}, {1, 1, 1}, {0, 0, 0}, glm::dmat3(1)}, ZeroedVector<Label>(125, 1)};
   Armature rig;
   rig.bones = {{.name = "A", .parent = -1, .head = {2, 2, 2}, .tail = {9, 2, 2}}, {.name = "B", .parent = 0, .head = {9, 2, 2}, .tail = {2, 2, 4}}, {.name = "C", .parent = 0, .head = {9, 2, 2}, .tail = {2, 4, 2}}};
   const RigCheck check = check_rig(volume, rig);
@@ -34,7 +34,7 @@ TEST_CASE("fit check: where bones meet outside, the joint is told once, as a tai
 }
 
 TEST_CASE("fit check: a rig far outside the grid is outside, whatever the numbers") {
-  LabelVolume volume{{{2, 2, 2}, {1, 1, 1}, {0, 0, 0}, glm::dmat3(1)}, std::vector<Label>(8, 1)};
+  LabelVolume volume{{{2, 2, 2}, {1, 1, 1}, {0, 0, 0}, glm::dmat3(1)}, ZeroedVector<Label>(8, 1)};
   Armature rig;
   rig.bones = {{.name = "Far", .parent = -1, .head = {1e30, 0, 0}, .tail = {-1e30, 1e30, 5}}};
   CHECK(check_rig(volume, rig).whole == 0);

@@ -21,7 +21,7 @@ constexpr Label kBone = 1;
 // hinges them in the middle of their section: bending drives a corner of one into the other. The hinge belongs to the
 // edge that the bars are bent towards.
 struct Bars {
-  LabelVolume volume{{.size = {41, 41, 12}, .spacing = {2, 2, 2}, .origin = {-40, -40, -10}}, std::vector<Label>(41 * 41 * 12)};
+  LabelVolume volume{{.size = {41, 41, 12}, .spacing = {2, 2, 2}, .origin = {-40, -40, -10}}, ZeroedVector<Label>(41 * 41 * 12)};
   Armature armature;
   BoneParts parts;
 

@@ -85,7 +85,7 @@ TEST_CASE("distance: is the same for any number of threads") {
 }
 
 TEST_CASE("distance: the box around tissue is tight, grows by its margin and stays inside the grid") {
-  LabelVolume volume{{.size = {10, 11, 12}}, std::vector<Label>(10 * 11 * 12)};
+  LabelVolume volume{{.size = {10, 11, 12}}, ZeroedVector<Label>(10 * 11 * 12)};
   CHECK(tissue_box(volume).voxel_count() == 0);
   volume.at({2, 3, 4}) = 5;
   volume.at({7, 9, 4}) = 1;

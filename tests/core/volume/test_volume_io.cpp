@@ -33,7 +33,7 @@ struct TemporaryFolder {
 const glm::dmat3 kMirroredTurn(0, 1, 0, -1, 0, 0, 0, 0, -1);
 
 LabelVolume small_volume(int labels = 5) {
-  LabelVolume volume{{{5, 4, 3}, {0.5, 3, 20}, {-7, 11, 0.125}, kMirroredTurn}, std::vector<Label>(60)};
+  LabelVolume volume{{{5, 4, 3}, {0.5, 3, 20}, {-7, 11, 0.125}, kMirroredTurn}, ZeroedVector<Label>(60)};
   for (std::size_t i = 0; i < volume.voxels.size(); ++i) volume.voxels[i] = static_cast<Label>(i * 7 % static_cast<std::size_t>(labels));
   return volume;
 }
@@ -190,7 +190,7 @@ TEST_CASE("volume io: writing twice gives the same bytes, and an unwritable name
 
 TEST_CASE("volume io: every encoding of NRRD gives the same voxels, either byte order, CRLF, lines and bytes to skip") {
   const TemporaryFolder folder;
-  const std::vector<Label> expected = {0, 1, 2, 3, 4, 5, 6, 7};
+  const ZeroedVector<Label> expected = {0, 1, 2, 3, 4, 5, 6, 7};
   const auto check = [&](const std::string& name, const std::string& bytes) {
     CAPTURE(name);
     const VolumeFile file = read_volume(folder.write(name, bytes));
@@ -235,7 +235,7 @@ TEST_CASE("volume io: the space, spacings and axis ranges of NRRD lead to the ri
 
 TEST_CASE("volume io: MetaImage data may be text, big-endian, detached, compressed, in slices, or have a wrong compressed size") {
   const TemporaryFolder folder;
-  const std::vector<Label> expected = {0, 1, 2, 3, 4, 5, 6, 7};
+  const ZeroedVector<Label> expected = {0, 1, 2, 3, 4, 5, 6, 7};
   const auto read = [&](const std::string& name, const std::string& bytes) {
     VolumeFile file = read_volume(folder.write(name, bytes));
     CAPTURE(name);
@@ -285,7 +285,7 @@ TEST_CASE("volume io: NIfTI places voxels by sform, else qform, else voxel size,
   const std::string half = patched<float>(patched<float>(nifti(), 112, 0.5f), 116, 10.0f);
   refused_for(folder.write("c.nii", half), "no whole number");
   const VolumeFile doubled = read_volume(folder.write("d.nii", patched<float>(nifti(), 112, 2.0f)));
-  CHECK(doubled.volume.voxels == std::vector<Label>{0, 2, 4, 6, 8, 10, 12, 14});
+  CHECK(doubled.volume.voxels == ZeroedVector<Label>{0, 2, 4, 6, 8, 10, 12, 14});
   CHECK(read_volume(folder.write("e.nii.gz", packed(nifti(), 31))).volume.grid == wanted);
   CHECK(read_volume(folder.write("f.nii", patched<float>(nifti(), 108, 0.0f))).warnings.size() == 1);
 }

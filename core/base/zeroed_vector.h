@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A vector whose values are zero until they are written, and take no memory till then. A body's grid is mostly air: where
+// nothing else than zero is written, the system lends a shared page of zeros to whoever reads. std::vector cannot do this,
+// because it writes every value that it makes, and with an allocator of our own it would walk over all of them to destroy them.
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <initializer_list>
+#include <iterator>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+#include "core/base/pages.h"
+
+namespace limber {
+
+//   T  a type whose zero is all bytes zero
+template <class T>
+class ZeroedVector {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+ public:
+  using value_type = T;
+  using iterator = T*;
+  using const_iterator = const T*;
+
+  ZeroedVector() = default;
+  explicit ZeroedVector(std::size_t count) { resize(count); }
+  ZeroedVector(std::size_t count, const T& value) { assign(count, value); }
+  ZeroedVector(std::initializer_list<T> values) { assign(values.begin(), values.end()); }
+  // Takes no more memory than the other does.
+  ZeroedVector(const ZeroedVector& other) {
+    constexpr std::size_t kPage = 4096 / sizeof(T);
+    resize(other.size());
+    for (std::size_t at = 0; at < size_; at += kPage) {
+      const std::size_t bytes = std::min(kPage, size_ - at) * sizeof(T);
+      if (!is_all_zero(&other[at], bytes)) std::memcpy(static_cast<void*>(data() + at), &other[at], bytes);
+    }
+  }
+  ZeroedVector(ZeroedVector&& other) noexcept { swap(other); }
+  ZeroedVector& operator=(ZeroedVector other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  std::size_t size() const { return size_; }
+  std::size_t capacity() const { return capacity_; }
+  bool empty() const { return size_ == 0; }
+  T* data() { return values_.get(); }
+  const T* data() const { return values_.get(); }
+  T* begin() { return data(); }
+  T* end() { return data() + size_; }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size_; }
+  T& operator[](std::size_t at) { return data()[at]; }
+  const T& operator[](std::size_t at) const { return data()[at]; }
+
+  // What comes new is zero.
+  void resize(std::size_t count) {
+    if (count > capacity_)
+      grow(count);
+    else if (count > size_)
+      std::memset(static_cast<void*>(end()), 0, (count - size_) * sizeof(T));  // it may have been used before
+    size_ = count;
+  }
+  void assign(std::size_t count, const T& value) {
+    resize(count);
+    std::fill_n(data(), count, value);
+  }
+  template <std::input_iterator Iterator>
+  void assign(Iterator first, Iterator last) {
+    resize(static_cast<std::size_t>(std::distance(first, last)));
+    std::copy(first, last, data());
+  }
+  void push_back(T value) {
+    if (size_ == capacity_) grow(std::max<std::size_t>(16, 2 * capacity_));
+    data()[size_++] = value;
+  }
+  void clear() { size_ = 0; }
+  void swap(ZeroedVector& other) noexcept {
+    std::swap(values_, other.values_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
+
+  friend bool operator==(const ZeroedVector& a, const ZeroedVector& b) { return std::equal(a.begin(), a.end(), b.begin(), b.end()); }
+
+ private:
+  struct Free {
+    void operator()(T* values) const { std::free(values); }
+  };
+
+  void grow(std::size_t capacity) {
+    std::unique_ptr<T[], Free> grown(static_cast<T*>(std::calloc(capacity, sizeof(T))));  // checks the product
+    if (!grown) throw std::bad_alloc();
+    if (size_) std::memcpy(static_cast<void*>(grown.get()), data(), size_ * sizeof(T));
+    values_ = std::move(grown);
+    capacity_ = capacity;
+  }
+
+  std::unique_ptr<T[], Free> values_;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
+}  // namespace limber
