@@ -163,7 +163,7 @@ inline std::array<Lanes, 2> lanes_of_two(const FixedPoint* points) {
   std::array<Lanes, 2> two;
   std::memcpy(&two[0], points, sizeof(Lanes));                                                  // x y z x
   std::memcpy(&two[1], reinterpret_cast<const char*>(points + 2) - sizeof(Lanes), sizeof(Lanes));  // z x y z
-  two[1] = __builtin_shuffle(two[1], Lanes{1, 2, 3, 0});
+  two[1] = __builtin_shufflevector(two[1], two[1], 1, 2, 3, 0);
   return {two[0] & kThree, two[1] & kThree};
 }
 
