@@ -86,33 +86,40 @@ void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout floa
   vec3 inverse_d = 1.0 / safe;
   vec3 block_exit = vec3(greaterThan(safe, vec3(0.0))) * float(BLOCK);
   vec3 ahead = sign(safe) * 0.02;  // a block is left for good even where the ray runs along its face
-  for (int blocks = 0; blocks < 1024 && s < s_end && found.s < -1e29; ++blocks) {
-    vec3 p = base + d * s;
-    ivec3 block = ivec3(p + ahead) >> BLOCK_SHIFT;
-    Slot slot = slot_of(block);
-    vec3 leave = (vec3(block * BLOCK) + block_exit - base) * inverse_d;
-    float s_leave = min(min(min(leave.x, leave.y), leave.z) + 1e-3 * voxel, s_end);
-    float s_march = slot.atlas == 0u ? s_leave : s;
+  for (int tries = 0; tries < 1024 && s < s_end && found.s < -1e29; ++tries) {
+    // On, block by block, to where the surface may be near.
+    Slot slot = Slot(ivec3(0), 0u);
+    vec3 at;  // the base in the slot
     float value = 0.0;
-    while (s_march < s_leave) {
-      value = field_texel(slot.atlas, ivec3(base + d * s_march) + slot.offset);
+    for (int blocks = 0; blocks < 1024 && s < s_end; ++blocks) {
+      vec3 p = base + d * s;
+      ivec3 block = ivec3(p + ahead) >> BLOCK_SHIFT;
+      slot = slot_of(block);
+      at = base + vec3(slot.offset);
+      vec3 leave = (vec3(block * BLOCK) + block_exit - base) * inverse_d;
+      float s_leave = min(min(min(leave.x, leave.y), leave.z) + 1e-3 * voxel, s_end);
+      if (slot.atlas != 0u) do {
+        value = field_texel(slot.atlas, ivec3(at + d * s));
+        if (value >= kBand) break;
+        s += (value < kFirstFieldValue ? max(1.0, value * (255.0 * BRICK) - float(BRICK - 1)) : 1.0) * voxel;
+      } while (s < s_leave);
       if (value >= kBand) break;
-      s_march += (value < kFirstFieldValue ? max(1.0, value * (255.0 * BRICK) - float(BRICK - 1)) : 1.0) * voxel;
+      s = max(s, s_leave);
     }
+    if (value < kBand) break;
     // From half a voxel before, so that a surface is not met from its inside. The field rises by about 3/8 a voxel, which gives
     // the step; it is short enough not to pass over a thread. The apron reaches far enough.
-    float s_near = max(s_march - 0.5 * voxel, s_start), s_far = value >= kBand ? min(s_march + 1.5 * voxel, s_end) : -1e30;
-    vec3 offset = vec3(slot.offset);
+    float s_near = max(s - 0.5 * voxel, s_start), s_far = min(s + 1.5 * voxel, s_end);
     found.value_before = 0.0;
     found.s_before = s_near - 0.5 * voxel;
     while (s_near < s_far) {
-      found.value = field_at(slot.atlas, base + d * s_near + offset);
+      found.value = field_at(slot.atlas, at + d * s_near);
       if (found.value >= kSurface) { found.s = s_near; break; }
       found.value_before = found.value;
       found.s_before = s_near;
       s_near += clamp((kSurface - found.value) * 3.0, 0.4, 0.7) * voxel;
     }
-    s = value >= kBand ? s_march + 1.5 * voxel : max(s_march, s_leave);
+    s += 1.5 * voxel;
   }
 }
 
