@@ -20,6 +20,7 @@ constexpr int kMargin = 3;           // cells around the grid that a rest point 
 constexpr double kFurthest = 32000;  // cells; fixed point holds 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
 constexpr double kNear = 1.0 / 32;  // cells: nodes that chords place this well are left there
+constexpr double kFar = 1.0 / 8;    // cells: nodes that chords miss by more are placed in two steps
 constexpr std::array<glm::ivec3, 8> kCorners = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}};
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
@@ -324,17 +325,21 @@ glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, 
     for (int i = 0; i < 8; ++i) corners[i].weight = (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z);
     return at + cell_from_world_ * (blend_point(blend_, motion_, corners, world) - world);
   };
-  const glm::dvec3 here = posed(rest), missing = glm::dvec3(node) - here;
-  if (glm::all(glm::lessThan(glm::abs(missing), glm::dvec3(kNear)))) return rest;
-  glm::dmat3 slope;
-  for (int axis = 0; axis < 3; ++axis) {
-    glm::dvec3 beside = rest;
-    const double step = rest[axis] < middle[axis] ? 0.25 : -0.25;
-    beside[axis] += step;
-    slope[axis] = (posed(beside) - here) / step;
-  }
+  glm::dvec3 missing = glm::dvec3(node) - posed(rest);
+  const auto is_within = [&](double limit) { return glm::all(glm::lessThan(glm::abs(missing), glm::dvec3(limit))); };
+  if (is_within(kNear)) return rest;
+  // What the chords say of the slope is right to a fraction of what is missing.
+  glm::dmat3 slope(0);
+  for (int i = 0; i < 8; ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      slope[axis] += (i >> axis & 1 ? 0.25 : -0.25) / kFixedOne * glm::dvec3(posed_[lattice_.place(middle + kCorners[i])]);
   if (!(glm::determinant(slope) > 0.05)) return rest;
-  const glm::dvec3 more = glm::inverse(slope) * missing;
+  const glm::dmat3 back = glm::inverse(slope);
+  glm::dvec3 more = back * missing;
+  if (!is_within(kFar)) {
+    missing = glm::dvec3(node) - posed(rest + more);
+    more += back * missing;
+  }
   return glm::all(glm::lessThan(glm::abs(more), glm::dvec3(0.5))) ? rest + more : rest;
 }
 

@@ -4,7 +4,7 @@
 // it is read linearly. The cells of preview_lattice.h, posed, say which rest point a node is the image of, by the rules of
 // inverse_map.h where two cells claim one node. Cells that bend are curved, and their corners' chords would take off what
 // bulges: inside them the motions of the corners are blended as those of bones are, and a node's rest point is where that
-// leads to the node, by a step of Newton's from what the chords say.
+// leads to the node, a step or two from what the chords say.
 //
 // Nodes just outside all cells carry their neighbours' map on, straight; so the eight nodes around any place of the body
 // are there. Where those eight jump, in a fold, two sheets of the body meet between them: a place there reads the nearest
