@@ -421,7 +421,7 @@ struct FoundJoints {
 FoundJoints found_joints(const Fitted& fitted, const Target& target) {
   using How = JointFit::How;
   // mm that joints lay off on segmented adults, beside those that another shape adds.
-  constexpr double kLeastError = 3, kByBone = 10, kBySkin = 22, kHipsBySkin = 40, kByGirth = 10, kNeckByGirth = 20, kByBall = 6, kByAxis = 10;
+  constexpr double kLeastError = 3, kByBone = 10, kBySkin = 22, kHipsBySkin = 55, kByGirth = 10, kNeckByGirth = 20, kByBall = 6, kByAxis = 10;
   const Mannequin& m = *fitted.body;
   const Armature& rig = m.atlas().rig;
   const bool by_bone = target.bone && !fitted.is_rods;
@@ -443,26 +443,37 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
     if (how == How::Girth && joint.how == How::Skin) joint.error = std::max(joint.error, (1 - weight) * off);
     if (weight > 0.5) joint.how = how;
   };
+  // Skin alone slides along a limb by a tenth of the bone above, rarely more: a waist farther off is another one. Rods say
+  // nothing of the hand, which may slide far.
+  const auto believable = [&](const JointLandmark& mark) {
+    constexpr double kSlides = 0.12, kNever = 0.24;
+    const int above = rig.bones[mark.bone].parent;
+    if (above < 0 || fitted.is_rods || rig.bones[mark.bone].name == "Neck") return 1.0;
+    const double apart = glm::distance(m.joint(mark.bone), mark.place) / glm::distance(m.joint(above), m.joint(mark.bone));
+    return std::clamp((kNever - apart) / (kNever - kSlides), 0.0, 1.0);
+  };
   for (const JointLandmark& mark : girth_landmarks(m, target.body)) {
     const std::string& name = rig.bones[mark.bone].name;
     // Bones tell elbow and wrist themselves. Of the knee they show the condyles' middle and skin the gap below it; rigs
     // bend in between.
     const double share = name == "Neck" ? 1 : by_bone ? (name.ends_with("Shank") ? 0.5 : 0) : fitted.is_rods ? double(name.ends_with("Hand")) : 1;
-    take(mark, How::Girth, share * strange[mark.bone], name == "Neck" ? kNeckByGirth : kByGirth);
+    take(mark, How::Girth, share * strange[mark.bone] * believable(mark), name == "Neck" ? kNeckByGirth : kByGirth);
   }
   if (by_bone)
     for (const JointLandmark& mark : ball_landmarks(m, *target.bone)) take(mark, How::Ball, strange[mark.bone], kByBall);
   // Where little of the body lies where it should, nothing is sure, whatever was found there.
   constexpr double kFew = 0.35, kFarOff = 100;  // share, and mm at none
-  // Bodies of other shapes fitted well came out at 0.011 of the tissue's diagonal at most, wrong ones at twice that and more.
-  constexpr double kUnlike = 0.013, kWrong = 6;
-  const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.misfit) - kUnlike * target.length);
+  // Of the tissue's diagonal: whole bodies of other shapes came out at 0.011 at most, parts at 0.015 with joints 11 mm off, at
+  // 0.019 with 50 mm, and limbs laid the wrong way round above that.
+  constexpr double kUnlike = 0.013, kWrong = 6, kSteep = 0.004;
+  const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.misfit) / target.length - kUnlike);
+  const double wrong = kWrong * unlike * target.length * (1 + unlike * unlike / (kSteep * kSteep));
   // Half sure of what may lie off by as much as a joint is thick.
   constexpr double kJoint = 40;
   for (int b = 0; b < m.bone_count(); ++b) {
     JointFit& joint = found.how[b];
     if (joint.how != How::BoneAxis) joint.error = std::max(joint.error, kFarOff * std::max(0.0, kFew - near[b]));
-    joint.error = std::max(joint.error, kWrong * unlike);
+    joint.error = std::max(joint.error, wrong);
     joint.confidence *= 1 / (1 + joint.error / kJoint);
   }
   return found;
@@ -498,6 +509,7 @@ void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& fo
   const Armature& rig = fitted.atlas->rig;
   const std::vector<std::uint8_t> seen = seen_bones(fitted, target);
   std::string unseen, doubted;
+  std::vector<std::uint8_t> near_cut(rig.bones.size(), 0);
   const auto list = [&](std::string& names, int b) { names += (names.empty() ? "" : ", ") + rig.bones[b].name; };
   for (int b = 0; b < std::ssize(rig.bones) && !target.cuts.empty(); ++b) {
     const double out = beyond(target.cuts, found.places[b]);
@@ -510,10 +522,24 @@ void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& fo
       if (parent >= 0 && !seen[parent]) joint.error = std::max(joint.error, found.how[parent].error + kGrowth * glm::distance(found.places[parent], found.places[b]));
       if (!is_digit(rig.bones[b].name)) list(unseen, b);
     } else if (out > -kNear * target.length && joint.error > kStrange) {
+      near_cut[b] = 1;
       joint.confidence *= 0.4;
       joint.error = std::max(joint.error, kLeast);
       if (!is_digit(rig.bones[b].name)) list(doubted, b);
     }
+  }
+  // And what lies next to such a joint slides with it.
+  constexpr double kWithIt = 0.35, kMost = 100, kLessSure = 0.6;
+  const std::vector<JointFit> own = found.how;
+  const auto is_doubted = [&](int b) { return !is_digit(rig.bones[b].name) && (own[b].how == JointFit::How::Unseen || near_cut[b]); };
+  for (int b = 0; b < std::ssize(rig.bones); ++b) {
+    if (is_doubted(b) || own[b].how == JointFit::How::Unseen || own[b].error <= kStrange) continue;
+    double beside = 0;
+    for (int c = 0; c < std::ssize(rig.bones); ++c)
+      if ((rig.bones[c].parent == b || rig.bones[b].parent == c) && is_doubted(c)) beside = std::max(beside, own[c].error);
+    if (beside == 0) continue;
+    found.how[b].error = std::max(own[b].error, kWithIt * std::min(kMost, beside));
+    found.how[b].confidence *= kLessSure;
   }
   if (!unseen.empty()) warnings.push_back("the tissue is cut off, and beyond the cut these joints are laid on by proportion alone: " + unseen);
   if (!doubted.empty()) warnings.push_back("the tissue is cut off close to these joints, which may lie far off: " + doubted);

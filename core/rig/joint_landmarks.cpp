@@ -19,6 +19,7 @@ struct Section {
   double area = 0;  // mm2; 0 where there is none
   glm::dvec3 centre{0};
   double depth = 0;  // mm, its standard deviation along `forward` doubled twice: the thickness of a bar as deep
+  bool is_open = false;  // goes on beyond what was looked at: the limb lies against something else
 };
 
 // The tissue in a plane that hangs together with its middle.
@@ -48,9 +49,11 @@ Section section_at(const Occupancy& body, const AffineTransform& to_cell, const 
     count += 1, sum += glm::dvec2(i - half, j - half), squares += double(i - half) * (i - half);
     for (const auto& [di, dj] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
       const int ni = i + di, nj = j + dj;
-      if (ni < 0 || nj < 0 || ni >= side || nj >= side || filled[ni + side * nj] != 1) continue;
-      filled[ni + side * nj] = 2;
-      front.push_back(ni + side * nj);
+      if (ni < 0 || nj < 0 || ni >= side || nj >= side) section.is_open = true;
+      else if (filled[ni + side * nj] == 1) {
+        filled[ni + side * nj] = 2;
+        front.push_back(ni + side * nj);
+      }
     }
   }
   const glm::dvec2 mean = sum / count;
@@ -97,19 +100,25 @@ Profile profile_of(const Occupancy& body, const Bend& bend, double from, double 
   return profile;
 }
 
-// Where the girth is least, if it is larger on both sides: the middle of the sections that are hardly larger.
+// Where the girth is least, if it is larger on both sides while the limb is free: the middle of the sections that are hardly
+// larger.
 std::optional<double> waist(const Profile& profile, double least_bulge) {
   constexpr double kHardly = 1.03;
   const auto& area = profile.area;
   const int count = static_cast<int>(area.size());
-  const int least = static_cast<int>(std::min_element(area.begin(), area.end()) - area.begin());
-  if (area[least] <= 0) return std::nullopt;
-  const double before = *std::max_element(area.begin(), area.begin() + least + 1), after = *std::max_element(area.begin() + least, area.end());
+  int least = -1;
+  for (int k = 0; k < count; ++k)
+    if (!profile.sections[k].is_open && (least < 0 || area[k] < area[least])) least = k;
+  if (least < 0 || area[least] <= 0) return std::nullopt;
+  int free_from = least, free_to = least;
+  while (free_from > 0 && !profile.sections[free_from - 1].is_open) --free_from;
+  while (free_to + 1 < count && !profile.sections[free_to + 1].is_open) ++free_to;
+  const double before = *std::max_element(area.begin() + free_from, area.begin() + least + 1), after = *std::max_element(area.begin() + least, area.begin() + free_to + 1);
   if (std::min(before, after) < least_bulge * area[least]) return std::nullopt;
   int first = least, last = least;
-  while (first > 0 && area[first - 1] <= kHardly * area[least]) --first;
-  while (last + 1 < count && area[last + 1] <= kHardly * area[least]) ++last;
-  if (first == 0 || last + 1 == count) return std::nullopt;
+  while (first > free_from && area[first - 1] <= kHardly * area[least]) --first;
+  while (last < free_to && area[last + 1] <= kHardly * area[least]) ++last;
+  if (first == free_from || last == free_to) return std::nullopt;
   return profile.from + profile.step * (first + last) / 2.0;
 }
 

@@ -55,6 +55,20 @@ TEST_CASE("joint landmarks: a limb without a waist tells nothing") {
   CHECK(girth_landmarks(m, round_leg(m, [](double along) { return 90 - 0.08 * along; })).empty());
 }
 
+TEST_CASE("joint landmarks: a limb that lies against something tells nothing there") {
+  const Mannequin m(leg());
+  const int shank = require_bone(leg().rig, "Shank");
+  const double thigh = glm::distance(m.joint(require_bone(leg().rig, "Thigh")), m.joint(shank));
+  const auto waisted = [&](double along) { return 50 + 20 * std::min(1.0, std::abs(along - thigh) / 150); };
+  REQUIRE(girth_landmarks(m, round_leg(m, waisted)).size() == 1);
+  Occupancy beside = round_leg(m, waisted);
+  const glm::ivec3 size = beside.grid.size, knee(glm::round(voxel_from_world(beside.grid) * m.joint(shank)));
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = knee.x; x < size.x; ++x) beside.share[beside.grid.index({x, y, z})] = 1;
+  CHECK(girth_landmarks(m, beside).empty());
+}
+
 TEST_CASE("joint landmarks: the hip is the middle of its ball, from half of the ball and beside other bone") {
   const Mannequin m(leg());
   const int thigh = require_bone(leg().rig, "Thigh");
