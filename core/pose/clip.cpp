@@ -26,15 +26,6 @@ Between<Value> around(const std::map<int, Value>& track, int frame) {
   return {&*before, &*after, static_cast<double>(frame - before->first) / (after->first - before->first)};
 }
 
-RetargetMap known_part(const RetargetMap& map, const Motion& motion, const Armature& armature) {
-  RetargetMap known;
-  for (const auto& [bone, source] : map.sources) {
-    const bool joint = std::any_of(motion.joints.begin(), motion.joints.end(), [&](const BvhJoint& j) { return j.name == source.joint; });
-    if (joint && armature.find(bone)) known.sources.emplace(bone, source);
-  }
-  return known;
-}
-
 }  // namespace
 
 Clip clip_of(std::shared_ptr<const Motion> motion, std::string name, int start) {

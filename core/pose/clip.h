@@ -37,6 +37,7 @@ struct Clip {
   Keys keys;
   std::vector<Marker> markers;  // by frame
 
+  bool operator==(const Clip&) const = default;  // with the same motion: its pointer, not its contents
   int end() const { return start + last - first; }  // the last frame of the motion
 };
 

@@ -372,27 +372,29 @@ void write_bvh(const Motion& motion, const Path& path) { write_file_atomically(p
 
 // ---- kinematics
 
+void place_joint(std::vector<RigidTransform>& world, const Motion& motion, int frame, int j) {
+  const float* row = frame < 0 ? nullptr : motion.values.data() + static_cast<size_t>(frame) * motion.channel_count;
+  const BvhJoint& joint = motion.joints[j];
+  RigidTransform local{glm::dquat(1, 0, 0, 0), joint.offset};
+  for (size_t c = 0; row && c < joint.channels.size(); ++c) {
+    const int channel = static_cast<int>(joint.channels[c]);
+    const double value = row[joint.first_channel + c];
+    if (channel < 3) {
+      local.translation[channel] = value;
+    } else {
+      const double half = value * (std::numbers::pi / 360);
+      glm::dquat turn(std::cos(half), 0, 0, 0);
+      (channel == 3 ? turn.x : channel == 4 ? turn.y : turn.z) = std::sin(half);
+      local.rotation = local.rotation * turn;
+    }
+  }
+  world[j] = joint.parent < 0 ? RigidTransform{glm::normalize(local.rotation), local.translation} : world[joint.parent] * local;
+}
+
 std::vector<RigidTransform> forward_kinematics(const Motion& motion, int frame) {
   assert(frame >= -1 && frame < motion.frame_count);
-  const float* row = frame < 0 ? nullptr : motion.values.data() + static_cast<size_t>(frame) * motion.channel_count;
   std::vector<RigidTransform> world(motion.joints.size());
-  for (size_t j = 0; j < world.size(); ++j) {
-    const BvhJoint& joint = motion.joints[j];
-    RigidTransform local{glm::dquat(1, 0, 0, 0), joint.offset};
-    for (size_t c = 0; row && c < joint.channels.size(); ++c) {
-      const int channel = static_cast<int>(joint.channels[c]);
-      const double value = row[joint.first_channel + c];
-      if (channel < 3) {
-        local.translation[channel] = value;
-      } else {
-        const double half = value * (std::numbers::pi / 360);
-        glm::dquat turn(std::cos(half), 0, 0, 0);
-        (channel == 3 ? turn.x : channel == 4 ? turn.y : turn.z) = std::sin(half);
-        local.rotation = local.rotation * turn;
-      }
-    }
-    world[j] = joint.parent < 0 ? RigidTransform{glm::normalize(local.rotation), local.translation} : world[joint.parent] * local;
-  }
+  for (int j = 0; j < std::ssize(world); ++j) place_joint(world, motion, frame, j);
   return world;
 }
 

@@ -58,6 +58,8 @@ std::string bvh_text(const Motion& motion);
 // Global position and rotation of every joint at a frame [0, frame_count), in file axes and units. Frame -1 is the rest
 // pose: all rotations zero and every joint at its OFFSET.
 std::vector<RigidTransform> forward_kinematics(const Motion& motion, int frame);
+// The same for one joint, whose parent is placed already.
+void place_joint(std::vector<RigidTransform>& world, const Motion& motion, int frame, int joint);
 
 // World LPS from BVH axes: Y up becomes z up, +Z becomes anterior.
 inline glm::dvec3 lps_from_bvh(const glm::dvec3& p) { return {p.x, -p.z, p.y}; }

@@ -279,8 +279,14 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
   }
 
   // Offsets, at the moment when the source stands.
-  const Skeleton rig = skeleton_of(armature);
-  Skeleton source = skeleton_of(motion);
+  Skeleton rig = skeleton_of(armature), source = skeleton_of(motion);
+  // A bone whose name says nothing is what its joint is.
+  for (size_t b = 0; b < joint_of_bone_.size(); ++b) {
+    const auto role = joint_of_bone_[b] >= 0 ? source.role[joint_of_bone_[b]] : std::nullopt;
+    if (rig.role[b] || !role) continue;
+    const bool in_gap = role->part == BodyPart::Spine && role->index > 0 && !rig.joint.contains({role->part, role->side, role->index - 1});
+    if (!in_gap && rig.joint.emplace(*role, static_cast<int>(b)).second) rig.role[b] = role;
+  }
   const int standing = settings.reference == Reference::Found ? standing_frame(motion, source) : settings.reference == Reference::RestPose ? -1 : 0;
   place_joints(source, motion, standing);
   const auto world = forward_kinematics(motion, standing);
@@ -334,6 +340,50 @@ Pose Retarget::at(int frame) const {
   return settings_.mirror ? flipped(pose, *armature_) : pose;
 }
 
+// Only what the feet hang on is moved: of many-jointed takes a few joints.
+Retarget::FootPlaces Retarget::foot_places() const {
+  std::vector<bool> bone_matters(armature_->bones.size(), false), joint_matters(motion_->joints.size(), false);
+  const auto matters = [&](int bone) {
+    for (int joint = bone < 0 ? -1 : joint_of_bone_[bone]; joint >= 0 && !joint_matters[joint]; joint = motion_->joints[joint].parent) joint_matters[joint] = true;
+  };
+  for (int joint = lead_; joint >= 0; joint = motion_->joints[joint].parent) joint_matters[joint] = true;
+  for (const Leg& leg : legs_) {
+    matters(leg.foot);
+    for (int bone = armature_->bones[leg.foot].parent; bone >= 0; bone = armature_->bones[bone].parent) {
+      bone_matters[bone] = true;
+      for (const int mover : {bone, between_[bone].below, between_[bone].above}) matters(mover);
+    }
+  }
+
+  const int frames = motion_->frame_count;
+  const std::size_t count = legs_.size();
+  FootPlaces feet{std::vector<glm::dvec3>(frames * count), std::vector<glm::dvec3>(frames * count)};
+  parallel_for(frames, 64, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<RigidTransform> joints(motion_->joints.size());
+    std::vector<glm::dquat> turn(armature_->bones.size());
+    std::vector<glm::dvec3> head(armature_->bones.size());
+    for (std::int64_t frame = begin; frame < end; ++frame) {
+      for (int joint = 0; joint < std::ssize(joints); ++joint)
+        if (joint_matters[joint]) place_joint(joints, *motion_, static_cast<int>(frame), joint);
+      const auto place = [&](int bone) {
+        const int above = armature_->bones[bone].parent;
+        return above < 0 ? armature_->bones[bone].head + travelled(joints) : head[above] + turn[above] * (armature_->bones[bone].head - armature_->bones[above].head);
+      };
+      for (int bone = 0; bone < std::ssize(turn); ++bone) {
+        if (!bone_matters[bone]) continue;
+        const int above = armature_->bones[bone].parent;
+        head[bone] = place(bone);
+        turn[bone] = turned(bone, joints, above < 0 ? glm::dquat(1, 0, 0, 0) : turn[above]);
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        feet.source[frame * count + i] = scale_ * lps_from_bvh(joints[joint_of_bone_[legs_[i].foot]].translation);
+        feet.rig[frame * count + i] = place(legs_[i].foot);
+      }
+    }
+  });
+  return feet;
+}
+
 // Legs of other proportions take steps of other lengths and bend to other heights, so that a body that travels as the
 // source's hips do slides and floats. From frame to frame, what its feet that stand moved more than the source's is taken
 // off the travel, the stiller one's first; where two that stand want different things, each leg swings a little from the hip, and
@@ -345,19 +395,7 @@ void Retarget::follow_the_feet() {
   constexpr double kRelease = 0.2;                // s in which a lifted leg's swing is let go, and that of all legs becomes travel
   const int frames = motion_->frame_count;
   const std::size_t count = legs_.size();
-  std::vector<glm::dvec3> source(frames * count), rig(frames * count);
-  parallel_for(frames, 64, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t frame = begin; frame < end; ++frame) {
-      const auto joints = forward_kinematics(*motion_, static_cast<int>(frame));
-      const auto posed = posed_from_rest(*armature_, carried_over(joints));
-      for (std::size_t i = 0; i < count; ++i) {
-        const int foot = legs_[i].foot;
-        source[frame * count + i] = scale_ * lps_from_bvh(joints[joint_of_bone_[foot]].translation);
-        rig[frame * count + i] = posed[foot] * armature_->bones[foot].head;
-      }
-    }
-  });
-
+  const auto [source, rig] = foot_places();
   std::vector<double> ground(count, 1e300);
   for (std::size_t k = 0; k < source.size(); ++k) ground[k % count] = std::min(ground[k % count], source[k].z);
   feet_.assign(frames, glm::dvec3(0));
@@ -418,29 +456,30 @@ void Retarget::swing(Pose& pose, const Leg& leg, const glm::dvec2& aside) const 
 }
 
 Pose Retarget::carried_over(const std::vector<RigidTransform>& source) const {
-  const size_t count = joint_of_bone_.size();
-  auto matched = [&](int bone) { return glm::normalize(lps_from_bvh(source[joint_of_bone_[bone]].rotation) * rest_offset_[bone]); };
-
   Pose pose = rest_pose(*armature_);
-  std::vector<glm::dquat> posed(count, glm::dquat(1, 0, 0, 0));
-  for (size_t b = 0; b < count; ++b) {
+  std::vector<glm::dquat> posed(joint_of_bone_.size(), glm::dquat(1, 0, 0, 0));
+  for (int b = 0; b < std::ssize(posed); ++b) {
     const int parent = armature_->bones[b].parent;
     const glm::dquat carried = parent < 0 ? glm::dquat(1, 0, 0, 0) : posed[parent];
+    posed[b] = turned(b, source, carried);
     const bool follows = joint_of_bone_[b] < 0 && between_[b].below < 0;
-    if (follows) {
-      posed[b] = carried;
-      continue;
-    }
-    posed[b] = joint_of_bone_[b] >= 0 ? matched(static_cast<int>(b))
-                                      : glm::normalize(glm::slerp(matched(between_[b].below), matched(between_[b].above), between_[b].share));
-    pose.rotation[b] = glm::normalize(glm::conjugate(carried) * posed[b]);
+    if (!follows) pose.rotation[b] = glm::normalize(glm::conjugate(carried) * posed[b]);
   }
-
-  if (settings_.travel != Travel::Locked) {
-    if (lead_ >= 0) pose.root_translation = scale_ * lps_from_bvh(source[lead_].translation - start_);
-    if (settings_.travel == Travel::InPlace) pose.root_translation.x = pose.root_translation.y = 0;
-  }
+  pose.root_translation = travelled(source);
   return pose;
+}
+
+glm::dquat Retarget::turned(int bone, const std::vector<RigidTransform>& source, const glm::dquat& carried) const {
+  const auto matched = [&](int b) { return glm::normalize(lps_from_bvh(source[joint_of_bone_[b]].rotation) * rest_offset_[b]); };
+  const Between& between = between_[bone];
+  if (joint_of_bone_[bone] >= 0) return matched(bone);
+  return between.below < 0 ? carried : glm::normalize(glm::slerp(matched(between.below), matched(between.above), between.share));
+}
+
+glm::dvec3 Retarget::travelled(const std::vector<RigidTransform>& source) const {
+  if (settings_.travel == Travel::Locked || lead_ < 0) return glm::dvec3(0);
+  const glm::dvec3 by = scale_ * lps_from_bvh(source[lead_].translation - start_);
+  return settings_.travel == Travel::InPlace ? glm::dvec3(0, 0, by.z) : by;
 }
 
 }  // namespace limber

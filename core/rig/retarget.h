@@ -40,6 +40,9 @@ struct RetargetMap {
 // By what the names mean (core/rig/joint_names.h). Throws Error when nothing matches.
 RetargetMap match_by_names(const Motion& motion, const Armature& armature);
 
+// What of the map both have.
+RetargetMap known_part(const RetargetMap& map, const Motion& motion, const Armature& armature);
+
 // {"source joint": "rig bone" | ["rig bone", ...] | {"bone": name, "rest_offset_wxyz": [4]} | null}
 // Throws Error for a joint or bone that is not there, a bone named twice, or a map that matches nothing.
 RetargetMap read_retarget_map(const Path& path, const Motion& motion, const Armature& armature);
@@ -80,10 +83,17 @@ class Retarget {
  private:
   // Where the source's joints are so; without what the feet add to the travel.
   Pose carried_over(const std::vector<RigidTransform>& source) const;
+  //   carried  how the bone above has turned from rest, in the world; likewise what is returned
+  glm::dquat turned(int bone, const std::vector<RigidTransform>& source, const glm::dquat& carried) const;
+  glm::dvec3 travelled(const std::vector<RigidTransform>& source) const;
   struct Leg {
     int thigh, foot;  // bones
     double farthest;  // mm that its foot may be swung
   };
+  struct FootPlaces {
+    std::vector<glm::dvec3> source, rig;  // by frame and leg, mm
+  };
+  FootPlaces foot_places() const;
   void follow_the_feet();
   void swing(Pose& pose, const Leg& leg, const glm::dvec2& aside) const;
 

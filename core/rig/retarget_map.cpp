@@ -59,6 +59,15 @@ RetargetMap parse_retarget_map(const std::string& text, const std::string& where
   }
 }
 
+RetargetMap known_part(const RetargetMap& map, const Motion& motion, const Armature& armature) {
+  std::set<std::string> joints, bones;
+  for (const BvhJoint& joint : motion.joints) joints.insert(joint.name);
+  for (const Bone& bone : armature.bones) bones.insert(bone.name);
+  RetargetMap known = map;
+  std::erase_if(known.sources, [&](const auto& entry) { return !bones.contains(entry.first) || !joints.contains(entry.second.joint); });
+  return known;
+}
+
 RetargetMap read_retarget_map(const Path& path, const Motion& motion, const Armature& armature) {
   return parse_retarget_map(read_file(path, kMostBytes), path.string(), motion, armature);
 }
