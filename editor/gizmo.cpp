@@ -243,8 +243,9 @@ std::vector<Pole> poles_of(const Editor& editor) {
   if (editor.workspace != Workspace::Pose || !armature || !editor.views->bones) return {};
   std::vector<Pole> poles;
   const auto posed = posed_from_rest(*armature, shown_pose(editor));
-  for (const auto& [name, point] : editor.handling->poles)
-    if (const auto bone = armature->find(name)) poles.push_back({*bone, posed[*bone] * armature->bones[*bone].head, point});
+  const auto& shown = editor.handling->shown_pole;
+  for (const auto& [name, point] : anchors_of(editor.document()).poles)
+    if (const auto bone = armature->find(name)) poles.push_back({*bone, posed[*bone] * armature->bones[*bone].head, shown.bone == name ? shown.place : point});
   return poles;
 }
 
@@ -260,9 +261,9 @@ void draw_marks(Editor& editor, const SeenFrom& view) {
   if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !armature || !editor.views->bones) return;
   const GizmoPainter painter(editor, view);
   const Theme& theme = editor.look.theme;
-  if (!editor.handling->pins.empty()) {
+  if (const Anchors& anchors = anchors_of(editor.document()); !anchors.pins.empty()) {
     const auto posed = posed_from_rest(*armature, shown_pose(editor));
-    for (const std::string& name : editor.handling->pins)
+    for (const std::string& name : anchors.pins)
       if (const auto bone = armature->find(name)) painter.diamond(posed[*bone] * armature->bones[*bone].tail, theme.accent_text, 12);
   }
   for (const Pole& pole : poles_of(editor)) {

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How bones are taken hold of: the axes that gizmos and locks go by, what a transform snaps to, which joints stay in place.
+// How bones are taken hold of: the axes that gizmos and locks go by, what a transform snaps to.
 // Not a part of the document: changing it is no edit.
 #pragma once
 
-#include <map>
-#include <set>
 #include <string>
 
 #include <glm/glm.hpp>
@@ -29,8 +27,10 @@ struct Handling {
   Part part = Part::Whole;                  // of the active bone, in the rig
   Snap snap = Snap::Steps;
   bool snapping = false;                    // always; Ctrl then leaves it
-  std::set<std::string> pins;               // bones whose tails stay where they are while others are dragged
-  std::map<std::string, glm::dvec3> poles;  // world points that the limb ending in that bone bends towards
+  struct {             // a pole that is dragged, in place of the document's
+    std::string bone;  // "" for none
+    glm::dvec3 place{0};
+  } shown_pole;
 
   KnownRigCheck rig_check;
   bool rig_check_marks = true;  // over the views

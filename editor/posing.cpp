@@ -84,14 +84,20 @@ void drop_shown_pose(Editor& editor) {
   editor.touch();
 }
 
-void commit_pose(Editor& editor, const std::string& label, Pose pose) {
+void commit_pose(Editor& editor, const std::string& label, Pose pose) { commit_pose(editor, label, std::move(pose), editor.document()); }
+
+void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next) {
   drop_shown_pose(editor);
-  const Pose before = pose_of(editor.document());
-  if (pose == before) return;
-  Document next = editor.document();
-  if (editor.timeline->auto_key) key_changes(next, before, pose);
-  next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
-  commit(editor, label, std::move(next));
+  if (const Pose before = pose_of(next); pose != before) {
+    if (editor.timeline->auto_key) key_changes(next, before, pose);
+    next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
+  }
+  if (next != editor.document()) commit(editor, label, std::move(next));
+}
+
+const Anchors& anchors_of(const Document& document) {
+  static const Anchors kNone;
+  return document.anchors ? *document.anchors : kNone;
 }
 
 glm::dmat3 posed_axes(const Armature& armature, const Pose& pose, int bone) {

@@ -32,6 +32,11 @@ void show_pose(Editor& editor, Pose pose);
 void drop_shown_pose(Editor& editor);
 // One edit; none where nothing changed.
 void commit_pose(Editor& editor, const std::string& label, Pose pose);
+//   next  the document with what else the edit changes
+void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next);
+
+// The document's pins and poles, maybe none.
+const Anchors& anchors_of(const Document& document);
 
 // Where the bone's own axes point in that pose: columns x, y (along the bone), z.
 glm::dmat3 posed_axes(const Armature& armature, const Pose& pose, int bone);

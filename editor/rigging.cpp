@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "core/project/bone_names.h"
 #include "core/skin/carry_weights.h"
 #include "editor/handling.h"
 #include "editor/project.h"
@@ -27,8 +28,11 @@ std::vector<int> heirs(const Armature& before, const std::vector<int>& from) {
   return to;
 }
 
-//   from  #bones of `next`: which one it was, -1 for a new one
-void commit_followed(Editor& editor, const std::string& label, Armature next, const std::vector<int>& from, const std::vector<int>& chosen) {
+enum class Names { Stay, Follow };
+
+//   from   #bones of `next`: which one it was, -1 for a new one
+//   names  whether what goes by names goes by those of `next`, whose bones are then the same ones in the same order
+void commit_followed(Editor& editor, const std::string& label, Armature next, const std::vector<int>& from, const std::vector<int>& chosen, Names names = Names::Stay) {
   drop_shown_rig(editor);
   const std::shared_ptr<const Armature> before = editor.document().armature;
   if (before && next == *before) return;
@@ -43,6 +47,7 @@ void commit_followed(Editor& editor, const std::string& label, Armature next, co
     weights_lost = !weights;
     document.weights = weights ? std::make_shared<const SkinWeights>(*weights) : nullptr;
   }
+  if (names == Names::Follow) follow_names(document, *before, next);
   document.armature = std::make_shared<const Armature>(std::move(next));
   commit(editor, label, std::move(document));
   if (weights_lost) editor.messages.info(label, lost);
@@ -87,18 +92,11 @@ void commit_names(Editor& editor, const std::string& label, Armature next, const
   const std::shared_ptr<const Armature> before = editor.document().armature;
   std::vector<int> from(before->bones.size());
   std::iota(from.begin(), from.end(), 0);
-  const std::vector<std::string> given = names_of(next);
-  commit_followed(editor, label, std::move(next), from, chosen);
-  Handling& handling = *editor.handling;
-  std::set<std::string> pins;
-  std::map<std::string, glm::dvec3> poles;
-  for (std::size_t bone = 0; bone < from.size(); ++bone) {
-    const std::string& old = before->bones[bone].name;
-    if (handling.pins.contains(old)) pins.insert(given[bone]);
-    if (const auto pole = handling.poles.find(old); pole != handling.poles.end()) poles[given[bone]] = pole->second;
-  }
-  handling.pins = std::move(pins);
-  handling.poles = std::move(poles);
+  std::map<std::string, glm::dquat> copied;
+  for (std::size_t bone = 0; bone < from.size(); ++bone)
+    if (const auto found = editor.posing.copied.find(before->bones[bone].name); found != editor.posing.copied.end()) copied[next.bones[bone].name] = found->second;
+  editor.posing.copied = std::move(copied);
+  commit_followed(editor, label, std::move(next), from, chosen, Names::Follow);
 }
 
 void hang_on(Editor& editor, const std::vector<int>& bones, int parent) {

@@ -23,7 +23,7 @@ Armature mirrored_too(const Editor& editor, Armature next);
 // One edit; none where nothing changed.
 //   chosen  bones of the new rig, the last of them active
 void commit_rig(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen);
-// The same for bones that only change their names.
+// The same for bones that only change their names; all that goes by names follows.
 void rename_bone(Editor& editor, int bone, const std::string& name);
 void commit_names(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen);
 // Bones hang on another one, where they are; on nothing where that is -1.

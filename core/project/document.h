@@ -11,6 +11,7 @@
 
 #include <glm/glm.hpp>
 
+#include "core/pose/anchors.h"
 #include "core/pose/clip.h"
 #include "core/pose/pose.h"
 #include "core/pose/pose_library.h"
@@ -82,6 +83,7 @@ struct Document {
   int clip = 0;   // the one that moves the rig, where there are any
   int frame = 0;  // of that clip
   PoseLibrary poses;
+  std::shared_ptr<const Anchors> anchors;
 
   const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 

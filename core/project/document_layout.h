@@ -8,11 +8,11 @@
 
 namespace limber {
 
-// 1 had one motion and no clips, 2 no library of poses.
-constexpr std::uint32_t kDocumentLayout = 3;
+// 1 had one motion and no clips, 2 no library of poses, 3 no anchors.
+constexpr std::uint32_t kDocumentLayout = 4;
 
 // A part's first byte.
-enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose };
+enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors };
 
 template <class T>
 struct PartKindOf;
@@ -28,6 +28,7 @@ template <> struct PartKindOf<Visibility>  { static constexpr PartKind kKind = P
 template <> struct PartKindOf<Result>      { static constexpr PartKind kKind = PartKind::Result;     static constexpr const char* kName = "result"; };
 template <> struct PartKindOf<Clip>        { static constexpr PartKind kKind = PartKind::Clip;       static constexpr const char* kName = "clip"; };
 template <> struct PartKindOf<NamedPose>   { static constexpr PartKind kKind = PartKind::NamedPose;  static constexpr const char* kName = "pose of the library"; };
+template <> struct PartKindOf<Anchors>     { static constexpr PartKind kKind = PartKind::Anchors;    static constexpr const char* kName = "pins and poles"; };
 // clang-format on
 
 constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;  // voxels and long texts

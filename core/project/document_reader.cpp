@@ -19,6 +19,8 @@ constexpr std::int64_t kMostFrames = 1 << 28;
 constexpr std::int32_t kLongestAxis = 1 << 20;
 constexpr std::int64_t kBatch = 32;  // leaves unpacked together
 
+bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
 glm::dvec3 get_vector(ByteReader& in) {
   glm::dvec3 v;
   for (int i = 0; i < 3; ++i) v[i] = in.get<double>();
@@ -141,6 +143,15 @@ void get(ByteReader& in, NamedPose& pose) {
   pose.picture = in.text();
 }
 
+void get(ByteReader& in, Anchors& anchors) {
+  for (const std::string& bone : get_texts(in)) anchors.pins.insert(bone);
+  for (std::size_t count = in.count(28); count > 0; --count) {
+    glm::dvec3& place = anchors.poles[in.text()];
+    place = get_vector(in);
+    in.require(is_finite(place));
+  }
+}
+
 void get(ByteReader& in, RetargetMap& map) {
   for (std::size_t count = in.count(41); count > 0; --count) {
     RetargetMap::Source& source = map.sources[in.text()];
@@ -186,8 +197,6 @@ void get(ByteReader& in, Visibility& visibility) {
   visibility.clip_plane.point = get_vector(in);
   visibility.clip_plane.normal = get_vector(in);
 }
-
-bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // Whether the weights' bricks are the volume's.
 bool fits(const SkinWeights& weights, const LabelVolume& volume) {
@@ -244,6 +253,7 @@ class Reading {
       document.frame = get_frame(in);
       in.require(document.clip >= 0);
       if (layout > 2) list(document.poses);
+      if (layout > 3) part(document.anchors);
     }
     in.require(next == node.nodes.size());
     in.end();

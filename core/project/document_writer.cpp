@@ -74,6 +74,16 @@ void put(ByteWriter& out, const NamedPose& pose) {
   out.text(pose.picture);
 }
 
+void put(ByteWriter& out, const Anchors& anchors) {
+  out.count(anchors.pins.size());
+  for (const std::string& bone : anchors.pins) out.text(bone);
+  out.count(anchors.poles.size());
+  for (const auto& [bone, place] : anchors.poles) {
+    out.text(bone);
+    put(out, place);
+  }
+}
+
 void put(ByteWriter& out, const Motion& motion) {
   out.count(motion.joints.size());
   for (const BvhJoint& joint : motion.joints) {
@@ -189,6 +199,7 @@ class DocumentWriter::Writing {
     out.put(static_cast<std::int32_t>(document.frame));
     out.count(document.poses.size());
     for (const auto& pose : document.poses) root.nodes.push_back(write(pose));
+    part(document.anchors);
     root.bytes = out.take();
     const ChunkHash hash = put_chunk(to_chunk(root));
     progress_.update("save", 1);

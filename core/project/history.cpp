@@ -57,6 +57,13 @@ std::int64_t own_bytes(const Clip& clip) {  // without its motion, which is shar
   for (const Marker& marker : clip.markers) bytes += heap_bytes(marker.name);
   return bytes;
 }
+std::int64_t own_bytes(const Anchors& anchors) {
+  constexpr std::int64_t kNode = kBlock + 32;  // of a set or map
+  std::int64_t bytes = 0;
+  for (const std::string& bone : anchors.pins) bytes += kNode + std::int64_t{sizeof bone} + heap_bytes(bone);
+  for (const auto& [bone, place] : anchors.poles) bytes += kNode + std::int64_t{sizeof bone + sizeof place} + heap_bytes(bone);
+  return bytes;
+}
 std::int64_t own_bytes(const Visibility& visibility) {
   return static_cast<std::int64_t>(visibility.looks.size()) * (kBlock + std::int64_t{sizeof(std::pair<Label, TissueLook>)} + 32);
 }
@@ -114,6 +121,7 @@ class History::Ledger {
     for (const auto& clip : document.clips)
       if (count(clip, step)) count(clip->motion, step);
     for (const auto& pose : document.poses) count(pose, step);
+    count(document.anchors, step);
     bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results) + heap_bytes(document.clips) + heap_bytes(document.poses));
   }
 

@@ -9,6 +9,7 @@
 #include "editor/operators/pose_neighbours.h"
 #include "editor/pose_library.h"
 #include "editor/posing.h"
+#include "editor/project.h"
 #include "editor/tools/pose_tools.h"
 
 namespace limber::editor {
@@ -162,23 +163,33 @@ void blend_to_copied(Editor& editor) {
   begin_tool(editor, begin_blending(editor, {.label = "Blend to copied pose", .words = "of the way to the copied pose", .from = pose, .to = copied}));
 }
 
+// One edit of pins and poles.
+void commit_anchors(Editor& editor, const std::string& label, Anchors anchors) {
+  Document next = editor.document();
+  next.anchors = std::make_shared<const Anchors>(std::move(anchors));
+  commit(editor, label, std::move(next));
+}
+
 void toggle_pins(Editor& editor) {
-  auto& pins = editor.handling->pins;
+  Anchors anchors = anchors_of(editor.document());
   const Armature& armature = *editor.document().armature;
   const std::vector<int> bones = chosen_bones(editor);
-  const bool all = std::all_of(bones.begin(), bones.end(), [&](int bone) { return pins.contains(armature.bones[bone].name); });
+  const bool all = std::all_of(bones.begin(), bones.end(), [&](int bone) { return anchors.pins.contains(armature.bones[bone].name); });
   for (const int bone : bones) {
-    if (all) pins.erase(armature.bones[bone].name);
-    else pins.insert(armature.bones[bone].name);
+    if (all) anchors.pins.erase(armature.bones[bone].name);
+    else anchors.pins.insert(armature.bones[bone].name);
   }
+  const std::string what = bones.size() == 1 ? armature.bones[bones[0]].name : std::to_string(bones.size()) + " joints";
+  commit_anchors(editor, (all ? "Unpin " : "Pin ") + what, std::move(anchors));
 }
 
 // Where the limb bends to now, so that nothing moves: beyond the joint in its middle.
 void toggle_pole(Editor& editor) {
   const Armature& armature = *editor.document().armature;
   const int bone = *editor.selection.bone;
-  auto& poles = editor.handling->poles;
-  if (poles.erase(armature.bones[bone].name) > 0) return;
+  const std::string& name = armature.bones[bone].name;
+  Anchors anchors = anchors_of(editor.document());
+  if (anchors.poles.erase(name) > 0) return commit_anchors(editor, "Remove pole of " + name, std::move(anchors));
   const auto posed = posed_from_rest(armature, pose_of(editor.document()));
   int root = bone;
   for (int i = 1; i < limb_of(armature, bone); ++i) root = armature.bones[root].parent;
@@ -188,7 +199,8 @@ void toggle_pole(Editor& editor) {
   glm::dvec3 out = squared > 0 ? middle - begin - along * (glm::dot(middle - begin, along) / squared) : glm::dvec3(0);
   // A straight limb may bend to any side: forward.
   if (glm::length(out) < 1e-3) out = {0, -1, 0};
-  poles[armature.bones[bone].name] = middle + glm::normalize(out) * std::max(20.0, std::sqrt(squared) / 2);
+  anchors.poles[name] = middle + glm::normalize(out) * std::max(20.0, std::sqrt(squared) / 2);
+  commit_anchors(editor, "Add pole to " + name, std::move(anchors));
 }
 
 std::string needs_limb(const Editor& editor) {
@@ -219,9 +231,9 @@ std::vector<Operator> pose_operators() {
       {"pose.blend_rest", "Blend to rest", "", "Pose", "The chosen bones go a part of the way to rest.", blend_to_rest, needs_pose},
       {"pose.blend_copied", "Blend to copied pose", "", "Pose", "The chosen bones go a part of the way to the copied pose.", blend_to_copied, needs_copy},
       {"pose.pin", "Pin joint", "", "Pose", "The ends of the chosen bones stay where they are while other joints are dragged; again frees them.", toggle_pins, needs_bone,
-       [](const Editor& e) { return needs_bone(e).empty() && e.handling->pins.contains(e.document().armature->bones[*e.selection.bone].name); }},
+       [](const Editor& e) { return needs_bone(e).empty() && anchors_of(e.document()).pins.contains(e.document().armature->bones[*e.selection.bone].name); }},
       {"pose.pole", "Pole", "", "Pose", "The limb bends towards a point that can be dragged; again takes it away.", toggle_pole, needs_limb,
-       [](const Editor& e) { return needs_bone(e).empty() && e.handling->poles.contains(e.document().armature->bones[*e.selection.bone].name); }},
+       [](const Editor& e) { return needs_bone(e).empty() && anchors_of(e.document()).poles.contains(e.document().armature->bones[*e.selection.bone].name); }},
       {"pose.auto_ik", "Auto-IK", icon::kReach, "Pose", "A dragged joint takes its whole limb along, not its bone alone.", [](Editor& e) { e.handling->auto_ik = !e.handling->auto_ik; }, nullptr,
        [](const Editor& e) { return e.handling->auto_ik; }},
       {"edit.x_mirror", "X-mirror", icon::kMirror, "Edit", "What is done to a bone is done to the one on the other side, in the mirror.", [](Editor& e) { e.handling->x_mirror = !e.handling->x_mirror; }, nullptr,

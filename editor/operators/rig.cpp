@@ -167,7 +167,7 @@ void ask_names(Editor& editor) {
     const std::vector<int> bones = bones_to_rename(e, fields);
     commit_names(e, bones.size() == 1 ? "Rename " + e.document().armature->bones[bones[0]].name : "Rename " + std::to_string(bones.size()) + " bones", with_names_changed(*e.document().armature, bones, name_change(fields)), e.selection.bone ? bones_chosen_last(e) : std::vector<int>{});
   };
-  editor.open_dialog(make_form({"Rename bones", "Changes the names of many bones at once; pose, weights and pins follow.", "Rename",
+  editor.open_dialog(make_form({"Rename bones", "Changes the names of many bones at once; all that is theirs follows: weights, poses, keys, motions, pins.", "Rename",
                                 {choice_of("Bones", "Whose names change.", {"Chosen", "All"}, editor.selection.bones.empty() ? 1 : 0), text_of("Find", "What is looked for in each name.", ""),
                                  text_of("Replace with", "What stands there instead.", ""), text_of("Prefix", "Before each name.", ""), text_of("Suffix", "Behind each name.", ""),
                                  choice_of("Side", "Left becomes right and right left: Arm.L is Arm.R then.", {"Stays", "The other"})},

@@ -23,10 +23,11 @@ class Dragging final : public TransformTool {
     const auto posed = posed_from_rest(*armature_, before_);
     from_ = target_ = posed[bone_] * (is_root_ ? bone.head : bone.tail);
     chain_ = editor.handling->auto_ik ? limb_of(*armature_, bone_) : 1;
-    for (const std::string& name : editor.handling->pins)
+    const Anchors& anchors = anchors_of(editor.document());
+    for (const std::string& name : anchors.pins)
       if (const auto pin = armature_->find(name); pin && *pin != bone_)
         pins_.push_back({.bone = *pin, .target = posed[*pin] * armature_->bones[*pin].tail, .chain = limb_of(*armature_, *pin), .weight = kPinWeight});
-    if (const auto pole = editor.handling->poles.find(bone.name); pole != editor.handling->poles.end()) pole_ = pole->second;
+    if (const auto pole = anchors.poles.find(bone.name); pole != anchors.poles.end()) pole_ = pole->second;
   }
 
   bool wheel(Editor& editor, float steps) override {
@@ -115,36 +116,45 @@ class Dragging final : public TransformTool {
 class DraggingPole final : public TransformTool {
  public:
   DraggingPole(Editor& editor, const Grip& grip)
-      : TransformTool(editor, grip), armature_(editor.document().armature), before_(pose_of(editor.document())), bone_(*editor.selection.bone), from_(editor.handling->poles.at(armature_->bones[bone_].name)) {
+      : TransformTool(editor, grip), armature_(editor.document().armature), before_(pose_of(editor.document())), bone_(*editor.selection.bone), from_(anchors_of(editor.document()).poles.at(armature_->bones[bone_].name)) {
     end_ = posed_from_rest(*armature_, before_)[bone_] * armature_->bones[bone_].tail;
   }
 
   std::string title() const override { return "Turn to pole" + lock_text("along"); }
   std::vector<KeyHint> hints(const Editor&) const override { return shared_hints(); }
   void cancel(Editor& editor) override {
-    pole(editor) = from_;
+    editor.handling->shown_pole = {};
     drop_shown_pose(editor);
   }
 
  private:
   glm::dmat3 axes(Space space) const override { return axes_of(space, *armature_, before_, bone_, view_); }
-  glm::dvec3& pole(Editor& editor) const { return editor.handling->poles[armature_->bones[bone_].name]; }
 
   Pose pose(Editor& editor) {
-    pole(editor) = dragged(editor, from_, kSnapMillimetres, kSnapFineMillimetres);
     ReachSettings settings;
     settings.keep_limits = editor.posing.keep_limits;
-    settings.pole = pole(editor);
+    settings.pole = to_ = dragged(editor, from_, kSnapMillimetres, kSnapFineMillimetres);
     return reach(*armature_, before_, {{.bone = bone_, .target = end_, .chain = limb_of(*armature_, bone_)}}, settings).pose;
   }
 
-  void show(Editor& editor) override { show_pose(editor, pose(editor)); }
-  void keep(Editor& editor) override { commit_pose(editor, "Turn to pole", pose(editor)); }
+  void show(Editor& editor) override {
+    show_pose(editor, pose(editor));
+    editor.handling->shown_pole = {armature_->bones[bone_].name, to_};
+  }
+  void keep(Editor& editor) override {
+    Pose turned = pose(editor);
+    Document next = editor.document();
+    Anchors anchors = anchors_of(next);
+    anchors.poles[armature_->bones[bone_].name] = to_;
+    if (anchors != anchors_of(next)) next.anchors = std::make_shared<const Anchors>(std::move(anchors));
+    editor.handling->shown_pole = {};
+    commit_pose(editor, "Turn to pole", std::move(turned), std::move(next));
+  }
 
   std::shared_ptr<const Armature> armature_;
   const Pose before_;
   int bone_;
-  glm::dvec3 from_, end_{0};
+  glm::dvec3 from_, to_ = from_, end_{0};
 };
 
 }  // namespace

@@ -282,12 +282,45 @@ TEST_CASE("gizmos: any joint is dragged with the reach tool, and pinned ones sta
 
   // The body goes, the pinned tip stays.
   const glm::dvec3 before = tip();
-  test.editor->handling->pins = {"Fore"};
+  test.play("move \"3D view/view\"\nkey Shift+P");
+  CHECK(test.last_edit() == "Pin Fore");
   test.editor->selection.bone = 0;
   test.editor->selection.bones = {0};
-  test.play("move \"3D view/view\"\nkey G\nkey Z\nkey -\nkey 6\nkey Return");
+  test.play("key G\nkey Z\nkey -\nkey 6\nkey Return");
   CHECK(std::abs(test.pose().root_translation.z + 6) < 1e-9);
   CHECK(glm::distance(tip(), before) < 0.1);
+}
+
+TEST_CASE("gizmos: a pole is dragged as one edit with the limb that turns to it, and undo takes both back") {
+  GizmoEditor test;
+  Document straight = test.editor->document();
+  Armature armature = *straight.armature;
+  armature.bones[1].limits = {};
+  straight.armature = std::make_shared<const Armature>(armature);
+  Pose bent = rest_pose(armature);
+  bent.rotation[1] = glm::angleAxis(1.0, glm::dvec3(1, 0, 0));
+  straight.pose = std::make_shared<const Pose>(bent);
+  test.editor->history.commit("Bend", straight);
+  test.editor->selection.bone = 1;
+  test.editor->selection.bones = {1};
+  test.play("move \"3D view/view\"\nclick Edit/Pose/Pole\nclick \"strip/tool.select\"\nwait-idle");
+  CHECK(test.last_edit() == "Add pole to Fore");
+  const auto pole = [&] { return anchors_of(test.editor->document()).poles.at("Fore"); };
+  const glm::dvec3 first = pole();
+  const glm::dvec2 from = test.view().pixel_of(first).value();
+  test.pointer_to(from);
+  test.press();
+  for (int i = 1; i <= 4; ++i) test.pointer_to(from + glm::dvec2(20 * i, 0));
+  test.release();
+  CHECK(test.last_edit() == "Turn to pole");
+  CHECK(glm::distance(pole(), first) > 5);
+  const auto turned = test.pose();
+  CHECK(turned != bent);
+  test.play("key Ctrl+Z");
+  CHECK(pole() == first);
+  CHECK(test.pose() == bent);
+  test.play("key Ctrl+Z");
+  CHECK(anchors_of(test.editor->document()).poles.empty());
 }
 
 TEST_CASE("gizmos: in X-ray a bone behind the volume is picked") {

@@ -109,9 +109,20 @@ TEST_CASE("rigging: pose, weights and names follow an edit, and come back with u
   next.weights = std::make_shared<const SkinWeights>(std::vector<std::string>{"Upper", "Fore"}, TissueVoxels(*next.volume));
   test.editor->history.commit("Weights", next);
 
+  next.clips = {std::make_shared<const Clip>(Clip{.name = "Keys", .keys = {.bones = {{"Fore", {{3, pose.rotation[1]}}}}}})};
+  next.poses = {std::make_shared<const NamedPose>(NamedPose{"Bent", {{"Fore", pose.rotation[1]}}})};
+  next.anchors = std::make_shared<const Anchors>(Anchors{.pins = {"Fore"}});
+  test.editor->history.commit("Keys", next);
+
   rename_bone(*test.editor, 1, "Forearm");
   CHECK(test.editor->document().weights->bones()[1] == "Forearm");
   CHECK(test.editor->document().pose->rotation[1] == pose.rotation[1]);
+  CHECK(test.editor->document().clips[0]->keys.bones.contains("Forearm"));
+  CHECK(test.editor->document().poses[0]->rotation.contains("Forearm"));
+  CHECK(test.editor->document().anchors->pins.contains("Forearm"));
+  test.play("key Ctrl+Z");
+  CHECK(test.editor->document() == next);
+  test.play("key Ctrl+Shift+Z");
   // Weight of the removed bone goes to the one above; of a root there is none to go to.
   test.choose(1);
   test.play("move \"3D view/view\"\nkey X");

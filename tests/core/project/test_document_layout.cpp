@@ -65,12 +65,26 @@ TEST_CASE("project: a document of the first layout opens, its motion as a clip")
 TEST_CASE("project: a document of the second layout opens, with an empty library of poses") {
   Document now = small_document();
   now.poses.clear();
+  now.anchors = nullptr;
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  // The same, without the count of poses at its end.
-  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t));
+  // The same, without the count of poses and the flag of anchors at its end.
+  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 1);
   node.bytes[0] = 2;
+  std::vector<std::string> warnings;
+  CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
+  CHECK(warnings.empty());
+}
+
+TEST_CASE("project: a document of the third layout opens, without pins and poles") {
+  Document now = small_document();
+  now.anchors = nullptr;
+  Chunks chunks;
+  DocumentWriter writer;
+  Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
+  node.bytes.pop_back();
+  node.bytes[0] = 3;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
   CHECK(warnings.empty());

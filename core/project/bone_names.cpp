@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/project/bone_names.h"
+
+#include <optional>
+
+#include "core/base/error.h"
+
+namespace limber {
+
+namespace {
+
+class Names {
+ public:
+  Names(const Armature& before, const Armature& after) {
+    for (std::size_t bone = 0; bone < before.bones.size(); ++bone) {
+      now_[before.bones[bone].name] = after.bones[bone].name;
+      before_[after.bones[bone].name] = before.bones[bone].name;
+    }
+  }
+
+  bool changed(const std::string& now) const {
+    const auto found = before_.find(now);
+    return found != before_.end() && found->second != now;
+  }
+  // Nothing for a bone that is gone and whose name another one takes.
+  std::optional<std::string> now(const std::string& name) const {
+    if (const auto found = now_.find(name); found != now_.end()) return found->second;
+    return before_.contains(name) ? std::nullopt : std::optional(name);
+  }
+
+  template <class Value>
+  std::map<std::string, Value> follow(const std::map<std::string, Value>& by_bone) const {
+    std::map<std::string, Value> next;
+    for (const auto& [bone, value] : by_bone)
+      if (const auto name = now(bone)) next[*name] = value;
+    return next;
+  }
+
+ private:
+  std::map<std::string, std::string> now_, before_;
+};
+
+// Where nothing of it changes the part stays the same one.
+template <class Part>
+void take(std::shared_ptr<const Part>& part, Part next) {
+  if (next != *part) part = std::make_shared<const Part>(std::move(next));
+}
+
+RetargetMap matched(const Clip& clip, const Armature& armature) {
+  try {
+    return match_by_names(*clip.motion, armature);
+  } catch (const Error&) {
+    return {};  // nothing matches
+  }
+}
+
+// Without what travel costs: it changes no offset.
+Retarget prepared(const Clip& clip, const Armature& armature, const RetargetMap& map) {
+  RetargetSettings settings = clip.retarget;
+  settings.travel = Travel::Locked;
+  return Retarget(*clip.motion, armature, map, settings);
+}
+
+void follow_motion(Clip& clip, const Armature& before, const Armature& after, const Names& names) {
+  const bool by_names = clip.map.sources.empty();
+  const RetargetMap old = by_names ? matched(clip, before) : known_part(clip.map, *clip.motion, before);
+  clip.map.sources = names.follow(clip.map.sources);
+  if (old.sources.empty()) return;
+
+  RetargetMap next{names.follow(old.sources)};
+  const RetargetMap found = by_names ? matched(clip, after) : RetargetMap{};
+  for (const auto& [bone, source] : found.sources)
+    if (names.changed(bone)) next.sources.insert({bone, source});
+  const Retarget was = prepared(clip, before, old), is = prepared(clip, after, next);
+  bool as_it_was = is.scale() == was.scale();
+  const RetargetMap turned = is.map();
+  for (const auto& [bone, source] : was.map().sources) {
+    const std::string name = *names.now(bone);
+    if (glm::dot(*source.rest_offset, *turned.sources.at(name).rest_offset) > 1 - 1e-12) continue;
+    next.sources[name].rest_offset = source.rest_offset;
+    as_it_was = false;
+  }
+  if (by_names && as_it_was && next == found) return;
+  if (is.scale() != was.scale()) clip.retarget.scale = was.scale();
+  for (const auto& [bone, source] : next.sources) clip.map.sources[bone] = source;
+}
+
+}  // namespace
+
+void follow_names(Document& document, const Armature& before, const Armature& after) {
+  const Names names(before, after);
+  for (auto& part : document.clips) {
+    Clip clip = *part;
+    clip.keys.bones = names.follow(clip.keys.bones);
+    if (clip.motion && clip.motion->frame_count > 0) follow_motion(clip, before, after, names);
+    take(part, std::move(clip));
+  }
+  for (auto& part : document.poses) {
+    NamedPose pose = *part;
+    pose.rotation = names.follow(pose.rotation);
+    take(part, std::move(pose));
+  }
+  if (!document.anchors) return;
+  Anchors anchors;
+  for (const std::string& pin : document.anchors->pins)
+    if (const auto name = names.now(pin)) anchors.pins.insert(*name);
+  anchors.poles = names.follow(document.anchors->poles);
+  take(document.anchors, std::move(anchors));
+}
+
+}  // namespace limber

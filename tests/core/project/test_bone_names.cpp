@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/project/bone_names.h"
+
+#include <doctest/doctest.h>
+
+#include "core/rig/edit_armature.h"
+#include "tests/support/documents.h"
+#include "tests/support/walker.h"
+
+using namespace limber;
+using namespace limber::test;
+
+namespace {
+
+std::shared_ptr<const Armature> with_name(const Armature& armature, const std::string& bone, const std::string& name) {
+  return std::make_shared<const Armature>(renamed(armature, require_bone(armature, bone), name));
+}
+
+void rename(Document& document, const std::string& bone, const std::string& name) {
+  const auto before = document.armature;
+  document.armature = with_name(*before, bone, name);
+  follow_names(document, *before, *document.armature);
+}
+
+// The largest difference of two clips' poses, over all frames of their motion.
+double largest_difference(const ClipOnRig& a, const ClipOnRig& b) {
+  double largest = 0;
+  for (int frame = 0; frame < a.clip()->motion->frame_count; ++frame) {
+    const Pose ours = a.at(frame), theirs = b.at(frame);
+    for (std::size_t bone = 0; bone < ours.rotation.size(); ++bone) largest = std::max(largest, 1 - std::abs(glm::dot(ours.rotation[bone], theirs.rotation[bone])));
+    largest = std::max(largest, glm::length(ours.root_translation - theirs.root_translation));
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("bone names: a clip moves the rig as before, whatever bones are called, and names that still say all are left to speak") {
+  for (const Travel travel : {Travel::Locked, Travel::Free}) {
+    Document document;
+    document.armature = std::make_shared<const Armature>(hanging_body());
+    Clip clip = clip_of(std::make_shared<const Motion>(t_pose_body({{0, 0, 0}, {5, -8, 3}, {11, 4, -6}, {2, 9, 14}})), "walk");
+    clip.retarget.travel = travel;
+    document.clips = {std::make_shared<const Clip>(clip)};
+    const ClipOnRig before(document.clips[0], document.armature);
+    REQUIRE(before.retarget());
+
+    rename(document, "LeftForearm", "lower_arm.L");
+    CHECK(document.clips[0]->map.sources.empty());
+    CHECK(largest_difference(before, ClipOnRig(document.clips[0], document.armature)) < 1e-12);
+    // Names that say nothing, and one that says something else.
+    for (const auto& [bone, name] : {std::pair{"LeftThigh", "a"}, {"RightFoot", "b"}, {"SpineMiddle", "c"}, {"RightHand", "Tail"}, {"Pelvis", "d"}, {"LeftShank", "Head"}, {"SpineTop", "e"}}) {
+      CAPTURE(bone);
+      rename(document, bone, name);
+      CHECK(!document.clips[0]->map.sources.empty());
+      CHECK(largest_difference(before, ClipOnRig(document.clips[0], document.armature)) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("bone names: a bone that gets a name the motion knows is moved by it") {
+  Document document;
+  document.armature = with_name(hanging_body(), "LeftHand", "unknown");
+  document.clips = {std::make_shared<const Clip>(clip_of(std::make_shared<const Motion>(t_pose_body({{5, -8, 3}})), "walk"))};
+  const int hand = require_bone(*document.armature, "unknown");
+  CHECK(ClipOnRig(document.clips[0], document.armature).retarget()->joint_of(hand) < 0);
+  rename(document, "unknown", "LeftHand");
+  CHECK(ClipOnRig(document.clips[0], document.armature).retarget()->joint_of(hand) >= 0);
+}
+
+TEST_CASE("bone names: keys, maps, poses of the library and pins go with their bones, also where two change names") {
+  Document document = small_document();
+  const Document before = document;
+  Armature swapped = *document.armature;
+  std::swap(swapped.bones[0].name, swapped.bones[1].name);
+  follow_names(document, *before.armature, swapped);
+  const Clip &clip = *document.clips[0], &old = *before.clips[0];
+  CHECK(clip.keys.bones.at("Upper") == old.keys.bones.at("Lower"));
+  CHECK(!clip.keys.bones.contains("Lower"));
+  CHECK(clip.map.sources.at("Upper") == old.map.sources.at("Lower"));
+  CHECK(document.poses[0]->rotation == std::map<std::string, glm::dquat>{{"Upper", before.poses[0]->rotation.at("Lower")}});
+  CHECK(document.anchors->pins == std::set<std::string>{"Upper", "gone \xff"});
+  CHECK(document.anchors->poles.begin()->first == "Upper");
+  CHECK(document.clips[1] == before.clips[1]);  // what names no bone stays the same part
+
+  // And back again.
+  follow_names(document, swapped, *before.armature);
+  CHECK(document.poses[0]->rotation == before.poses[0]->rotation);
+  CHECK(*document.anchors == *before.anchors);
+  CHECK(document.clips[0]->keys == old.keys);
+}
+
+TEST_CASE("bone names: a bone does not inherit the keys of a removed one whose name it takes") {
+  Document document = small_document();
+  Clip clip = *document.clips[0];
+  clip.keys.bones["Removed"] = clip.keys.bones.at("Lower");
+  document.clips = {std::make_shared<const Clip>(clip)};
+  rename(document, "Upper", "Removed");
+  CHECK(!document.clips[0]->keys.bones.contains("Removed"));
+  CHECK(document.clips[0]->keys.bones.contains("Lower"));
+}
