@@ -16,7 +16,8 @@ namespace limber::editor {
 namespace {
 
 constexpr float kWidth = 1100, kHeight = 716, kPadding = 32, kMargin = 8;
-constexpr float kSmallWidth = 1180, kSmallHeight = 800;  // of the window: below, samples take one row
+constexpr float kSmallWidth = 1180, kSmallHeight = 800;  // of the window: below, all stands closer together
+constexpr float kSample = 162, kLeastSample = 120, kSampleInRow = 112;  // heights
 constexpr float kRecentRow = 52, kRecovery = 58;
 constexpr float kSampleAspect = 504.0f / 232;
 
@@ -95,34 +96,38 @@ float draw_head(Editor& editor, const Plan& plan) {
   return y + look.px(34);
 }
 
-void draw_sample(Editor& editor, Sample sample, const Rect& rect, bool small) {
+// With its facts where `facts_too`.
+void draw_sample(Editor& editor, Sample sample, const Rect& rect, bool facts_too) {
   const Look& look = editor.look;
   const SampleFacts& facts = facts_of(sample);
   const std::string name = std::string("sample ") + facts.name;
   const Pressed state = press_area(editor, name, rect);
-  const float rounding = look.px(6), words = look.px(small ? 28 : 46);
+  const float rounding = look.px(6), words = look.px(facts_too ? 46 : 28);
   fill(rect, state.hovered ? look.theme.hover : look.theme.head, rounding);
   const Rect picture{rect.low, {rect.high.x, rect.high.y - words}};
   draw_picture(editor, editor.pictures.texture(name, [&] { return render::read_png(asset(std::string("samples/") + facts.picture)); }), picture, kSampleAspect, rounding);
   outline(rect, state.hovered ? look.theme.accent : look.theme.line2, rounding, look.line());
-  const float left = rect.low.x + look.px(small ? 8 : 12), right = rect.high.x - look.px(6);
+  const float left = rect.low.x + look.px(facts_too ? 12 : 8), right = rect.high.x - look.px(6);
   put_text(editor, look.fonts.regular, look.theme.text, Rect{{left, picture.high.y + look.px(5)}, {right, picture.high.y + look.px(23)}}, facts.name);
-  if (!small) put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, picture.high.y + look.px(23)}, {right, picture.high.y + look.px(40)}}, facts.facts);
+  if (facts_too) put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, picture.high.y + look.px(23)}, {right, picture.high.y + look.px(40)}}, facts.facts);
   if (state.hovered) tooltip(editor, rect, facts.name, std::string("Makes the sample: ") + facts.facts + ".");
   if (state.clicked) open_sample(editor, sample);
 }
 
-float draw_samples(Editor& editor, const Plan& plan, float y) {
+// In two rows where these fit above `bottom`, else in one. Returns where they end.
+float draw_samples(Editor& editor, const Plan& plan, float y, float bottom) {
   const Look& look = editor.look;
   put_text(editor, look.fonts.semibold, look.theme.text, {plan.left, y}, "Samples");
   y += look.px(24);
   const float gap = look.px(plan.small ? 8 : 14), all = plan.second - look.px(24) - plan.left;
-  const int columns = plan.small ? 4 : 2;
-  const float width = std::floor((all - gap * (columns - 1)) / columns), height = plan.small ? look.px(112) : look.px(162);
+  const float of_two = std::floor((bottom - y - gap) / 2);
+  const bool two_rows = of_two >= look.px(kLeastSample);
+  const int columns = two_rows ? 2 : 4;
+  const float width = std::floor((all - gap * (columns - 1)) / columns), height = two_rows ? std::min(of_two, look.px(kSample)) : look.px(kSampleInRow);
   const PathScope scope(editor, "samples");
   for (int i = 0; i < 4; ++i) {
     const glm::vec2 corner{plan.left + (width + gap) * (i % columns), y + (height + gap) * (i / columns)};
-    draw_sample(editor, static_cast<Sample>(i), {corner, corner + glm::vec2(width, height)}, plan.small);
+    draw_sample(editor, static_cast<Sample>(i), {corner, corner + glm::vec2(width, height)}, two_rows);
   }
   return y + (height + gap) * (4 / columns) - gap;
 }
@@ -163,15 +168,47 @@ void draw_recent(Editor& editor, const Recent& recent, const Rect& rect, bool ch
   else open_files(editor, {recent.path});
 }
 
-void draw_recents(Editor& editor, const Plan& plan, float y, float bottom) {
+void dashed_outline(const Rect& rect, Colour colour, float dash, float width) {
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  const auto side = [&](const glm::vec2& from, const glm::vec2& to) {
+    const float length = glm::distance(from, to);
+    // An odd number of equal parts, so that every corner is drawn.
+    const int parts = 2 * std::max(1, static_cast<int>(length / (2 * dash))) + 1;
+    for (int i = 0; i < parts; i += 2) canvas.AddLine(im(glm::mix(from, to, float(i) / parts)), im(glm::mix(from, to, float(i + 1) / parts)), colour, width);
+  };
+  side(rect.low, {rect.high.x, rect.low.y});
+  side({rect.high.x, rect.low.y}, rect.high);
+  side(rect.high, {rect.low.x, rect.high.y});
+  side({rect.low.x, rect.high.y}, rect.low);
+}
+
+// Where recent files will stand: how the first one comes in.
+void draw_first_file(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  const Operator* op = find_operator(editor, "file.open");
+  const Pressed state = press_area(editor, "first file", rect);
+  if (state.hovered) fill(rect, with_alpha(look.theme.hover, 0.5f), look.px(6));
+  dashed_outline(rect, state.hovered ? look.theme.accent : look.theme.line2, look.px(5), look.line());
+  const bool high = rect.height() >= look.px(110);
+  float y = std::round(rect.centre().y - look.px(high ? 38 : 21));
+  if (high) {
+    put_icon(look.fonts.icons, state.hovered ? look.theme.accent_text : look.theme.text2, Rect{{rect.low.x, y}, {rect.high.x, y + look.px(24)}}, icon::kImport);
+    y += look.px(32);
+  }
+  const float inset = look.px(16);
+  put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + inset, y}, {rect.high.x - inset, y + look.px(22)}}, "Drop a volume, a DICOM folder or a project", Align::Centre);
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{rect.low.x + inset, y + look.px(23)}, {rect.high.x - inset, y + look.px(41)}}, "What you open stands here the next time.", Align::Centre);
+  if (state.hovered && op) operator_tooltip(editor, *op, rect);
+  if (state.clicked && op) run(editor, *op);
+}
+
+//   first_end  of the place for the first file, where there is none
+void draw_recents(Editor& editor, const Plan& plan, float y, float first_end, float bottom) {
   const Look& look = editor.look;
   put_text(editor, look.fonts.semibold, look.theme.text, {plan.second, y}, "Recent");
-  y += look.px(20);
   const auto& recents = editor.remembered.recents;
-  if (recents.empty()) {
-    put_text(editor, look.fonts.regular, look.theme.text2, Rect{{plan.second, y + look.px(8)}, {plan.right, y + look.px(34)}}, "What you open appears here.");
-    return;
-  }
+  if (recents.empty()) return draw_first_file(editor, {{plan.second, y + look.px(24)}, {plan.right, std::min(first_end, bottom)}});
+  y += look.px(20);
   const PathScope scope(editor, "recents");
   const int rows = std::min<int>({5, static_cast<int>((bottom - y) / look.px(kRecentRow)), static_cast<int>(std::ssize(recents))});
   int& chosen = editor.start_row;
@@ -268,10 +305,11 @@ void draw_start_screen(Editor& editor) {
   const float below_head = draw_head(editor, plan) + look.px(plan.small ? 16 : 24);
   const float foot = plan.card.high.y - look.px(plan.small ? 44 : 64);
   const float steps = plan.steps ? foot - look.px(plan.small ? 56 : 84) : foot;
-  draw_samples(editor, plan, below_head);
+  const float rows_end = steps - look.px(plan.small ? 16 : 24);
+  const float samples_end = draw_samples(editor, plan, below_head, rows_end);
   const bool recovery = !editor.life.recoverable.empty();
   const float recents_end = steps - look.px(plan.small ? 8 : 24) - (recovery ? look.px(kRecovery + 8) : 0);
-  draw_recents(editor, plan, below_head, recents_end);
+  draw_recents(editor, plan, below_head, samples_end, recents_end);
   if (recovery) draw_recovery(editor, {{plan.second, recents_end + look.px(8)}, {plan.right, recents_end + look.px(8 + kRecovery)}});
   if (plan.steps) draw_steps(editor, plan, steps);
   draw_foot(editor, plan);
