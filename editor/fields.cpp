@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/fields.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
@@ -9,6 +11,10 @@
 #include "editor/icons.h"
 
 namespace limber::editor {
+
+namespace {
+constexpr double kFastest = 1;  // of a number for a pixel's drag, however far its ends are
+}
 
 void checkbox_mark(Editor& editor, const Rect& rect, bool on, bool hovered) {
   const Look& look = editor.look;
@@ -37,7 +43,7 @@ bool number_field(Editor& editor, const std::string& name, const Rect& rect, dou
   ImGui::PushFont(look.fonts.mono);
   ImGui::PushStyleColor(ImGuiCol_Text, with_alpha(look.theme.text, ImGui::TempInputIsActive(ImGui::GetID(name.c_str())) ? 1 : 0));
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(look.px(7), std::round((rect.height() - look.fonts.mono->FontSize) / 2)));
-  const double speed = std::max((high - low) / std::max(1.0f, rect.width()), 1e-6);
+  const double speed = std::clamp((high - low) / std::max(1.0f, rect.width()), 1e-6, kFastest);
   const bool changed = ImGui::DragScalar(name.c_str() , ImGuiDataType_Double, &value, static_cast<float>(speed), &low, &high, format, ImGuiSliderFlags_AlwaysClamp);
   const bool typing = ImGui::TempInputIsActive(ImGui::GetItemID());
   ImGui::PopStyleVar();
@@ -51,8 +57,9 @@ bool number_field(Editor& editor, const std::string& name, const Rect& rect, dou
     const float share = static_cast<float>(std::clamp((value - low) / (high - low), 0.0, 1.0));
     fill({rect.low + look.line(), {rect.low.x + look.line() + (rect.width() - 2 * look.line()) * share, rect.high.y - look.line()}}, look.theme.accent_soft, look.px(3));
   }
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
+  char written[48];
+  std::snprintf(written, sizeof written, format, value);
+  const char* text = written[0] == '-' && std::strtod(written, nullptr) == 0 ? written + 1 : written;
   float right = rect.high.x - look.px(7);
   if (*unit) {
     put_text(editor, look.fonts.small, look.theme.text2, Rect{rect.low, {right, rect.high.y}}, unit, Align::Right);

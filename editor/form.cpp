@@ -74,10 +74,15 @@ void Form::draw(Editor& editor) {
   }
 
   std::string outcome, problem;
+  bool ready = true;
   try {
     if (request_.outcome) outcome = request_.outcome(editor, request_.fields);
   } catch (const Error& error) {
     problem = error.what();
+    ready = false;
+  } catch (const NotYet& waiting) {
+    outcome = waiting.words;
+    ready = false;
   }
   const std::string& words = problem.empty() ? outcome : problem;
   float x = rect.low.x;
@@ -87,15 +92,15 @@ void Form::draw(Editor& editor) {
   }
   put_wrapped(editor, look.fonts.small, problem.empty() ? look.theme.text2 : look.theme.warn, {x, y + look.px(10)}, rect.high.x - x, words, 3);
 
-  const ButtonLook action{"", request_.action, ButtonStyle::Primary, problem.empty()};
+  const ButtonLook action{"", request_.action, ButtonStyle::Primary, ready};
   const float width = std::max(look.px(96), width_of_button(editor, action)), low = rect.high.y - look.px(28), cancel = look.px(80);
   const Rect primary{{rect.high.x - width, low}, rect.high};
   const bool pressed = button(editor, request_.action, primary, action);
-  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) tooltip(editor, primary, request_.action, problem.empty() ? request_.sentence : problem, Chord{Chord::Kind::Key, {}, Key::Return});
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) tooltip(editor, primary, request_.action, ready ? request_.sentence : problem, Chord{Chord::Kind::Key, {}, Key::Return});
   if (button(editor, "Cancel", {{primary.low.x - look.px(8) - cancel, low}, {primary.low.x - look.px(8), rect.high.y}}, {"", "Cancel"})) editor.close_dialog();
   end_dialog(editor);
 
-  if (!(pressed || std::exchange(accept_, false)) || !problem.empty()) return;
+  if (!(pressed || std::exchange(accept_, false)) || !ready) return;
   editor.close_dialog();
   attempt(editor, request_.title, [this](Editor& e) { request_.act(e, request_.fields); });
 }

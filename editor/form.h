@@ -28,13 +28,18 @@ FormField choice_of(std::string label, std::string sentence, std::vector<std::st
 
 FormField text_of(std::string label, std::string sentence, std::string text);
 
+// Nothing is wrong, but the fields ask for nothing yet.
+struct NotYet {
+  std::string words;
+};
+
 struct FormRequest {
   std::string title;
   std::string sentence;  // what it does, above the fields
   std::string action;    // the primary button's word
   std::vector<FormField> fields;
   // Below the fields, anew whenever they change: what will come out of it. Throws Error for what cannot be done: shown
-  // in place of it, and the button waits.
+  // in place of it, and the button waits. So it does without a warning where a NotYet is thrown.
   std::function<std::string(const Editor&, const std::vector<FormField>&)> outcome;
   std::function<void(Editor&, const std::vector<FormField>&)> act;
 };

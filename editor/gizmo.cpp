@@ -274,19 +274,27 @@ void draw_marks(Editor& editor, const SeenFrom& view) {
 
 constexpr double kLimits = 58, kTwist = 18;  // pixels at scale 1
 
-// What the joint at the active bone's head allows, about the bone at rest: a hinge's fan, a ball's cone and range of twist.
+// What the joint at the active bone's head allows: a hinge's fan, a ball's cone and range of twist. About the bone at rest, and
+// in the Pose workspace about where the bone above carries it, while limits are kept.
 void draw_limits(Editor& editor, const SeenFrom& view) {
-  const std::shared_ptr<const Armature> armature = shown_rig(editor);
+  const bool posed = editor.workspace == Workspace::Pose;
+  if (posed ? !editor.posing.keep_limits || editor.modal : editor.workspace != Workspace::Rig) return;
+  const std::shared_ptr<const Armature> armature = posed ? editor.document().armature : shown_rig(editor);
   const auto chosen = editor.selection.bone;
-  if (editor.workspace != Workspace::Rig || view.place.id != ViewId::Body || !armature || !chosen || *chosen >= std::ssize(armature->bones) || !editor.views->bones) return;
+  if (view.place.id != ViewId::Body || !armature || !chosen || *chosen >= std::ssize(armature->bones) || !editor.views->bones) return;
   const Bone& bone = armature->bones[*chosen];
+  RigidTransform carried;  // from rest
+  if (posed) {
+    const Pose pose = shown_pose(editor);
+    carried = bone.parent < 0 ? RigidTransform{{1, 0, 0, 0}, pose.root_translation} : posed_from_rest(*armature, pose)[bone.parent];
+  }
   const JointLimits& limits = bone.limits;
   const GizmoPainter painter(editor, view);
-  const Colour line = with_alpha(editor.look.theme.warn, 0.9f), area = with_alpha(editor.look.theme.warn, 0.16f);
-  const glm::dvec3 along = bone.tail - bone.head;
+  const Colour line = with_alpha(editor.look.theme.warn, posed ? 0.6f : 0.9f), area = with_alpha(editor.look.theme.warn, posed ? 0.09f : 0.16f);
+  const glm::dvec3 head = carried * bone.head, along = carried.rotation * (bone.tail - bone.head);
   if (limits.type == JointLimits::Type::Hinge) {
-    Ring fan = ring_of(view, editor.look.scale, bone.head, limits.axis, kLimits);
-    const glm::dvec3 across = along - glm::dot(along, limits.axis) * limits.axis;
+    const glm::dvec3 axis = carried.rotation * limits.axis, across = along - glm::dot(along, axis) * axis;
+    Ring fan = ring_of(view, editor.look.scale, head, axis, kLimits);
     if (glm::length(across) < 1e-6) return;
     fan.from = glm::normalize(across);
     painter.sector(fan, limits.minimum, limits.maximum - limits.minimum, area);
@@ -294,14 +302,14 @@ void draw_limits(Editor& editor, const SeenFrom& view) {
     for (const double end : {limits.minimum, limits.maximum}) painter.line(fan.centre, fan.at(end), line, 1.4f);
   }
   if (limits.type == JointLimits::Type::Ball) {
-    const glm::dvec3 axis = twist_axis(bone);
-    Ring rim = ring_of(view, editor.look.scale, bone.head, axis, kLimits);
+    const glm::dvec3 axis = carried.rotation * twist_axis(bone);
+    Ring rim = ring_of(view, editor.look.scale, head, axis, kLimits);
     const double reach = rim.radius;
-    rim.centre = bone.head + axis * (reach * std::cos(limits.cone));
+    rim.centre = head + axis * (reach * std::cos(limits.cone));
     rim.radius = reach * std::sin(limits.cone);
     painter.ring(rim, line, 2, GizmoPainter::Part::Whole);
-    for (int spoke = 0; spoke < 8; ++spoke) painter.line(bone.head, rim.at(spoke * glm::two_pi<double>() / 8), with_alpha(line, 0.4f), 1);
-    const Ring twist = ring_of(view, editor.look.scale, bone.head, axis, kTwist);
+    for (int spoke = 0; spoke < 8; ++spoke) painter.line(head, rim.at(spoke * glm::two_pi<double>() / 8), with_alpha(line, 0.4f), 1);
+    const Ring twist = ring_of(view, editor.look.scale, head, axis, kTwist);
     painter.arc(twist, limits.twist_minimum, limits.twist_maximum, line, 2.5f);
   }
 }
@@ -356,6 +364,12 @@ bool press_gizmo(Editor& editor) {
   }
   begin_tool(editor, gizmo->tool == Tool::Rotate ? begin_turning(editor, grip) : begin_dragging(editor, grip));
   return true;
+}
+
+std::optional<int> bone_at_pointer(const Editor& editor) {
+  const Rect* place = editor.layout.place_of(ViewId::Body);
+  if (!editor.document().armature || editor.views->hover.view != ViewId::Body || !place) return std::nullopt;
+  return body_at_pointer(editor, {ViewId::Body, *place}).pick_bone(glm::ivec2(editor.input.pointer - place->low));
 }
 
 bool pick_bone_part(Editor& editor) {

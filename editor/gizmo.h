@@ -34,6 +34,9 @@ std::optional<GizmoPart> part_at(const Gizmo& gizmo, const SeenFrom& view, float
 // In the Rig workspace: chooses the joint or bone under the pointer, in any view; false where there is none.
 bool pick_bone_part(Editor& editor);
 
+// The bone under the pointer in the 3D view.
+std::optional<int> bone_at_pointer(const Editor& editor);
+
 // Begins a tool when the pointer is over a part, or over a joint that the reach tool drags; false when it is over none.
 bool press_gizmo(Editor& editor);
 // Over a view, after its picture.

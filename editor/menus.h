@@ -14,8 +14,8 @@ struct Menu {
   std::vector<std::string> entries;
 };
 std::vector<Menu> menus();
-// A menu that opens at the pointer: "context" (what fits that view), "Views", "Display", "Snap",
-// "Workspaces", and of rows of the outliner "Volume", "Tissue", "Armature", "Result".
+// A menu that opens at the pointer: "context" (what fits that view), "Views", "Display", "Snap", "Similar",
+// "Workspaces", "Bone" and "Posed bone" (of the chosen ones), and of rows of the outliner "Volume", "Tissue", "Armature", "Result".
 Menu pointer_menu(const std::string& name, ViewId view);
 
 // The rows of a menu into an open popup; ids without an operator are left out, and so is what would then be empty.

@@ -104,4 +104,14 @@ glm::dmat3 posed_axes(const Armature& armature, const Pose& pose, int bone) {
   return glm::mat3_cast(posed_from_rest(armature, pose)[bone].rotation) * rest_axes(armature.bones[bone]);
 }
 
+glm::dvec3 own_angles(const Bone& bone, const glm::dquat& rotation) {
+  const glm::dquat axes = glm::quat_cast(rest_axes(bone));
+  return glm::degrees(glm::eulerAngles(glm::conjugate(axes) * rotation * axes));
+}
+
+glm::dquat turned_by_own_angles(const Bone& bone, const glm::dvec3& degrees) {
+  const glm::dquat axes = glm::quat_cast(rest_axes(bone));
+  return glm::normalize(axes * glm::dquat(glm::radians(degrees)) * glm::conjugate(axes));
+}
+
 }  // namespace limber::editor

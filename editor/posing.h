@@ -41,4 +41,8 @@ const Anchors& anchors_of(const Document& document);
 // Where the bone's own axes point in that pose: columns x, y (along the bone), z.
 glm::dmat3 posed_axes(const Armature& armature, const Pose& pose, int bone);
 
+// A rotation relative to rest as turns about the bone's own axes, x first, then y, then z: degrees.
+glm::dvec3 own_angles(const Bone& bone, const glm::dquat& rotation);
+glm::dquat turned_by_own_angles(const Bone& bone, const glm::dvec3& degrees);
+
 }  // namespace limber::editor

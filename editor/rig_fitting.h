@@ -9,8 +9,9 @@
 
 namespace limber::editor {
 
-// What stands for laying a skeleton by itself.
+// What stand for laying a skeleton by itself and for a joint's axis.
 inline constexpr char kAutoFitIcon[] = "\uf0d0";
+inline constexpr char kFitAxisIcon[] = "\uf140";
 
 // Both ask first. Both need a volume.
 void ask_auto_fit(Editor& editor);
@@ -18,6 +19,9 @@ void ask_template(Editor& editor);
 
 // Lays a template ("arm"), the one that suits best (""), or the rig that is there already ("rig").
 void start_auto_fit(Editor& editor, const std::string& which);
+
+// Moves the axis of the active bone's hinge so that its bones do not enter each other within its range, as a job and one edit.
+void start_joint_fit(Editor& editor);
 
 // Tells how a fit came out; the console lists every joint with how it was found, the least sure last.
 void show_fit(Editor& editor, const AutoFit& fitted);

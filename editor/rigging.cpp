@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/rigging.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "core/project/bone_names.h"
+#include "core/rig/mirror.h"
 #include "core/skin/carry_weights.h"
 #include "editor/handling.h"
 #include "editor/project.h"
@@ -99,9 +101,37 @@ void commit_names(Editor& editor, const std::string& label, Armature next, const
   commit_followed(editor, label, std::move(next), from, chosen, Names::Follow);
 }
 
+std::vector<int> with_other_sides(const Editor& editor, const std::vector<int>& bones) {
+  if (!editor.handling->x_mirror) return bones;
+  const std::vector<int> pairs = mirror_pairs(*editor.document().armature);
+  std::vector<int> both;
+  for (const int bone : bones)
+    if (std::find(bones.begin(), bones.end(), pairs[bone]) == bones.end()) both.push_back(pairs[bone]);
+  both.insert(both.end(), bones.begin(), bones.end());
+  return both;
+}
+
+Armature hung(const Editor& editor, const std::vector<int>& bones, int parent, Join join) {
+  const Armature& before = *editor.document().armature;
+  if (parent < 0) return unparented(before, with_other_sides(editor, bones));
+  Armature next = parented(before, bones, parent, join);
+  std::vector<int> others = with_other_sides(editor, bones);
+  others.resize(others.size() - bones.size());
+  const int other_parent = mirror_pairs(before)[parent];
+  const bool one_sided = other_parent == parent && mirrored_name(before.bones[parent].name);
+  if (one_sided) return next;
+  const auto there = [&](int bone) { return next.find(before.bones[bone].name).value(); };
+  for (const int other : others) {
+    bool hangs_below = false;
+    for (int above = there(other_parent); above >= 0; above = next.bones[above].parent) hangs_below = hangs_below || above == there(other);
+    if (!hangs_below) next = parented(next, {there(other)}, there(other_parent), join);
+  }
+  return next;
+}
+
 void hang_on(Editor& editor, const std::vector<int>& bones, int parent) {
   const std::shared_ptr<const Armature> before = editor.document().armature;
-  Armature next = parent < 0 ? unparented(*before, bones) : parented(*before, bones, parent, Join::KeepOffset);
+  Armature next = hung(editor, bones, parent, Join::KeepOffset);
   std::vector<int> chosen;
   for (const int bone : bones) chosen.push_back(next.find(before->bones[bone].name).value());
   const std::string what = bones.size() == 1 ? before->bones[bones[0]].name : std::to_string(bones.size()) + " bones";

@@ -26,7 +26,12 @@ void commit_rig(Editor& editor, const std::string& label, Armature next, const s
 // The same for bones that only change their names; all that goes by names follows.
 void rename_bone(Editor& editor, int bone, const std::string& name);
 void commit_names(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen);
-// Bones hang on another one, where they are; on nothing where that is -1.
+// With X-mirror on, the bones on the other side too, before the others.
+std::vector<int> with_other_sides(const Editor& editor, const std::vector<int>& bones);
+// The rig with bones that hang on another one, on nothing where that is -1. With X-mirror on, those of the other side hang on
+// the other side of it likewise, where it has one.
+Armature hung(const Editor& editor, const std::vector<int>& bones, int parent, Join join);
+// The same as an edit, where the bones are.
 void hang_on(Editor& editor, const std::vector<int>& bones, int parent);
 
 // Bones that are still there: after an undo the choice may speak of others.

@@ -136,6 +136,16 @@ Armature extruded(const Armature& armature, const BoneEnd& from, const glm::dvec
   return next;
 }
 
+Armature filled(const Armature& armature, const BoneEnd& from, const BoneEnd& to) {
+  const Bone &first = armature.bones.at(from.bone), &last = armature.bones.at(to.bone);
+  if (glm::distance(place_of(armature, from), place_of(armature, to)) <= kTouching) throw Error("the joints meet: there is nothing to fill", first.name + " and " + last.name, "choose bones that lie apart");
+  Armature next = extruded(armature, from, place_of(armature, to));
+  int root = from.bone;
+  while (armature.bones[root].parent >= 0) root = armature.bones[root].parent;
+  if (!to.tail && last.parent < 0 && root != to.bone) next.bones[to.bone].parent = static_cast<int>(next.bones.size()) - 1;
+  return parents_first(std::move(next.bones), "filled rig");
+}
+
 Armature without_bones(const Armature& armature, const std::vector<int>& bones) { return dropped(armature, marked(armature, bones)); }
 
 Armature dissolved(const Armature& armature, const std::vector<int>& bones) {

@@ -37,6 +37,9 @@ Armature with_moved_ends(const Armature& armature, const std::vector<BoneEnd>& e
 Armature with_bone(const Armature& armature, const std::string& name, int parent, const glm::dvec3& head, const glm::dvec3& tail);
 // A child from the bone's tail to that point; from its head a sibling.
 Armature extruded(const Armature& armature, const BoneEnd& from, const glm::dvec3& to);
+// A bone from one end to another: a child of the bone whose tail it leaves, else a sibling; a root whose head it reaches hangs
+// on it. Throws Error where the ends meet.
+Armature filled(const Armature& armature, const BoneEnd& from, const BoneEnd& to);
 // Their children hang on the next bone above that stays. Throws Error when none would be left.
 Armature without_bones(const Armature& armature, const std::vector<int>& bones);
 // As without_bones; where a bone was connected its parent reaches on to its tail, so that the chain stays whole.

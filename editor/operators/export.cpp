@@ -18,11 +18,14 @@ struct ExportFacts {
   const char* suffix;               // of the proposed name
 };
 
+// "Export glTF" of "glTF...".
+std::string title_of(const std::string& label) { return "Export " + label.substr(0, label.find("...")); }
+
 Operator export_operator(const ExportFacts& facts) {
   return {facts.id, facts.label, icon::kExport, "File", facts.sentence,
           [facts](Editor& e) {
             browse(e, {.purpose = "export",
-                       .title = std::string("Export: ") + facts.label,
+                       .title = title_of(facts.label),
                        .action = "Export",
                        .kind = FileRequest::Kind::Save,
                        .filters = facts.filters,
@@ -37,7 +40,7 @@ Operator picture_operator(const char* id, const char* label, const char* sentenc
   return {id, label, icon::kCamera, "File", sentence,
           [label, suffix, act](Editor& e) {
             browse(e, {.purpose = "picture",
-                       .title = std::string("Export: ") + label,
+                       .title = title_of(label),
                        .action = "Export",
                        .kind = FileRequest::Kind::Save,
                        .filters = {{"PNG pictures", {".png"}}},

@@ -15,7 +15,7 @@ namespace limber::editor {
 namespace {
 
 constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1, 2, 4};
-constexpr double kZoomStep = 1.25, kFewestFrames = 8, kMostFrames = 1e7;  // seen at once
+constexpr double kZoomStep = 1.25, kMostFrames = 1e7;  // seen at once
 
 std::string needs_clip(const Editor& editor) { return shown_clip(editor) ? "" : "Import a motion first, or insert a key"; }
 std::string needs_rig(const Editor& editor) { return editor.document().armature ? "" : "Import a rig first"; }
@@ -203,6 +203,7 @@ std::vector<Operator> motion_operators() {
       {"motion.pan", "Pan the timeline", "", "Motion", "Moves what is seen of time.", pan_timeline},
       {"motion.zoom", "Zoom the timeline", "", "Motion", "Shows fewer or more frames, about the pointer.", zoom},
       {"motion.view_all", "Show all frames", "", "Motion", "The whole clip fits into the timeline.", [](Editor& e) { fit_window(e); }, needs_clip},
+      {"motion.view_selected", "Show chosen keys", "", "Motion", "The chosen keys fit into the timeline.", fit_window_to_keys, needs_chosen_keys},
       {"motion.set_start", "Start range here", "", "Motion", "What plays begins at this frame.", [](Editor& e) { set_range(e, true); }, needs_clip},
       {"motion.set_end", "End range here", "", "Motion", "What plays ends at this frame.", [](Editor& e) { set_range(e, false); }, needs_clip},
       at_end("motion.loop", "Loop", "Begins again where the range ends.", AtEnd::Loop),

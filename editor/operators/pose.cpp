@@ -145,6 +145,7 @@ void relax(Editor& editor) {
 }
 
 void break_down(Editor& editor) {
+  if (const auto blend = between_keys(editor)) return begin_tool(editor, begin_blending(editor, *blend));
   const Ends ends = ends_of(editor);
   begin_tool(editor, begin_blending(editor, {.label = "Breakdown", .words = "from rest to the pose", .from = ends.rest, .to = ends.pose, .begin = 0.5}));
 }
@@ -184,12 +185,8 @@ void toggle_pins(Editor& editor) {
 }
 
 // Where the limb bends to now, so that nothing moves: beyond the joint in its middle.
-void toggle_pole(Editor& editor) {
+glm::dvec3 pole_of(const Editor& editor, int bone) {
   const Armature& armature = *editor.document().armature;
-  const int bone = *editor.selection.bone;
-  const std::string& name = armature.bones[bone].name;
-  Anchors anchors = anchors_of(editor.document());
-  if (anchors.poles.erase(name) > 0) return commit_anchors(editor, "Remove pole of " + name, std::move(anchors));
   const auto posed = posed_from_rest(armature, pose_of(editor.document()));
   int root = bone;
   for (int i = 1; i < limb_of(armature, bone); ++i) root = armature.bones[root].parent;
@@ -199,8 +196,42 @@ void toggle_pole(Editor& editor) {
   glm::dvec3 out = squared > 0 ? middle - begin - along * (glm::dot(middle - begin, along) / squared) : glm::dvec3(0);
   // A straight limb may bend to any side: forward.
   if (glm::length(out) < 1e-3) out = {0, -1, 0};
-  anchors.poles[name] = middle + glm::normalize(out) * std::max(20.0, std::sqrt(squared) / 2);
-  commit_anchors(editor, "Add pole to " + name, std::move(anchors));
+  return middle + glm::normalize(out) * std::max(20.0, std::sqrt(squared) / 2);
+}
+
+void toggle_pole(Editor& editor) {
+  const int bone = *editor.selection.bone;
+  const std::string name = editor.document().armature->bones[bone].name;
+  Anchors anchors = anchors_of(editor.document());
+  const bool had = anchors.poles.erase(name) > 0;
+  if (!had) anchors.poles[name] = pole_of(editor, bone);
+  commit_anchors(editor, (had ? "Remove pole of " : "Add pole to ") + name, std::move(anchors));
+}
+
+// A pin at the limb's end and a pole for its middle.
+void add_ik(Editor& editor) {
+  const Armature& armature = *editor.document().armature;
+  const int bone = *editor.selection.bone;
+  Anchors anchors = anchors_of(editor.document());
+  anchors.pins.insert(armature.bones[bone].name);
+  anchors.poles.insert({armature.bones[bone].name, pole_of(editor, bone)});
+  if (anchors != anchors_of(editor.document())) commit_anchors(editor, "Hold " + armature.bones[bone].name + " by IK", std::move(anchors));
+}
+
+// Of the chosen bones, of all where none is chosen.
+void clear_ik(Editor& editor) {
+  Anchors anchors = anchors_of(editor.document());
+  if (editor.selection.bones.empty()) anchors = {};
+  for (const int bone : chosen_bones(editor)) {
+    anchors.pins.erase(editor.document().armature->bones[bone].name);
+    anchors.poles.erase(editor.document().armature->bones[bone].name);
+  }
+  if (anchors != anchors_of(editor.document())) commit_anchors(editor, "Clear IK", std::move(anchors));
+}
+
+std::string needs_anchor(const Editor& editor) {
+  if (const std::string why = needs_rig(editor); !why.empty()) return why;
+  return anchors_of(editor.document()) == Anchors{} ? "No joint is pinned, no limb has a pole" : "";
 }
 
 std::string needs_limb(const Editor& editor) {
@@ -227,13 +258,15 @@ std::vector<Operator> pose_operators() {
       {"pose.flip", "Flip pose", icon::kMirror, "Pose", "The left side does what the right side did, and the right what the left did.", flip_pose, needs_pose},
       {"pose.push", "Push pose", "", "Pose", "The chosen bones go further away from rest: with the pointer, or by per cent.", push, needs_pose},
       {"pose.relax", "Relax pose", "", "Pose", "The chosen bones come nearer to rest: with the pointer, or by per cent.", relax, needs_pose},
-      {"pose.breakdown", "Breakdown", icon::kBreakdown, "Pose", "A pose between rest and the one there is: with the pointer, or by per cent.", break_down, needs_pose},
+      {"pose.breakdown", "Breakdown", icon::kBreakdown, "Pose", "A pose between the keys before and after, or without them between rest and the one there is: with the pointer, or by per cent.", break_down, needs_rig},
       {"pose.blend_rest", "Blend to rest", "", "Pose", "The chosen bones go a part of the way to rest.", blend_to_rest, needs_pose},
       {"pose.blend_copied", "Blend to copied pose", "", "Pose", "The chosen bones go a part of the way to the copied pose.", blend_to_copied, needs_copy},
       {"pose.pin", "Pin joint", "", "Pose", "The ends of the chosen bones stay where they are while other joints are dragged; again frees them.", toggle_pins, needs_bone,
        [](const Editor& e) { return needs_bone(e).empty() && anchors_of(e.document()).pins.contains(e.document().armature->bones[*e.selection.bone].name); }},
       {"pose.pole", "Pole", "", "Pose", "The limb bends towards a point that can be dragged; again takes it away.", toggle_pole, needs_limb,
        [](const Editor& e) { return needs_bone(e).empty() && anchors_of(e.document()).poles.contains(e.document().armature->bones[*e.selection.bone].name); }},
+      {"pose.add_ik", "Hold by IK", icon::kReach, "Pose", "The limb's end is pinned and its middle bends towards a pole, whatever else is dragged.", add_ik, needs_limb},
+      {"pose.clear_ik", "Clear IK", "", "Pose", "Takes pins and poles of the chosen bones away, or of all.", clear_ik, needs_anchor},
       {"pose.auto_ik", "Auto-IK", icon::kReach, "Pose", "A dragged joint takes its whole limb along, not its bone alone.", [](Editor& e) { e.handling->auto_ik = !e.handling->auto_ik; }, nullptr,
        [](const Editor& e) { return e.handling->auto_ik; }},
       {"edit.x_mirror", "X-mirror", icon::kMirror, "Edit", "What is done to a bone is done to the one on the other side, in the mirror.", [](Editor& e) { e.handling->x_mirror = !e.handling->x_mirror; }, nullptr,

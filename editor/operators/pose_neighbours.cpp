@@ -8,7 +8,6 @@
 #include "editor/posing.h"
 #include "editor/project.h"
 #include "editor/timeline.h"
-#include "editor/tools/pose_tools.h"
 
 namespace limber::editor {
 
@@ -91,6 +90,17 @@ void apply_as_rest(Editor& editor) {
 }
 
 }  // namespace
+
+std::optional<Blend> between_keys(Editor& editor) {
+  settle_frame(editor);
+  const int now = editor.document().frame;
+  const std::set<int> frames = key_frames(editor);
+  const auto next = frames.upper_bound(now), here = frames.lower_bound(now);
+  if (next == frames.end() || here == frames.begin()) return std::nullopt;
+  const int before = *std::prev(here);
+  const ClipOnRig* clip = clip_on_rig(editor);
+  return Blend{.label = "Breakdown", .words = "from frame " + std::to_string(before) + " to " + std::to_string(*next), .from = clip->at(before), .to = clip->at(*next), .begin = 0.5};
+}
 
 std::vector<Operator> pose_neighbour_operators() {
   return {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Edits of the rig at rest.
+#include <algorithm>
 #include <numeric>
 
 #include "core/base/error.h"
@@ -62,6 +63,41 @@ void add(Editor& editor) {
   editor.handling->part = Handling::Part::Tail;
 }
 
+// Between the ends of two bones that are nearest to each other, from the one chosen first; from one bone's joint to the cross-hair.
+void fill(Editor& editor) {
+  const std::shared_ptr<const Armature> rig = editor.document().armature;
+  const std::vector<int> bones = bones_chosen_last(editor);
+  Armature next;
+  if (bones.size() == 1) {
+    const RigChange change = extrusion(editor);
+    const glm::dvec3 to = editor.views->cross_hair;
+    if (glm::distance(to, place_of(change.start, change.ends[0])) < 1e-6) throw Error("the cross-hair stands on the joint", rig->bones[bones[0]].name, "put it where the bone shall end: Shift and the right button");
+    next = with_moved_ends(change.start, change.ends, [&](const glm::dvec3&) { return to; });
+  } else {
+    BoneEnd from, to;
+    double least = 1e300;
+    for (const bool first : {true, false})
+      for (const bool second : {false, true})
+        if (const double gap = glm::distance(place_of(*rig, {bones[0], first}), place_of(*rig, {bones[1], second})); gap < least) {
+          least = gap;
+          from = {bones[0], first};
+          to = {bones[1], second};
+        }
+    next = filled(*rig, from, to);
+  }
+  const std::vector<int> was = bones_of(*rig, next);
+  const int added = static_cast<int>(std::find(was.begin(), was.end(), -1) - was.begin());
+  const std::string name = next.bones[added].name;
+  editor.handling->part = Handling::Part::Tail;
+  commit_rig(editor, "Fill with " + name, mirrored_too(editor, std::move(next)), {added});
+}
+
+std::string needs_gap(const Editor& editor) {
+  if (const std::string why = needs_rig_bone(editor); !why.empty()) return why;
+  if (editor.selection.bones.size() > 2) return "Choose one bone or two";
+  return editor.selection.bones.size() == 2 ? "" : needs_volume(editor);
+}
+
 void duplicate(Editor& editor) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   const std::vector<int> bones = bones_chosen_last(editor);
@@ -85,21 +121,23 @@ std::vector<int> still(const Armature& before, const Armature& after, const std:
   return found;
 }
 
+enum class Sides { Chosen, Mirrored };  // the latter where X-mirror is on
+
 template <class Edit>
-void edit(Editor& editor, const char* verb, const Edit& change) {
+void edit(Editor& editor, const char* verb, const Edit& change, Sides sides = Sides::Chosen) {
   const std::shared_ptr<const Armature> before = editor.document().armature;
   const std::vector<int> bones = bones_chosen_last(editor);
-  Armature next = change(*before, bones);
+  Armature next = change(*before, sides == Sides::Mirrored ? with_other_sides(editor, bones) : bones);
   const std::vector<int> left = still(*before, next, bones);
   editor.handling->part = Handling::Part::Whole;
   commit_rig(editor, naming_chosen(editor, verb), std::move(next), left);
 }
 
 void hang(Editor& editor, Join join) {
-  edit(editor, join == Join::Connected ? "Connect" : "Parent", [&](const Armature& rig, std::vector<int> bones) {
+  edit(editor, join == Join::Connected ? "Connect" : "Parent", [&](const Armature&, std::vector<int> bones) {
     const int parent = bones.back();
     bones.pop_back();
-    return parented(rig, bones, parent, join);
+    return hung(editor, bones, parent, join);
   });
 }
 
@@ -160,7 +198,7 @@ void ask_names(Editor& editor) {
     std::string first;
     for (std::size_t bone = 0; bone < next.bones.size(); ++bone)
       if (next.bones[bone].name != before.bones[bone].name && count++ == 0) first = before.bones[bone].name + " becomes " + next.bones[bone].name;
-    if (count == 0) throw Error("no name changes", "the names", "fill in what is to change");
+    if (count == 0) throw NotYet{"Fill in what is to change."};
     return first + (count == 1 ? "." : ", and " + std::to_string(count - 1) + " more change.");
   };
   const auto act = [](Editor& e, const std::vector<FormField>& fields) {
@@ -174,8 +212,8 @@ void ask_names(Editor& editor) {
                                 outcome, act}));
 }
 
-Operator edit_operator(const char* id, const char* label, const char* icon, const char* sentence, const char* verb, Armature (*change)(const Armature&, const std::vector<int>&)) {
-  return {id, label, icon, "Bone", sentence, [verb, change](Editor& e) { edit(e, verb, change); }, needs_rig_bone};
+Operator edit_operator(const char* id, const char* label, const char* icon, const char* sentence, const char* verb, Armature (*change)(const Armature&, const std::vector<int>&), Sides sides = Sides::Mirrored) {
+  return {id, label, icon, "Bone", sentence, [verb, change, sides](Editor& e) { edit(e, verb, change, sides); }, needs_rig_bone};
 }
 
 // The chosen joint, or both ends of every chosen bone, each to where `to` takes it.
@@ -237,6 +275,7 @@ std::vector<Operator> rig_operators() {
       {"rig.roll", "Roll", "", "Bone", "Turns the chosen bones about themselves.", [](Editor& e) { transform(e, RigChange::Kind::Roll); }, needs_rig_bone},
       {"rig.add", "Add bone", icon::kAdd, "Bone", "A new bone at the cross-hair.", add, needs_place},
       {"rig.extrude", "Extrude", icon::kExtrude, "Bone", "A new bone grows from the chosen joint with the pointer.", extrude, needs_rig_bone},
+      {"rig.fill", "Fill", "", "Bone", "A bone between two chosen ones, or from the chosen joint to the cross-hair.", fill, needs_gap},
       {"rig.duplicate", "Duplicate", icon::kDuplicate, "Bone", "Copies of the chosen bones go with the pointer.", duplicate, needs_rig_bone},
       edit_operator("rig.subdivide", "Subdivide", "", "Each chosen bone becomes two.", "Subdivide", subdivided),
       edit_operator("rig.delete", "Delete", icon::kTrash, "Takes the chosen bones away; what hung on them hangs on the next one above.", "Delete", without_bones),
@@ -246,10 +285,10 @@ std::vector<Operator> rig_operators() {
       {"rig.connect", "Connect to parent", icon::kLinkViews, "Bone", "The chosen bones hang on the active one and move to its tail.", [](Editor& e) { hang(e, Join::Connected); }, needs_two},
       edit_operator("rig.clear_parent", "Clear parent", "", "The chosen bones hang on nothing.", "Clear parent of", unparented),
       edit_operator("rig.flip_direction", "Flip direction", "", "Head and tail of the chosen bones change places; a chain runs the other way.", "Flip direction of", with_flipped_direction),
-      edit_operator("rig.mirror", "Mirror", icon::kMirror, "The chosen bones go to the other side.", "Mirror", mirrored_bones),
+      edit_operator("rig.mirror", "Mirror", icon::kMirror, "The chosen bones go to the other side.", "Mirror", mirrored_bones, Sides::Chosen),
       {"rig.symmetrize", "Symmetrize", icon::kMirror, "Bone", "The other side of the chosen bones becomes their mirror image; what is missing there is added.", symmetrize, needs_rig_bone},
       {"rig.recalculate_roll", "Recalculate roll", "", "Bone", "The chosen bones' own z axes look forward.",
-       [](Editor& e) { edit(e, "Recalculate roll of", [](const Armature& rig, const std::vector<int>& bones) { return with_z_towards(rig, bones, {0, -1, 0}); }); }, needs_rig_bone},
+       [](Editor& e) { edit(e, "Recalculate roll of", [](const Armature& rig, const std::vector<int>& bones) { return with_z_towards(rig, bones, {0, -1, 0}); }, Sides::Mirrored); }, needs_rig_bone},
       {"rig.motion_range", "Range of motion...", "", "Bone", "Limits that are usual for a joint, by its name or as chosen.", ask_motion_range, needs_rig_bone},
       {"rig.batch_rename", "Rename bones...", icon::kRename, "Bone", "Changes the names of many bones: replaces, prefixes, suffixes, sides.", ask_names, needs_rig_in_workspace},
       {"rig.snap_pie", "Snap menu", icon::kSnap, "Bone", "Lists what joints snap to, at the pointer.", [](Editor& e) { e.open_popup = "Snap"; }, needs_rig_workspace},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 
 #include "core/rig/mirror.h"
 #include "editor/dispatch.h"
@@ -9,23 +10,18 @@
 #include "editor/operators/polls.h"
 #include "editor/results.h"
 #include "editor/tissues.h"
+#include "editor/tools/area_selection.h"
 #include "editor/wipe.h"
 
 namespace limber::editor {
 
 namespace {
 
-std::optional<int> bone_here(const Editor& editor) {
-  const Rect* place = editor.layout.place_of(ViewId::Body);
-  if (!editor.document().armature || editor.views->hover.view != ViewId::Body || !place) return std::nullopt;
-  return body_at_pointer(editor, {ViewId::Body, *place}).pick_bone(glm::ivec2(editor.input.pointer - place->low));
-}
-
 void pick(Editor& editor) {
   if (editor.tool == Tool::CrossHair) return run(editor, "view.place_cross_hair");
   editor.handling->part = Handling::Part::Whole;
   if (pick_bone_part(editor)) return;
-  if (const auto bone = bone_here(editor)) {
+  if (const auto bone = bone_at_pointer(editor)) {
     editor.selection = {};
     editor.selection.bone = bone;
     editor.selection.bones = {*bone};
@@ -38,7 +34,7 @@ void pick(Editor& editor) {
 
 void extend(Editor& editor) {
   editor.handling->part = Handling::Part::Whole;
-  if (const auto bone = bone_here(editor)) {
+  if (const auto bone = bone_at_pointer(editor)) {
     // The active one pressed again is given up.
     if (editor.selection.bone == bone) {
       editor.selection.bones.erase(*bone);
@@ -123,6 +119,44 @@ void choose_all(Editor& editor) {
   for (const Tissue& tissue : document.tissues->tissues) editor.selection.tissues.insert(tissue.label);
 }
 
+std::string needs_bones(const Editor& editor) {
+  if (editor.workspace != Workspace::Rig && editor.workspace != Workspace::Pose) return "Works in the Rig and Pose workspaces";
+  return editor.document().armature ? "" : "Import a rig first";
+}
+
+bool chooses_bones(const Editor& editor) { return needs_bones(editor).empty() && editor.selection.tissues.empty(); }
+
+void invert(Editor& editor) {
+  Selection& selection = editor.selection;
+  if (chooses_bones(editor)) {
+    std::set<int> others;
+    for (int b = 0; b < std::ssize(editor.document().armature->bones); ++b)
+      if (!selection.bones.contains(b)) others.insert(b);
+    selection.bone = others.empty() ? std::nullopt : std::optional(*others.begin());
+    selection.bones = std::move(others);
+    return;
+  }
+  std::set<Label> others;
+  for (const Tissue& tissue : editor.document().tissues->tissues)
+    if (!selection.tissues.contains(tissue.label)) others.insert(tissue.label);
+  selection.tissue = others.empty() ? std::nullopt : std::optional(*others.begin());
+  selection.tissues = std::move(others);
+}
+
+// Adds the bones that `alike` finds like one of the chosen ones.
+void choose_alike(Editor& editor, const std::function<bool(const Armature&, int chosen, int other)>& alike) {
+  const Armature& rig = *editor.document().armature;
+  const std::set<int> chosen = editor.selection.bones;
+  for (int other = 0; other < std::ssize(rig.bones); ++other)
+    if (std::any_of(chosen.begin(), chosen.end(), [&](int bone) { return alike(rig, bone, other); })) editor.selection.bones.insert(other);
+}
+
+Operator alike_operator(const char* id, const char* label, const char* sentence, bool (*alike)(const Armature&, int chosen, int other)) {
+  return {id, label, "", "Select", sentence, [alike](Editor& e) { choose_alike(e, alike); }, needs_bone};
+}
+
+double length_of(const Bone& bone) { return glm::distance(bone.head, bone.tail); }
+
 Operator tool_operator(const char* id, const char* label, const char* icon, const char* sentence, Tool tool) {
   return {id, label, icon, "Tool", sentence, [tool](Editor& e) { e.tool = tool; }, nullptr, [tool](const Editor& e) { return e.tool == tool; }};
 }
@@ -136,6 +170,16 @@ std::vector<Operator> select_operators() {
       {"select.pick_list", "Select from list", icon::kPick, "Select", "Chooses the tissue under the pointer and lists what lies behind it.", pick_list, needs_volume},
       {"select.none", "Select nothing", "", "Select", "Chooses nothing.", [](Editor& e) { e.selection = {}; }},
       {"select.all", "Select all", "", "Select", "Chooses every bone in the Rig and Pose workspaces, every tissue elsewhere or where one is chosen.", choose_all, needs_volume},
+      {"select.invert", "Invert selection", "", "Select", "Chooses the bones, or tissues, that are not chosen, in place of those that are.", invert, needs_volume},
+      {"select.box", "Box select", "", "Select", "Adds the bones in a box that is drawn; with Shift takes them out.", [](Editor& e) { e.modal = begin_box_selection(e); }, needs_bones},
+      {"select.circle", "Circle select", "", "Select", "Adds the bones that a circle is painted over; with Shift takes them out.", [](Editor& e) { e.modal = begin_circle_selection(e); }, needs_bones},
+      {"select.similar", "Select similar", "", "Select", "Lists in what other bones may be like the chosen ones, at the pointer.", [](Editor& e) { e.open_popup = "Similar"; }, needs_bone},
+      alike_operator("select.siblings", "Siblings", "Adds the bones that hang where the chosen ones hang.", [](const Armature& rig, int chosen, int other) { return rig.bones[chosen].parent == rig.bones[other].parent; }),
+      alike_operator("select.children", "Children", "Adds the bones that hang on the chosen ones.", [](const Armature& rig, int chosen, int other) { return rig.bones[other].parent == chosen; }),
+      alike_operator("select.same_joint", "Same joint", "Adds the bones whose joints are of the chosen ones' kind: hinge, ball, fixed or free.",
+                     [](const Armature& rig, int chosen, int other) { return rig.bones[chosen].limits.type == rig.bones[other].limits.type; }),
+      alike_operator("select.same_length", "Same length", "Adds the bones as long as the chosen ones, to a tenth.",
+                     [](const Armature& rig, int chosen, int other) { return std::abs(length_of(rig.bones[chosen]) - length_of(rig.bones[other])) <= 0.1 * length_of(rig.bones[chosen]); }),
       {"select.parent", "Select parent", "", "Select", "Chooses the bone that the active one hangs on.", [](Editor& e) { go_to_parent(e, false); }, needs_bone},
       {"select.child", "Select child", "", "Select", "Chooses the first bone that hangs on the active one.", [](Editor& e) { go_to_child(e, false); }, needs_bone},
       {"select.extend_parent", "Extend to parent", "", "Select", "Adds the bone that the active one hangs on.", [](Editor& e) { go_to_parent(e, true); }, needs_bone},

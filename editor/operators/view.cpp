@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How the window and its pictures are arranged and shown.
 #include "editor/dispatch.h"
+#include "editor/gizmo.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
 #include "editor/tissues.h"
@@ -37,6 +38,12 @@ void maximize(Editor& editor) {
 
 // What is under the pointer becomes what the menu's commands work on.
 void open_context_menu(Editor& editor) {
+  if (const auto bone = editor.workspace == Workspace::Rig || editor.workspace == Workspace::Pose ? bone_at_pointer(editor) : std::nullopt) {
+    if (!editor.selection.bones.contains(*bone)) editor.selection.bones = {*bone};
+    editor.selection.bone = bone;
+    editor.open_popup = editor.workspace == Workspace::Pose ? "Posed bone" : "Bone";
+    return;
+  }
   const Hover& hover = editor.views->hover;
   if (hover.inside && !editor.selection.tissues.contains(hover.label)) select_tissue(editor, hover.label, false);
   editor.open_popup = "context";

@@ -41,7 +41,7 @@ void draw_match(Editor& editor, Column& column, const ClipOnRig& clip) {
   const Colour colour = good ? look.theme.ok : look.theme.warn;
   put_icon(look.fonts.regular, colour, Rect{rect.low, {rect.low.x + look.px(18), rect.high.y}}, good ? icon::kOk : icon::kWarning);
   char text[64];
-  std::snprintf(text, sizeof text, "%d of %d", moved, static_cast<int>(clip.armature()->bones.size()));
+  std::snprintf(text, sizeof text, "%d / %d", moved, static_cast<int>(clip.armature()->bones.size()));
   const float button = look.px(64);
   put_text(editor, look.fonts.regular, colour, Rect{{rect.low.x + look.px(22), rect.low.y}, {rect.high.x - button - look.px(6), rect.high.y}}, text);
   operator_button(editor, "motion.map", {{rect.high.x - button, rect.low.y}, rect.high}, "Map...");

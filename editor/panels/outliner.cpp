@@ -168,8 +168,8 @@ void open_menu(Editor& editor, const Row& row) {
   switch (row.kind) {
     case Row::Kind::Volume:
     case Row::Kind::Tissues: editor.open_popup = "Volume"; return;
-    case Row::Kind::Armature:
-    case Row::Kind::Bone: editor.open_popup = "Armature"; return;
+    case Row::Kind::Armature: editor.open_popup = "Armature"; return;
+    case Row::Kind::Bone: editor.open_popup = editor.workspace == Workspace::Rig ? "Bone" : editor.workspace == Workspace::Pose ? "Posed bone" : "Armature"; return;
     case Row::Kind::Tissue: editor.open_popup = "Tissue"; return;
     case Row::Kind::Results: return;
     case Row::Kind::Result: show_result(editor, row.name); editor.open_popup = "Result"; return;
@@ -219,6 +219,18 @@ void take_drag(Editor& editor, const Row& row, const Pressed& pressed) {
   if (drag.bone == row.name && pressed.held) drag.moved |= glm::distance(editor.input.pointer, drag.begin) > editor.look.px(6);
 }
 
+// What letting go does, beside the pointer.
+void draw_dragged(Editor& editor, const std::string& words) {
+  const Look& look = editor.look;
+  const glm::vec2 size = text_size(look.fonts.regular, words) + glm::vec2(look.px(16), look.px(8));
+  glm::vec2 low = editor.input.pointer + glm::vec2(look.px(14), look.px(10));
+  low.x = std::min(low.x, editor.layout.window.high.x - size.x - look.px(4));
+  ImDrawList& canvas = *ImGui::GetForegroundDrawList();
+  canvas.AddRectFilled(im(low), im(low + size), look.theme.raised, look.px(4));
+  canvas.AddRect(im(low), im(low + size), look.theme.line2, look.px(4), 0, look.line());
+  canvas.AddText(look.fonts.regular, look.fonts.regular->FontSize, im(low + glm::vec2(look.px(8), look.px(4))), look.theme.text, words.c_str());
+}
+
 void draw_drag(Editor& editor, const Row& row, const Rect& rect) {
   const auto& drag = editor.handling->row_drag;
   if (!drag.moved || !rect.contains(editor.input.pointer) || (row.kind != Row::Kind::Bone && row.kind != Row::Kind::Armature)) return;
@@ -226,6 +238,8 @@ void draw_drag(Editor& editor, const Row& row, const Rect& rect) {
   if (row.kind == Row::Kind::Bone && std::find(bones.begin(), bones.end(), row.index) != bones.end()) return;
   const int parent = row.kind == Row::Kind::Bone ? row.index : -1;
   outline(rect, editor.look.theme.select, 0, 2 * editor.look.line());
+  const std::string what = bones.size() == 1 ? drag.bone : std::to_string(bones.size()) + " bones";
+  draw_dragged(editor, parent < 0 ? "Clear parent of " + what : what + " onto " + row.name);
   if (editor.input.down(MouseButton::Left) || bones.empty()) return;
   attempt(editor, "Make parent", [&](Editor& e) { hang_on(e, bones, parent); });
 }

@@ -40,13 +40,16 @@ class MapDialog final : public Dialog {
   std::vector<std::string> choices_;  // nothing, then the joints
 };
 
+// Where the joint and how it was found begin.
+std::pair<float, float> columns_of(const Look& look, const Rect& row) { return {row.low.x + std::round(row.width() * 0.38f), row.high.x - look.px(130)}; }
+
 void MapDialog::prepare(const ClipOnRig& clip) {
   if (prepared_for_ == clip.clip().get() && armature_ == clip.armature()) return;
   prepared_for_ = clip.clip().get();
   armature_ = clip.armature();
   map_ = map_in_use(clip);
   kinds_ = match_kinds(*clip.clip()->motion, *armature_, map_);
-  choices_ = {"-"};
+  choices_ = {"nothing"};
   for (const BvhJoint& joint : clip.clip()->motion->joints) choices_.push_back(joint.name);
 }
 
@@ -66,7 +69,7 @@ void MapDialog::draw_row(Editor& editor, Column& column, int bone) {
   if (bone % 2) fill(row, look.theme.row_alt);
   const std::string& name = armature_->bones[bone].name;
   const PathScope path(editor, name);
-  const float joint_left = row.low.x + std::round(row.width() * 0.38f), kind_left = row.high.x - look.px(130);
+  const auto [joint_left, kind_left] = columns_of(look, row);
   put_text(editor, look.fonts.regular, look.theme.text, Rect{{row.low.x + look.px(10), row.low.y}, {joint_left - look.px(8), row.high.y}}, name);
   const auto place = std::find(choices_.begin() + 1, choices_.end(), map_.joint_of(name));
   int chosen = place == choices_.end() ? 0 : static_cast<int>(place - choices_.begin());
@@ -86,9 +89,13 @@ void MapDialog::draw(Editor& editor) {
   if (!clip || !clip->clip()->motion) return editor.close_dialog();
   const Rect rect = begin_dialog(editor, "Map: joints of " + clip->clip()->name, 600, 520);
   prepare(*clip);
-  const float foot = look.px(28);
+  const float foot = look.px(28), head = look.px(20);
   {
-    Column column(editor, "bones", {rect.low, {rect.high.x, rect.high.y - foot - look.px(14)}});
+    // Beside the scroll bar, as the rows.
+    const auto [joint_left, kind_left] = columns_of(look, {rect.low, {rect.high.x - look.px(10), rect.high.y}});
+    for (const auto& [left, words] : {std::pair{rect.low.x + look.px(10), "Bone"}, {joint_left, "Moved by"}, {kind_left, "Found by"}})
+      put_text(editor, look.fonts.small, look.theme.text3, Rect{{left, rect.low.y - look.px(4)}, {left + look.px(110), rect.low.y + head - look.px(6)}}, words);
+    Column column(editor, "bones", {{rect.low.x, rect.low.y + head}, {rect.high.x, rect.high.y - foot - look.px(14)}});
     for (int bone = 0; bone < std::ssize(armature_->bones); ++bone) draw_row(editor, column, bone);
   }
   const float low = rect.high.y - foot;

@@ -2,6 +2,7 @@
 // The column of sections at the right: fixed order, each folds, all scroll as one.
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
+#include "editor/panels/posed_bone.h"
 #include "editor/pose_library.h"
 
 namespace limber::editor {
@@ -39,6 +40,7 @@ void draw_sidebar(Editor& editor) {
     }
     if (editor.workspace == Workspace::Pose) {
       draw_pose_library(editor, column);
+      draw_posed_bone(editor, column);
       draw_live_volume(editor, column);
       draw_motion(editor, column);
     }

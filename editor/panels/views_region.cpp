@@ -81,6 +81,12 @@ void hover_slice(Editor& editor, const ViewPlace& place) {
   hover.inside = hover.label != 0;
 }
 
+// Of the chosen bones.
+std::string title_of_bones(const Editor& editor) {
+  const std::size_t count = editor.selection.bones.size();
+  return count == 1 ? editor.document().armature->bones[*editor.selection.bones.begin()].name : std::to_string(count) + " bones";
+}
+
 void draw_pointer_menu(Editor& editor) {
   if (!editor.open_popup.empty()) {
     ImGui::OpenPopup("pointer menu");
@@ -90,7 +96,8 @@ void draw_pointer_menu(Editor& editor) {
   editor.place.region = Region::Popup;
   const Menu menu = pointer_menu(editor.shown_popup, editor.views->active);
   const Tissue* tissue = editor.selection.tissue && editor.document().tissues ? editor.document().tissues->find(*editor.selection.tissue) : nullptr;
-  const std::string title = tissue && (editor.shown_popup == "context" || editor.shown_popup == "Tissue") ? shown_name(*tissue) : menu.title;
+  std::string title = tissue && (editor.shown_popup == "context" || editor.shown_popup == "Tissue") ? shown_name(*tissue) : menu.title;
+  if (menu.title == "Bone" && !editor.selection.bones.empty()) title = title_of_bones(editor);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   put_text(editor, editor.look.fonts.semibold, editor.look.theme.text2, from_im(corner) + glm::vec2(editor.look.px(8), editor.look.px(2)), title);
   ImGui::Dummy({text_size(editor.look.fonts.semibold, title).x + editor.look.px(16), editor.look.px(22)});

@@ -23,7 +23,7 @@ class HingeTool final : public TransformTool {
   }
 
   std::string title() const override { return "Hinge of " + rig_.bones[bone_].name + ", turned by " + text_of_number("%.1f", degrees()) + "\u00b0"; }
-  std::vector<KeyHint> hints(const Editor&) const override { return {{{"X", "Y", "Z"}, "Along an axis, again: local"}, {{"Ctrl"}, "Snap to own axes"}, {{"Shift"}, "Slowly"}, {{"Enter"}, "Keep"}, {{"Esc"}, "Back"}}; }
+  std::vector<KeyHint> hints(const Editor&) const override { return {{{"X", "Y", "Z"}, "Along an axis, again: local"}, {{"0-9"}, "Turn by degrees"}, {{"Ctrl"}, "Snap to own axes"}, {{"Shift"}, "Slowly"}, {{"Enter"}, "Keep"}, {{"Esc"}, "Back"}}; }
   void cancel(Editor& editor) override { drop_shown_rig(editor); }
 
   void draw(Editor& editor, const ViewPlace& place) override {
@@ -33,15 +33,17 @@ class HingeTool final : public TransformTool {
     const GizmoPainter painter(editor, view_);
     painter.line(head - axis_ * reach, head + axis_ * reach, kGizmoActive, 2);
     painter.dot(head + axis_ * reach, kGizmoActive, 0xFF1A1614, 6);
-    painter.read_out(head + axis_ * reach, text_of_number("%.1f", degrees()) + "\u00b0", lock_.axis < 0 ? "" : lock_text("along").substr(1), rig_.bones[bone_].name, editor.look.theme.view_text2);
+    painter.read_out(head + axis_ * reach, (number_.typed() ? number_.text() : text_of_number("%.1f", degrees())) + "\u00b0", lock_.axis < 0 ? "" : lock_text(number_.typed() ? "about" : "along").substr(1), rig_.bones[bone_].name, editor.look.theme.view_text2);
   }
 
  private:
   glm::dmat3 axes(Space space) const override { return axes_of(space, rig_, rest_pose(rig_), bone_, view_); }
   double degrees() const { return glm::degrees(std::acos(std::clamp(glm::dot(axis_, before_), -1.0, 1.0))); }
 
-  // Along the lock, on the side where it was; else towards the pointer, with Ctrl the nearest of the bone's own axes.
+  // Along the lock, on the side where it was; else towards the pointer, with Ctrl the nearest of the bone's own axes. A number
+  // turns it by so many degrees, about the lock or as the picture is seen.
   glm::dvec3 pointed_at(Editor& editor) {
+    if (number_.typed()) return glm::angleAxis(glm::radians(number_.value()), lock_.axis >= 0 ? lock_axis() : view_.towards_eye) * before_;
     if (lock_.axis >= 0) return lock_axis() * (glm::dot(lock_axis(), before_) < 0 ? -1.0 : 1.0);
     const glm::dvec3 towards = dragged(editor, from_, 0, 0) - rig_.bones[bone_].head;
     if (glm::length(towards) < 1e-9) return axis_;

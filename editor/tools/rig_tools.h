@@ -18,7 +18,8 @@ struct RigChange {
 
 std::unique_ptr<TransformTool> begin_rig_change(Editor& editor, const RigChange& change, const Grip& grip = {});
 
-// The axis of the active bone's hinge goes with the pointer, with Ctrl to the nearest of the bone's own axes.
+// The axis of the active bone's hinge goes with the pointer, with Ctrl to the nearest of the bone's own axes; digits turn it
+// by degrees, about the locked axis or as the picture is seen.
 std::unique_ptr<TransformTool> begin_hinge_change(Editor& editor, const Grip& grip = {});
 
 // Of what is chosen: "Move Forearm". A joint alone is moved; turned and scaled are whole bones.

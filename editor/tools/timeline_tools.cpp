@@ -138,6 +138,14 @@ float x_of(const Timeline& timeline, double frame) {
   return ruler.low.x + static_cast<float>((frame - timeline.window.low) / timeline.window.count) * ruler.width();
 }
 
+void fit_window_to_keys(Editor& editor) {
+  const std::set<int>& chosen = editor.timeline->chosen;
+  const double low = *chosen.begin(), count = *chosen.rbegin() - low + 1;
+  auto& window = editor.timeline->window;
+  window.count = std::max(kFewestFrames, 1.2 * count);
+  window.low = low + count / 2 - window.count / 2;
+}
+
 void fit_window(Editor& editor) {
   const FrameRange range = playing_range(editor);
   double low = range.low, high = range.high;

@@ -9,8 +9,10 @@ namespace limber::editor {
 
 double frame_at(const Timeline& timeline, float x);
 float x_of(const Timeline& timeline, double frame);
+constexpr double kFewestFrames = 8;  // seen at once
 // The whole clip and its range, with a little room.
 void fit_window(Editor& editor);
+void fit_window_to_keys(Editor& editor);  // the chosen ones; needs some
 
 // A press of the left button: shows the frame under the pointer until it is released; on a key it chooses that (Shift:
 // as well), and drags the chosen ones.

@@ -16,14 +16,13 @@ constexpr double kClickPixels = 4;   // at scale 1: a release within them is a c
 
 int axis_of_key(Key key) { return key == Key::X ? 0 : key == Key::Y ? 1 : key == Key::Z ? 2 : -1; }
 
-// The view under the pointer, else the 3D view, else any.
+}  // namespace
+
 ViewPlace place_of_tool(const Editor& editor) {
   if (const ViewPlace* hovered = hovered_view(editor)) return *hovered;
   if (const Rect* body = editor.layout.place_of(ViewId::Body)) return {ViewId::Body, *body};
   return editor.layout.view_places.empty() ? ViewPlace{ViewId::Body, {{0, 0}, {1, 1}}} : editor.layout.view_places.front();
 }
-
-}  // namespace
 
 std::string text_of_number(const char* format, double value) {
   char text[48];

@@ -63,6 +63,9 @@ class TransformTool : public Modal {
   double travelled_ = 0;        // pixels, the furthest from the start
 };
 
+// The view under the pointer, else the 3D view, else any.
+ViewPlace place_of_tool(const Editor& editor);
+
 // Takes the input; the pointer that leaves the tool's view comes in again at its other side.
 void begin_tool(Editor& editor, std::unique_ptr<TransformTool> tool);
 

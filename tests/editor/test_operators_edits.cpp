@@ -38,7 +38,7 @@ std::vector<Proof> proofs_of_tissues() {
       {"tool.cross_hair", "click tool.cross_hair", becomes("tool", "cross-hair")},
       {"tool.select", "click tool.select", becomes("tool", "select")},
       {"select.pick", "click \"3D view/view\"", [](Stage& s, const Seen&) { return s.editor().selection.bone && s.is("tissue", "none"); }, Shows::Nothing, "click Muscle/17/name\n wait-idle"},
-      {"select.none", "click \"Edit/Select nothing\"", becomes("selected", "0"), Shows::Nothing, chosen},
+      {"select.none", "click \"Edit/Select/Select nothing\"", becomes("selected", "0"), Shows::Nothing, chosen},
       {"select.extend", "click \"3D view/view\" Shift", [](Stage& s, const Seen&) { return s.editor().selection.tissues == std::set<Label>{17, 143}; }, Shows::Nothing, "click Muscle/17/name\n wait-idle",
        [](Stage& s) { s.editor().views->bones = false; }},  // a bone under the pointer would come first
       {"select.all", "move \"3D view/view\"\n key A", becomes("selected", "4"), Shows::Nothing, "click Muscle/17/name", [](Stage& s) { s.editor().views->bones = true; }},

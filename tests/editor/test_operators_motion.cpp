@@ -116,6 +116,7 @@ std::vector<Proof> proofs_of_motion() {
       {"motion.zoom", "wheel lane 2", [](Stage& s, const Seen&) { return s.editor().timeline->window.count < 50; }, Shows::Nothing, "", point_at(0)},
       {"motion.pan", "drag lane 40 0 MMB", [](Stage& s, const Seen&) { return s.editor().timeline->window.low < -3; }, Shows::Nothing, "wheel lane -1\n key Home", point_at(0)},
       {"motion.view_all", "key Home", [](Stage& s, const Seen&) { return std::abs(s.editor().timeline->window.count - 64) < 1; }, Shows::Nothing, "wheel lane 3", point_at(0)},
+      {"motion.view_selected", "key Num.", [](Stage& s, const Seen&) { return std::abs(s.editor().timeline->window.low + s.editor().timeline->window.count / 2 - 20.5) < 1e-9 && s.editor().timeline->window.count < 30; }, Shows::Nothing, "", with_chosen({10, 30})},
       {"motion.rename_marker", "key Ctrl+M\n wait-idle\n key Ctrl+A\n type turn\n key Return", [](Stage& s, const Seen&) { return shown_clip(s.editor())->markers == std::vector<Marker>{{20, "turn"}}; },
        Shows::Nothing, "key M", point_at(20)},
       {"motion.delete_marker", "click \"Motion/Markers/Delete marker\"", [](Stage& s, const Seen&) { return shown_clip(s.editor())->markers.empty(); }, Shows::Nothing, "key M", point_at(20)},

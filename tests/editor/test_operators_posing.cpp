@@ -67,6 +67,12 @@ std::vector<Proof> proofs_of_posing() {
       {"select.child", "key ]", bones_are({1}, 1), Shows::InBody, "", choose(0)},
       {"select.extend_parent", "key Shift+[", bones_are({0, 1}, 0), Shows::InBody, "", choose(1)},
       {"select.extend_child", "key Shift+]", bones_are({0, 1}, 1), Shows::InBody, "", choose(0)},
+      {"select.invert", "key Shift+Ctrl+I", bones_are({0}, 0), Shows::InBody, "", choose(1)},
+      {"select.box", "key B\n press \"strip/tool.select\"\n move 500 300\n move 900 640\n release", bones_are({0, 1}, 1), Shows::InBody, "", choose(1)},
+      {"select.circle", "key C\n press \"3D view/view\"\n release\n key Return", bones_are({0, 1}, 1), Shows::InBody, "", choose(1)},
+      {"select.similar", "key Shift+G", [](Stage& s, const Seen&) { return s.editor().shown_popup == "Similar"; }, Shows::Nothing, "", choose(1)},
+      {"select.children", "move \"3D view/view\"\n key Shift+G\n wait-idle\n click \"Similar/Children\"", bones_are({0, 1}, 0), Shows::InBody, "", choose(0)},
+      {"select.same_length", "click \"Edit/Select/Same length\"", bones_are({0, 1}, 0), Shows::InBody, "", choose(0)},
       {"select.chain", "key L", bones_are({0, 1}, 0), Shows::InBody, "", choose(0)},
 
       {"pose.rotate", "key R\n key X\n key 3\n key 0\n key Return", edit_is("Rotate Fore"), Shows::InBody, "", choose(1)},
@@ -86,6 +92,22 @@ std::vector<Proof> proofs_of_posing() {
       {"pose.library_rename", "click \"Edit/Pose library/Rename pose...\"\n wait-idle\n key Ctrl+A\n type Reach\n key Return", [](Stage& s, const Seen&) { return s.document().poses[0]->name == "Reach"; }},
       {"pose.library_delete", "click \"Edit/Pose library/Delete pose\"", [](Stage& s, const Seen&) { return s.document().poses.empty(); }},
       {"select.mirror", "key Shift+Ctrl+M", bones_are({1}, 1), Shows::InBody, "", name_sides},
+      {"select.same_joint", "click \"Edit/Select/Same joint\"", bones_are({0, 1}, 0), Shows::InBody, "", [](Stage& s) {
+         Document next = s.document();
+         Armature rig = *next.armature;
+         rig.bones[1].limits = rig.bones[0].limits;
+         next.armature = std::make_shared<const Armature>(rig);
+         s.editor().history.commit("Free", next);
+         choose(0)(s);
+       }},
+      {"select.siblings", "click \"Edit/Select/Siblings\"", bones_are({0, 1}, 0), Shows::InBody, "", [](Stage& s) {
+         Document next = s.document();
+         Armature rig = *next.armature;
+         rig.bones[1].parent = -1;
+         next.armature = std::make_shared<const Armature>(rig);
+         s.editor().history.commit("Apart", next);
+         choose(0)(s);
+       }},
   };
 }
 

@@ -11,6 +11,34 @@ namespace limber::test {
 
 using namespace editor;
 
+namespace {
+
+// Two bars of bone that meet end to end, and a hinge in the middle of their section: bending drives a corner of one into the
+// other.
+void open_bars(Stage& stage) {
+  stage.open_limb();
+  Document document = stage.document();
+  auto volume = std::make_shared<LabelVolume>();
+  volume->grid = {.size = {41, 41, 12}, .spacing = {2, 2, 2}, .origin = {-40, -40, -10}};
+  volume->voxels.assign(volume->grid.voxel_count(), 0);
+  for (int z = 2; z < 10; ++z)
+    for (int y = 15; y < 26; ++y)
+      for (int x = 2; x < 39; ++x)
+        if (x != 20) volume->at({x, y, z}) = 111;
+  Armature rig;
+  rig.bones = {{"Fixed", -1, {-38, 0, 0}, {0, 0, 0}}, {"Turning", 0, {0, 0, 0}, {38, 0, 0}}};
+  rig.bones[1].limits = {.type = JointLimits::Type::Hinge, .axis = {0, 0, 1}, .minimum = 0, .maximum = 1};
+  document.volume = volume;
+  document.armature = std::make_shared<const Armature>(rig);
+  stage.editor().history.commit("Bars", document);
+  stage.editor().selection = {};
+  stage.editor().selection.bone = 1;
+  stage.editor().selection.bones = {1};
+  stage.play("key Ctrl+1\n move \"3D view/view\"\n wait-idle");
+}
+
+}  // namespace
+
 std::vector<Proof> proofs_of_rig_fitting() {
   const char* rigging = "key Ctrl+1\n move \"3D view/view\"\n wait-idle";
   return {
@@ -20,6 +48,11 @@ std::vector<Proof> proofs_of_rig_fitting() {
       // A rig of names that mean nothing, so that it is over soon.
       {"rig.auto_fit", "key Ctrl+Shift+F\n click Skeleton/list\n click \"Skeleton/The rig that is here\"\n key Return\n wait-job",
        [](Stage& s, const Seen& b) { return s.is("edit", "Auto-fit skeleton") && s.document().armature != b.document.armature && s.is("toast", "Skeleton fitted"); }, Shows::Nothing, rigging},
+      {"rig.fit_joint_axis", "key Shift+J\n wait-job",
+       [](Stage& s, const Seen&) {
+         const Bone& turning = s.document().armature->bones.back();
+         return s.is("edit", "Fit joint axis of Turning") && s.is("toast", "Joint axis of Turning fitted") && std::abs(turning.head.y) > 4 && turning.limits.minimum == 0 && turning.limits.maximum == 1;
+       }, Shows::Nothing, "", open_bars},
   };
 }
 

@@ -61,6 +61,11 @@ std::vector<Proof> proofs_of_rigging() {
       {"rig.roll", "key Ctrl+R\n key 3\n key 0\n key Return", edited("Roll Fore", [](const Armature& r) { return std::abs(glm::degrees(r.bones[1].roll) - 30) < 1e-9; }), Shows::Nothing, "", anew({1}, 1)},
       {"rig.add", "key Shift+A", edited("Add bone", [](const Armature& r) { return r.bones.size() == 3 && r.bones[2].parent == -1; }), Shows::InBody},
       {"rig.extrude", "key E\n key Z\n key -\n key 8\n key Return", edited("Extrude Fore", [](const Armature& r) { return named(r, "Fore.001").parent == 1 && glm::distance(named(r, "Fore.001").tail, {0, 0, -44}) < 1e-9; }), Shows::InBody, "", anew({1}, 1)},
+      {"rig.fill", "key F", edited("Fill with Fore.001", [](const Armature& r) { return named(r, "Fore.001").parent == 1 && named(r, "Fore.001").head.z == -36 && glm::distance(named(r, "Fore.001").tail, {10, 2, -20}) < 1e-9; }), Shows::InBody, "",
+       [](Stage& s) {
+         anew({1}, 1)(s);
+         s.editor().views->cross_hair = {10, 2, -20};
+       }},
       {"rig.duplicate", "key Shift+D\n key X\n key 9\n key Return", edited("Duplicate Fore", [](const Armature& r) { return named(r, "Fore.001").tail == glm::dvec3(9, 0, -36) && r.bones[1].tail == glm::dvec3(0, 0, -36); }), Shows::InBody, "", anew({1}, 1)},
       {"rig.subdivide", "click \"Edit/Bone/Subdivide\"", edited("Subdivide Fore", [](const Armature& r) { return r.bones.size() == 3 && r.bones[1].tail.z == -18; }), Shows::InBody, "", anew({1}, 1)},
       {"rig.dissolve", "key Ctrl+X", edited("Dissolve Fore.001", [](const Armature& r) { return r.bones.size() == 2 && r.bones[1].tail.z == -36; }), Shows::InBody, "", choose({2}, 2)},

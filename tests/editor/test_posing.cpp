@@ -199,3 +199,71 @@ TEST_CASE("posing: a blend goes right to the next key and left to the one before
     CHECK(bend() == doctest::Approx(20));
   }
 }
+
+TEST_CASE("posing: between two keys a breakdown goes from the one to the other, and without them from rest to the pose") {
+  PosingEditor test;
+  test.editor->posing.keep_limits = false;
+  const auto bend = [&](const std::string& angle) { return "move \"3D view/view\"\nkey R\nkey X\n" + angle + "key Return\n"; };
+  test.play(bend("key 2\nkey 0\n") + "key I\nwait-idle");
+  go_to_frame(*test.editor, 10);
+  test.play(bend("key 6\nkey 0\n") + "key I\nwait-idle");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(80));
+  go_to_frame(*test.editor, 3);
+  test.play("move \"3D view/view\"\nkey Shift+E\nwait-idle");
+  CHECK(glm::degrees(swing_twist(shown_pose(*test.editor).rotation[1], {1, 0, 0}).twist) == doctest::Approx(50));
+  test.play("key 2\nkey 5\nkey Return");
+  CHECK(test.last_edit() == "Breakdown");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(35));
+  // After the last key there is nothing to go to.
+  go_to_frame(*test.editor, 20);
+  test.play("move \"3D view/view\"\nkey Shift+E\nkey 2\nkey 5\nkey Return");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(20));
+}
+
+TEST_CASE("posing: the sidebar's numbers turn a hinge within its limits and any other bone about its own axes, and move the root") {
+  PosingEditor test({1280, 900});
+  const auto type = [&](const std::string& field, const std::string& number) { test.play("double-click \"" + field + "\"\nkey Ctrl+A\ntype \"" + number + "\"\nkey Return\nwait-idle"); };
+  test.play("wait-idle");
+  type("Bone/Angle", "40");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(40));
+  CHECK(test.last_edit() == "Rotate Fore");
+  type("Bone/Angle", "170");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(2.5 * 180 / std::numbers::pi));
+  test.play("key Ctrl+Z\nkey Ctrl+Z\nwait-idle");
+  CHECK(test.pose() == rest_pose(*test.editor->document().armature));
+
+  test.choose(0);
+  test.play("wait-idle");
+  type("Bone/Turn, \u00b0 Y", "30");
+  const Bone& upper = test.editor->document().armature->bones[0];
+  CHECK(test.degrees(0, rest_axes(upper)[1]) == doctest::Approx(30));
+  type("Bone/Place, mm Z", "-7");
+  CHECK(test.pose().root_translation.z == doctest::Approx(-7));
+  CHECK(test.last_edit() == "Move body");
+
+  // Read as they were given, in any bone's axes.
+  for (int i = 0; i < 50; ++i) {
+    const glm::dvec3 angles(std::fmod(37.0 * i, 340) - 170, std::fmod(23.0 * i, 170) - 85, std::fmod(71.0 * i, 340) - 170);
+    const Bone bone{"b", -1, {0, 0, 0}, {1, 2.0 * i - 40, 3}, 0.1 * i};
+    CHECK(glm::distance(own_angles(bone, turned_by_own_angles(bone, angles)), angles) < 1e-6);
+  }
+}
+
+TEST_CASE("posing: the right button on a bone lists what can be done with it") {
+  PosingEditor test;
+  const auto press_at = [&](const glm::dvec3& point) {
+    test.pointer_to(test.seen(point));
+    test.play("wait-idle");
+    for (const bool down : {true, false}) test.host->events.push(ButtonChanged{MouseButton::Right, down});
+    test.player.settle();
+  };
+  test.play("click view.xray_display\nwait-idle");
+  press_at({0, 0, 18});
+  CHECK(test.editor->shown_popup == "Posed bone");
+  CHECK(test.editor->selection.bone == 0);
+  CHECK(test.fact("text:Upper") == "shown");
+  test.play("key Escape\nwait-idle\nkey Ctrl+1\nwait-idle");
+  press_at({0, 0, -18});
+  CHECK(test.editor->shown_popup == "Bone");
+  CHECK(test.editor->selection.bone == 1);
+}

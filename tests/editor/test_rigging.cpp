@@ -258,6 +258,49 @@ TEST_CASE("rigging: with X-mirror both sides extrude") {
   CHECK(test.rig().bones.size() == 3);
 }
 
+TEST_CASE("rigging: with X-mirror both sides change parents, and are deleted, each on its side") {
+  RiggingEditor test;
+  give_two_arms(test);
+  Document next = test.editor->document();
+  Armature rig = *next.armature;
+  for (const double side : {1.0, -1.0}) rig.bones.push_back({side > 0 ? "Hand.L" : "Hand.R", 0, {side * 24, 0, 4}, {side * 30, 0, 4}, 0, {}});
+  next.armature = std::make_shared<const Armature>(rig);
+  test.editor->history.commit("Hands", next);
+  test.editor->handling->x_mirror = true;
+  const auto parent_of = [&](const std::string& name) {
+    const int parent = test.rig().bones[test.rig().find(name).value()].parent;
+    return parent < 0 ? std::string() : test.rig().bones[parent].name;
+  };
+  // The child first, then the parent.
+  const auto choose_both = [&](const std::string& child, const std::string& parent) {
+    test.choose(test.rig().find(parent).value());
+    test.editor->selection.bones.insert(test.rig().find(child).value());
+    test.play("move \"3D view/view\"");
+  };
+  choose_both("Hand.L", "Arm.L");
+  test.play("key Ctrl+P");
+  CHECK(parent_of("Hand.L") == "Arm.L");
+  CHECK(parent_of("Hand.R") == "Arm.R");
+  test.play("key Ctrl+Z\n wait-idle");
+  CHECK(parent_of("Hand.R") == "Trunk");
+  choose_both("Hand.L", "Arm.L");
+  test.play("click \"Edit/Bone/Connect to parent\"");
+  CHECK(glm::distance(test.rig().bones[test.rig().find("Hand.R").value()].head, {-20, 0, 4}) < 1e-9);
+  // Onto the other side: each hangs on the other's, not on itself.
+  choose_both("Hand.L", "Arm.R");
+  test.play("key Ctrl+P");
+  CHECK(parent_of("Hand.L") == "Arm.R");
+  CHECK(parent_of("Hand.R") == "Arm.L");
+  choose_both("Arm.L", "Arm.R");
+  test.play("key Ctrl+P");
+  CHECK(parent_of("Arm.L") == "Arm.R");
+  CHECK(parent_of("Arm.R") == "Trunk");
+  test.play("key Ctrl+Z\n key Alt+P\n wait-idle");
+  test.choose(test.rig().find("Hand.L").value());
+  test.play("move \"3D view/view\"\n key X");
+  CHECK(test.rig().bones.size() == 3);
+}
+
 TEST_CASE("rigging: a bone's row is dragged onto its new parent, and onto the armature to be free") {
   for (const double scale : {1.0, 2.0}) {
     RiggingEditor test(scale > 1 ? glm::ivec2(2480, 1500) : glm::ivec2(1240, 750), scale);
@@ -318,6 +361,17 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
     CHECK(std::abs(shown_rig(*test.editor)->bones[1].limits.axis.y) == doctest::Approx(1));
     test.play("key Escape");
     release();
+    CHECK(test.rig() == *limber::test::small_limb().armature);
+
+    // Typed: as the picture is seen, from the front about the line of sight; then about z.
+    press_at(handle);
+    test.play("key 3\n key 0");
+    CHECK(glm::distance(shown_rig(*test.editor)->bones[1].limits.axis, glm::angleAxis(glm::radians(30.0), view.towards_eye) * glm::dvec3(1, 0, 0)) < 1e-9);
+    test.play("key Z");
+    CHECK(glm::distance(shown_rig(*test.editor)->bones[1].limits.axis, {std::cos(glm::radians(30.0)), std::sin(glm::radians(30.0)), 0}) < 1e-9);
+    test.play("key Return");
+    release();
+    test.play("expect edit \"Hinge of Fore\"\n key Ctrl+Z");
     CHECK(test.rig() == *limber::test::small_limb().armature);
 
     // The knob about the bone's middle: typed, and dropped.

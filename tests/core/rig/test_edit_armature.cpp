@@ -75,6 +75,24 @@ TEST_CASE("edited rigs: bones are added, extruded from either end and named apar
   CHECK(free_name(rig, "Neck") == "Neck");
 }
 
+TEST_CASE("edited rigs: a gap is filled by a bone that hangs on the first and carries the second") {
+  Armature rig = small_rig();
+  rig.bones.push_back({"Hand", -1, {140, 0, 70}, {160, 0, 70}});
+  const Armature chain = filled(rig, {2, true}, {5, false});
+  CHECK(parent_of(chain, "Fore.L.001") == "Fore.L");
+  CHECK(parent_of(chain, "Hand") == "Fore.L.001");
+  CHECK(is_connected(chain, require_bone(chain, "Hand")));
+  CHECK(is_connected(chain, require_bone(chain, "Fore.L.001")));
+  // Between two bones of one tree, tail to tail, nobody hangs on the new one; from a head it hangs where that one hangs.
+  const Armature across = filled(rig, {2, true}, {4, true});
+  CHECK(across.bones.back().tail == rig.bones[4].tail);
+  CHECK(parent_of(across, "Fore.R") == "Arm.R");
+  CHECK(parent_of(filled(rig, {5, false}, {2, true}), "Hand.001").empty());
+  // A root is not hung on its own child.
+  CHECK(parent_of(filled(rig, {2, true}, {0, false}), "Trunk").empty());
+  CHECK_THROWS_AS(filled(rig, {1, true}, {2, false}), Error);
+}
+
 TEST_CASE("edited rigs: children of a removed bone hang on the next one that stays") {
   const Armature rig = small_rig();
   const Armature next = without_bones(rig, {1});

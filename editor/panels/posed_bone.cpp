@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/panels/posed_bone.h"
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "core/rig/joint_limits.h"
+#include "editor/fields.h"
+#include "editor/posing.h"
+#include "editor/timeline.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kFar = 1e5;          // mm: as far as a body can be put
+constexpr double kBeyond = 1e-4;      // radians beyond a limit that count
+
+// A number of the pose; the body follows while it changes, and the edit is one.
+void draw_number(Editor& editor, const Rect& rect, const std::string& name, const std::string& label, double shown, double farthest, const char* format, const char* unit,
+                 const std::function<void(Pose&, double)>& set) {
+  auto& edited = editor.edited_number;
+  double value = edited.name == name ? edited.value : shown;
+  bool committed = false;
+  const auto changed = [&](double number) {
+    const Pose before = pose_of(editor.document());
+    Pose pose = before;
+    set(pose, number);
+    return limited(editor, mirrored_too(editor, before, std::move(pose)), {*editor.selection.bone});
+  };
+  if (number_field(editor, name, rect, value, -farthest, farthest, format, unit, false, committed)) {
+    stop_playing(editor);
+    settle_frame(editor);
+    edited = {name, value};
+    show_pose(editor, changed(value));
+  }
+  if (!committed || edited.name != name) return;
+  const double number = edited.value;
+  edited = {};
+  commit_pose(editor, label, changed(number));
+}
+
+// Three numbers want more than a property's place.
+void draw_three(Editor& editor, Column& column, const std::string& title, const std::string& label, const glm::dvec3& shown, double farthest, const std::function<void(Pose&, int axis, double)>& set) {
+  const Look& look = editor.look;
+  Rect rect = column.property(title);
+  rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
+  const float width = (rect.width() - 2 * look.px(4)) / 3;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float x = std::round(rect.low.x + static_cast<float>(axis) * (width + look.px(4)));
+    const Rect field{{x, rect.low.y}, {std::round(x + width), rect.high.y}};
+    draw_number(editor, {{field.low.x + look.px(3), field.low.y}, field.high}, title + " " + "XYZ"[axis], label, shown[axis], farthest, "%.1f", "", [&](Pose& pose, double number) { set(pose, axis, number); });
+    fill({field.low, {field.low.x + look.px(3), field.high.y}}, look.theme.axis[axis]);
+  }
+}
+
+std::string text_of(const char* format, double radians) {
+  char text[48];
+  std::snprintf(text, sizeof text, format, glm::degrees(radians));
+  return text;
+}
+
+std::string words_of(const JointLimits& limits) {
+  switch (limits.type) {
+    case JointLimits::Type::Free: return "none";
+    case JointLimits::Type::Fixed: return "fixed";
+    case JointLimits::Type::Hinge: return text_of("%.0f", limits.minimum) + text_of(" to %.0f\u00b0", limits.maximum);
+    case JointLimits::Type::Ball: return text_of("cone %.0f\u00b0, twist ", limits.cone) + text_of("%.0f", limits.twist_minimum) + text_of(" to %.0f\u00b0", limits.twist_maximum);
+  }
+  return "";
+}
+
+}  // namespace
+
+void draw_posed_bone(Editor& editor, Column& column) {
+  const std::shared_ptr<const Armature> rig = editor.document().armature;
+  const auto chosen = editor.selection.bone;
+  if (!rig || !chosen || *chosen >= std::ssize(rig->bones)) return;
+  const int index = *chosen;
+  const Bone& bone = rig->bones[index];
+  const Look& look = editor.look;
+  if (column.begin_section("Bone", bone.name)) {
+    column.space(6);
+    const Pose pose = shown_pose(editor);
+    const std::string label = "Rotate " + bone.name;
+    if (bone.limits.type == JointLimits::Type::Hinge) {
+      const glm::dvec3 axis = bone.limits.axis;
+      draw_number(editor, column.property("Angle"), "Angle", label, glm::degrees(swing_twist(pose.rotation[index], axis).twist), 180, "%.1f", "\u00b0",
+                  [&](Pose& next, double degrees) { next.rotation[index] = glm::angleAxis(glm::radians(degrees), axis); });
+    } else {
+      draw_three(editor, column, "Turn, \u00b0", label, own_angles(bone, pose.rotation[index]), 180, [&](Pose& next, int axis, double degrees) {
+        // The others as they were before: beyond 90 degrees about y the three are no longer read as they were given.
+        glm::dvec3 angles = own_angles(bone, next.rotation[index]);
+        angles[axis] = degrees;
+        next.rotation[index] = turned_by_own_angles(bone, angles);
+      });
+    }
+    if (bone.parent < 0) draw_three(editor, column, "Place, mm", "Move body", pose.root_translation, kFar, [](Pose& next, int axis, double place) { next.root_translation[axis] = place; });
+    const double beyond = limit_excess(bone, pose.rotation[index]);
+    Rect limits = column.property("Limits");
+    limits.low.x = std::round(limits.high.x - std::max(limits.width(), look.px(180)));
+    put_text(editor, look.fonts.regular, beyond > kBeyond ? look.theme.warn : look.theme.text2, limits, beyond > kBeyond ? text_of("beyond by %.1f\u00b0", beyond) : words_of(bone.limits), Align::Right);
+    column.space(6);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor
