@@ -14,17 +14,26 @@ namespace limber {
 namespace {
 
 constexpr double kShare = 0.5, kMost = 30;  // of the bone's length, and mm
-constexpr int kRounds = 20;
+constexpr int kRounds = 60;
 constexpr int kMostSteps = 20;  // of the search, to a side
+constexpr double kSlide = 0.6;  // a mm along a free hinge's axis counts for so many
 
-// Tissue near a place, nearest first; rather such as has tissue beside it along every axis.
+// How far a shift puts joints wrong, mm. A hinge turns its bone the same wherever along its axis it stands.
+double harm(const glm::dvec3& shift, const glm::dvec3& axis) {
+  const double along = glm::dot(shift, axis);
+  return std::sqrt(std::max(0.0, glm::dot(shift, shift) - (1 - kSlide * kSlide) * along * along));
+}
+
+// Tissue near a place, what does least harm first; rather such as has tissue beside it along every axis.
 class Nearest {
  public:
-  explicit Nearest(const LabelVolume& volume) : volume_(volume), to_voxel_(voxel_from_world(volume.grid)), to_world_(world_from_voxel(volume.grid)) {
+  //   slide  unit, the axis of a free hinge; or zero
+  Nearest(const LabelVolume& volume, const glm::dvec3& slide) : volume_(volume), to_voxel_(voxel_from_world(volume.grid)), to_world_(world_from_voxel(volume.grid)) {
     const glm::dvec3 spacing = volume.grid.spacing;
+    const double farthest = slide == glm::dvec3(0) ? kMost : kMost / kSlide;
     glm::ivec3 count, stride;
     for (int axis = 0; axis < 3; ++axis) {
-      const int voxels = static_cast<int>(std::min(kMost / spacing[axis], 1e6));
+      const int voxels = static_cast<int>(std::min(farthest / spacing[axis], 1e6));
       stride[axis] = std::max(1, (voxels + kMostSteps - 1) / kMostSteps);
       count[axis] = voxels / stride[axis];
     }
@@ -32,7 +41,7 @@ class Nearest {
       for (int y = -count.y; y <= count.y; ++y)
         for (int x = -count.x; x <= count.x; ++x) {
           const glm::ivec3 step = glm::ivec3(x, y, z) * stride;
-          if (const double d = glm::length(glm::dvec3(step) * spacing); d <= kMost) steps_.push_back({d, step});
+          if (const double d = harm(volume.grid.direction * (glm::dvec3(step) * spacing), slide); d <= kMost) steps_.push_back({d, step});
         }
     std::stable_sort(steps_.begin(), steps_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   }
@@ -71,6 +80,8 @@ class Nearest {
 struct Joint {
   glm::dvec3 start{0}, place{0};
   double reach = kMost;
+  int uses = 0;          // how many bones do
+  glm::dvec3 slide{0};   // axis of a free hinge
   glm::dvec3 pull{0};
   int pulls = 0;
 };
@@ -87,6 +98,7 @@ Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std:
     const auto [found, is_new] = known.insert({{place.x, place.y, place.z}, static_cast<int>(joints.size())});
     if (is_new) joints.push_back({.start = place, .place = place});
     joints[found->second].reach = std::min(joints[found->second].reach, reach);
+    ++joints[found->second].uses;
     return found->second;
   };
   std::vector<std::array<int, 2>> ends;
@@ -97,7 +109,16 @@ Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std:
     ends.push_back({head, joint_at(bone.tail, reach)});
   }
 
-  const Nearest nearest(volume);
+  std::map<int, Nearest> nearest;  // by bone: free hinges their own, -1 for all others
+  nearest.emplace(-1, Nearest(volume, glm::dvec3(0)));
+  for (int b = 0; b < std::ssize(rig.bones); ++b) {
+    const JointLimits& limits = rig.bones[b].limits;
+    Joint &head = joints[ends[b][0]], &tail = joints[ends[b][1]];
+    const bool is_free = limits.type == JointLimits::Type::Hinge && head.uses == 1 && tail.uses == 1 && check.share[b] < 1;
+    if (!is_free) continue;
+    head.slide = tail.slide = limits.axis;
+    nearest.emplace(b, Nearest(volume, limits.axis));
+  }
   Armature best = rig, moved = rig;
   double most = check.whole;
   for (int round = 0; round < kRounds; ++round) {
@@ -105,7 +126,8 @@ Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std:
       const auto& [head, tail] = ends[bone];
       const glm::dvec3 place = glm::mix(joints[head].place, joints[tail].place, along);
       if (beyond(cuts, place) > 0) return;
-      const auto goal = nearest(place);
+      const auto own = nearest.find(bone);
+      const auto goal = (own != nearest.end() ? own->second : nearest.at(-1))(place);
       if (!goal) return;
       const glm::dvec3 by = (*goal - place) / ((1 - along) * (1 - along) + along * along);
       for (const auto& [joint, lever] : {std::pair(head, 1 - along), std::pair(tail, along)})
@@ -117,7 +139,7 @@ Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std:
     for (Joint& joint : joints) {
       if (joint.pulls == 0) continue;
       const glm::dvec3 off = joint.place + joint.pull / double(joint.pulls) - joint.start;
-      joint.place = joint.start + off * std::min(1.0, joint.reach / std::max(joint.reach, glm::length(off)));
+      joint.place = joint.start + off * std::min(1.0, joint.reach / std::max(joint.reach, harm(off, joint.slide)));
       joint.pull = glm::dvec3(0), joint.pulls = 0;
     }
     for (size_t b = 0; b < rig.bones.size(); ++b) {
@@ -127,6 +149,13 @@ Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std:
     check = check_rig(volume, moved);
     if (check.whole > most) most = check.whole, best = moved;
     if (check.leaving.empty() && check.outside.empty()) return moved;
+  }
+  // What nothing hangs from may end earlier.
+  check = check_rig(volume, best);
+  for (const auto& leaving : check.leaving) {
+    Bone& bone = best.bones[leaving.bone];
+    const bool is_end = leaving.to == 1 && joints[ends[leaving.bone][1]].uses == 1 && beyond(cuts, leaving.place) <= 0;
+    if (is_end && leaving.from >= kShare) bone.tail = glm::mix(bone.head, bone.tail, leaving.from);
   }
   return best;
 }

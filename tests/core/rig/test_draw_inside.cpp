@@ -76,4 +76,46 @@ TEST_CASE("draw inside: what lies beyond a cut stays where it is") {
   CHECK(drawn_inside(rig, volume, {{{0, 0, 1}, -10}}, kFree) == rig);
 }
 
+namespace {
+
+// A block of 1 mm voxels with a slot through its middle.
+LabelVolume slotted_block() {
+  LabelVolume volume;
+  volume.grid.size = {72, 70, 80};
+  volume.voxels.assign(volume.grid.voxel_count(), 1);
+  for (int z = 20; z < 60; ++z)
+    for (int y = 4; y < 66; ++y)
+      for (int x = 14; x < 58; ++x) volume.at({x, y, z}) = 0;
+  return volume;
+}
+
+}  // namespace
+
+TEST_CASE("draw inside: a hinge that stands alone slides along its axis, which turns its bone as before") {
+  const LabelVolume volume = slotted_block();
+  Armature rig;
+  rig.bones = {{.name = "Jaw", .parent = -1, .head = {36, 2, 40}, .tail = {36, 68, 40}}};
+  const glm::dvec3 as_ball = drawn_inside(rig, volume, {}, kFree).bones[0].head - rig.bones[0].head;
+  CHECK(std::abs(as_ball.z) > 15);
+  rig.bones[0].limits = {.type = JointLimits::Type::Hinge, .axis = {1, 0, 0}};
+  const Armature inside = drawn_inside(rig, volume, {}, kFree);
+  const glm::dvec3 as_hinge = inside.bones[0].head - rig.bones[0].head;
+  CHECK(check_rig(volume, inside).whole == 1);
+  CHECK(std::abs(as_hinge.x) > 15);
+  CHECK(std::hypot(as_hinge.y, as_hinge.z) < 4);
+}
+
+TEST_CASE("draw inside: a bone that nothing hangs from ends where tissue does, if most of it is there") {
+  LabelVolume volume;
+  volume.grid.size = {20, 20, 70};
+  volume.voxels.assign(volume.grid.voxel_count(), 1);
+  Armature rig;
+  rig.bones = {{.name = "Tip", .parent = -1, .head = {10, 10, 4}, .tail = {10, 10, 109}}};
+  const Armature inside = drawn_inside(rig, volume, {}, {0});
+  CHECK(inside.bones[0].head == rig.bones[0].head);
+  CHECK(check_rig(volume, inside).whole == 1);
+  rig.bones[0].tail.z = 240;
+  CHECK(check_rig(volume, drawn_inside(rig, volume, {}, {0})).whole < 0.5);
+}
+
 }  // namespace limber
