@@ -117,7 +117,8 @@ void choose_clip(Editor& editor, int clip) {
   next.frame = std::clamp(next.frame, next.shown_clip()->range_start, std::max(next.shown_clip()->range_start, next.shown_clip()->range_end));
   next.pose = pose_at_frame(next, &editor.timeline->prepared);
   editor.timeline->chosen.clear();
-  commit(editor, "Show clip " + next.shown_clip()->name, std::move(next));
+  const std::string label = "Show clip " + next.shown_clip()->name;
+  commit(editor, label, std::move(next));
 }
 
 void import_motion(Editor& editor, const Path& path) {

@@ -172,4 +172,23 @@ TEST_CASE("timeline: buttons and rows stand inside the area and beside one anoth
   }
 }
 
+TEST_CASE("timeline: another clip chosen from the list is shown at a frame it has, as one edit") {
+  Document document = bending_limb();
+  add_clip(document, clip_of(std::make_shared<const Motion>(bending_motion(*document.armature, 21)), "short"));
+  BendingEditor test(document);
+  go_to_frame(*test.editor, 15);
+  test.play("click Motion/Clip/list\n click Clip/bending\n wait-idle");
+  CHECK(shown_clip(*test.editor)->name == "bending");
+  CHECK(test.fact("edit") == "Show clip bending");
+  CHECK(test.bend() == doctest::Approx(15));
+  go_to_frame(*test.editor, 50);
+  test.play("click Motion/Clip/list\n click Clip/short\n wait-idle");
+  CHECK(shown_clip(*test.editor)->name == "short");
+  CHECK(test.editor->document().frame == 20);
+  CHECK(test.bend() == doctest::Approx(20));
+  test.play("key Ctrl+Z");
+  CHECK(shown_clip(*test.editor)->name == "bending");
+  CHECK(test.bend() == doctest::Approx(50));
+}
+
 }  // namespace limber::test
