@@ -15,6 +15,7 @@ namespace limber::render {
 namespace {
 
 constexpr Format3D kNodes = {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, true};
+constexpr Format3D kApart = {GL_R8_SNORM, GL_RED, GL_BYTE, true};
 constexpr Format3D kCubes = {GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, false};
 
 void write(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const void* texels) {
@@ -39,6 +40,7 @@ Error no_room() { return Error("the pose cannot be shown: the graphics driver ha
 
 const char* const kPosedFunctions = R"(
 uniform sampler3D u_map;           // fractions of rest points at nodes
+uniform sampler3D u_apart;         // of nodes, to what is beyond the border of their sheet
 uniform usampler3D u_cubes;        // between node n and n + 1
 uniform vec3 u_node_offset;
 uniform float u_node_scale;        // nodes a padded voxel
@@ -48,7 +50,8 @@ uniform ivec3 u_map_size;
 uniform float u_steepest;          // padded voxels at rest that half a node of one sheet can be
 
 const vec3 kNowhere = vec3(-1e6);
-const uint kBroken = 128u;
+const uint kBordered = 64u, kBroken = 128u;
+const float kFarApart = 127.0 / 63.0;  // steps
 
 vec3 node_of(vec3 posed) { return posed * u_node_scale + u_node_offset; }
 
@@ -64,11 +67,11 @@ struct Sheet { bool mirrored; vec3 node, rest; };
 Sheet sheet_at(vec3 node, uint cube) {
   vec3 nearest = floor(node + 0.5);
   vec4 middle = texelFetch(u_map, ivec3(nearest), 0);
-  return Sheet(cube >= kBroken && middle.a > 0.5, nearest, middle.rgb);
+  return Sheet(cube >= kBroken, nearest, middle.a > 0.5 ? middle.rgb : kNowhere);
 }
 vec3 rest_on(Sheet sheet, vec3 node) {
   vec4 texel = textureLod(u_map, ((sheet.mirrored ? 2.0 * sheet.node - node : node) + 0.5) * u_map_texel, 0.0);
-  if (texel.a < 0.25) return kNowhere;
+  if (texel.a < 0.5 || (sheet.mirrored && sheet.rest.x < 0.0)) return kNowhere;
   texel.rgb /= texel.a;  // nodes that are not covered do not count
   vec3 slope = (sheet.rest - texel.rgb) * u_rest_scale;
   bool one_sheet = all(lessThan(abs(slope), vec3(u_steepest)));
@@ -76,25 +79,38 @@ vec3 rest_on(Sheet sheet, vec3 node) {
   return sheet.mirrored && one_sheet ? rest + slope : rest;
 }
 
+// Below zero beyond the border. On a mirrored sheet it is at least as far as the way from its node leaves it.
+float apart_on(Sheet sheet, vec3 node) {
+  if (sheet.mirrored) {
+    float apart = texelFetch(u_apart, ivec3(sheet.node), 0).r * kFarApart;
+    return apart > 0.999 ? apart : apart - length(rest_on(sheet, node) - rest_on(sheet, sheet.node)) * u_node_scale;
+  }
+  return textureLod(u_apart, (node + 0.5) * u_map_texel, 0.0).r;
+}
+
 vec3 rest_of(vec3 posed) {
   vec3 node = node_of(posed);
   uint cube = cube_in(u_cubes, node);
-  return cube == 0u ? kNowhere : rest_on(sheet_at(node, cube), node);
+  if (cube == 0u) return kNowhere;
+  Sheet sheet = sheet_at(node, cube);
+  if (cube >= kBordered && apart_on(sheet, node) < 0.0) return kNowhere;
+  return rest_on(sheet, node);
 }
 )";
-static_assert(PreviewMap::kNothing == 0 && PreviewMap::kBroken == 128);
+static_assert(PreviewMap::kNothing == 0 && PreviewMap::kBordered == 64 && PreviewMap::kBroken == 128 && CellPart::kFarApart == 127 && CellPart::kStepApart == 63);
 
-PosedTexture::PosedTexture() : nodes_(gl::Texture::create()), cubes_(gl::Texture::create()) {}
+PosedTexture::PosedTexture() : nodes_(gl::Texture::create()), apart_(gl::Texture::create()), cubes_(gl::Texture::create()) {}
 
 void PosedTexture::upload(const std::shared_ptr<const PreviewMap>& map, int largest_texture) {
   if (glm::any(glm::greaterThan(map->size, glm::ivec3(largest_texture)))) throw no_room();
   if (glm::any(glm::greaterThan(map->size, room_))) {
     const glm::ivec3 room = roomier(std::exchange(room_, glm::ivec3(0)), map->size, largest_texture);
-    if (!allocate(nodes_, room, kNodes) || !allocate(cubes_, room, kCubes)) throw no_room();
+    if (!allocate(nodes_, room, kNodes) || !allocate(apart_, room, kApart) || !allocate(cubes_, room, kCubes)) throw no_room();
     room_ = room;
   }
   size_ = map->size;
   write(nodes_, size_, kNodes, map->nodes.data());
+  write(apart_, size_, kApart, map->apart.data());
   write(cubes_, size_, kCubes, map->cubes.data());
   map_ = map;
   gl::check_gl("the upload of a pose");
@@ -103,6 +119,7 @@ void PosedTexture::upload(const std::shared_ptr<const PreviewMap>& map, int larg
 int PosedTexture::bind(const VolumeTexture& volume, gl::Program& program, int first) const {
   const double halving = 1 << volume.halvings(), scale = halving / map_->step;
   program.set_texture("u_map", first++, GL_TEXTURE_3D, nodes_.name());
+  program.set_texture("u_apart", first++, GL_TEXTURE_3D, apart_.name());
   program.set_texture("u_cubes", first++, GL_TEXTURE_3D, cubes_.name());
   program.set("u_node_scale", static_cast<float>(scale));
   program.set("u_node_offset", glm::vec3(-glm::dvec3(kPad) * scale - 0.5 - glm::dvec3(map_->first)));

@@ -29,7 +29,7 @@ class PosedTexture {
 
  private:
   std::shared_ptr<const PreviewMap> map_;
-  gl::Texture nodes_, cubes_;
+  gl::Texture nodes_, apart_, cubes_;
   glm::ivec3 size_{0}, room_{0};  // texels in use, and there
 };
 

@@ -175,13 +175,19 @@ void main() {
     sheet = sheet_at(low + 0.5 * size, cube);
     vec3 from = rest_on(sheet, node_base + node_d * s), to = rest_on(sheet, node_base + node_d * s_leave);
     vec3 far = rest_on(sheet, node_base + node_d * s_far), middle = rest_on(sheet, node_base + node_d * (0.5 * (s + s_far)));
-    bool straight = !sheet.mirrored && s_far > s_leave && all(lessThan(abs(from + far - 2.0 * middle), vec3(0.1)));
+    bool straight = cube < kBordered && s_far > s_leave && all(lessThan(abs(from + far - 2.0 * middle), vec3(0.1)));
     if (straight) { to = far; s_leave = s_far; }
     rest_d = (to - from) / (s_leave - s);
     rest_base = from - rest_d * s;
     vec3 rest_speed = abs(rest_d);
     float rate = max(max(max(rest_speed.x, rest_speed.y), rest_speed.z), 0.1);
-    if (cube != 0u && from.x > -1e5 && to.x > -1e5) march(rest_base, rest_d, rate, s_start, min(s_leave, s_end), s, met);
+    float s_to = min(s_leave, s_end);
+    if (cube >= kBordered) {  // only what is within the border
+      float first = apart_on(sheet, node_base + node_d * s), last = apart_on(sheet, node_base + node_d * s_leave), at = s + (s_leave - s) * first / (first - last);
+      if (last < 0.0) s_to = first < 0.0 ? s : min(s_to, at);
+      else if (first < 0.0) s = at;
+    }
+    if (cube != 0u && from.x > -1e5 && to.x > -1e5) march(rest_base, rest_d, rate, s_start, s_to, s, met);
     s = s_leave;
   }
 #else

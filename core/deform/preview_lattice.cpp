@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 
 #include "core/base/parallel.h"
+#include "core/deform/cell_pieces.h"
 #include "core/deform/depth.h"
 
 namespace limber {
@@ -14,27 +18,14 @@ namespace limber {
 namespace {
 
 constexpr std::int64_t kMostFineVoxels = 1'500'000;  // a limb at 2 mm has 650 000 tissue voxels, a body at 2 mm ten millions
+constexpr int kGrain = 256;  // cells
 constexpr double kLeastWeight = 1.0 / 1024;
-constexpr double kHold = 1000;  // of tissue that follows one bone wholly over what is blended: bones stay stiff up to their border
 constexpr double kStiff = 0.999;  // of a corner's weight that one bone must have for the cell to be stiff by itself
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
-constexpr int kGrain = 16;  // bricks
+constexpr double kApart = 0.1;  // share of a corner's weight that two sides must differ by to move apart
+constexpr double kStrays = 0.25;  // ... and that a cell's vertex must differ by from what its own tissue says
 
-// What one cell's tissue gives to one of its corners.
-struct Share {
-  std::int64_t place;
-  int bone;
-  float weight;
-};
-struct StiffPart {
-  std::int64_t place;  // of the cell
-  int bone;
-  std::uint64_t parts;
-};
-struct Nearest {
-  std::int64_t place;
-  float squared_distance;  // mm2, of the tissue voxel nearest to the corner
-};
+using Influences = std::vector<BoneWeight>;
 
 glm::ivec3 corner_of(int i) { return {i & 1, i >> 1 & 1, i >> 2}; }
 
@@ -50,88 +41,30 @@ void around(const glm::ivec3& at, const glm::ivec3& low, const glm::ivec3& high,
       }
 }
 
-// The shares and distances of one brick's cells, gathered in brick order.
-class Gather {
- public:
-  Gather(const PreviewLattice& lattice, const TissueVoxels& tissue, const SkinWeights& weights)
-      : lattice_(lattice), tissue_(tissue), weights_(weights), slot_of_(weights.bones().size(), -1) {}
-
-  void add(std::int64_t brick, std::vector<Share>& shares, std::vector<Nearest>& nearest, std::vector<StiffPart>& stiff) {
-    const int step = lattice_.step, side = TissueVoxels::kBrick / step, cells = side * side * side;
-    const glm::ivec3 corner = tissue_.bricks()[brick].corner;
-    distance_.assign(size_t(cells) * 8, kUnknown);
-    sums_.clear();
-    bones_.clear();
-    auto influence = weights_.chunk(brick).begin();
-    tissue_.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
-      const glm::ivec3 v = voxel - corner, c = v / step;
-      const glm::dvec3 t = (glm::dvec3(v - c * step) + 0.5) / double(step);
-      if (influence->weight[0] == kFullWeight) {
-        const glm::ivec3 part = (v - c * step) * 4 / step;
-        stiff.push_back({lattice_.place(corner / step + c), influence->bone[0], std::uint64_t{1} << (part.x + 4 * (part.y + 4 * part.z))});
-      }
-      add(*influence++, c.x + side * (c.y + side * c.z), t, cells);
-    });
-    for (int cell = 0; cell < cells; ++cell)
-      for (int i = 0; i < 8; ++i) {
-        const size_t at = size_t(cell) * 8 + i;
-        if (distance_[at] == kUnknown) continue;
-        const glm::ivec3 c(cell % side, cell / side % side, cell / (side * side));
-        const std::int64_t place = lattice_.place(corner / step + c + corner_of(i));
-        nearest.push_back({place, distance_[at]});
-        for (size_t slot = 0; slot < bones_.size(); ++slot)
-          if (const float sum = sums_[slot * cells * 8 + at]; sum > 0) shares.push_back({place, bones_[slot], sum});
-      }
-    for (const int bone : bones_) slot_of_[bone] = -1;
-  }
-
- private:
-  void add(const Influence& influence, int cell, const glm::dvec3& t, int cells) {
-    for (int i = 0; i < 8; ++i) {
-      const glm::dvec3 away = (t - glm::dvec3(corner_of(i))) * double(lattice_.step) * lattice_.grid.spacing;
-      float& least = distance_[size_t(cell) * 8 + i];
-      least = std::min(least, static_cast<float>(glm::dot(away, away)));
-    }
-    const double hold = influence.weight[0] == kFullWeight ? kHold : 1;
-    for (int n = 0; n < 4 && influence.weight[n]; ++n) {
-      int& slot = slot_of_[influence.bone[n]];
-      if (slot < 0) {
-        slot = static_cast<int>(bones_.size());
-        bones_.push_back(influence.bone[n]);
-        sums_.resize(sums_.size() + size_t(cells) * 8, 0);
-      }
-      float* sums = &sums_[(size_t(slot) * cells + cell) * 8];
-      for (int i = 0; i < 8; ++i)
-        sums[i] += static_cast<float>(hold * influence.weight[n] * (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z));
-    }
-  }
-
-  const PreviewLattice& lattice_;
-  const TissueVoxels& tissue_;
-  const SkinWeights& weights_;
-  std::vector<int> slot_of_, bones_;
-  std::vector<float> sums_, distance_;
-};
-
-// Sums to one, without what is next to nothing.
-void normalize(std::vector<BoneWeight>& influences) {
+// Adds up what is of one bone, and leaves out what is next to nothing; bones rising, sums to one.
+void normalize(Influences& influences) {
+  std::stable_sort(influences.begin(), influences.end(), [](const BoneWeight& a, const BoneWeight& b) { return a.bone < b.bone; });
+  Influences sums;
   double total = 0;
-  for (const BoneWeight& each : influences) total += each.weight;
-  std::erase_if(influences, [&](const BoneWeight& each) { return each.weight < kLeastWeight * total; });
+  for (const BoneWeight& each : influences) {
+    if (sums.empty() || sums.back().bone != each.bone) sums.push_back({each.bone, 0});
+    sums.back().weight += each.weight;
+    total += each.weight;
+  }
+  std::erase_if(sums, [&](const BoneWeight& each) { return each.weight < kLeastWeight * total; });
   total = 0;
-  for (const BoneWeight& each : influences) total += each.weight;
-  for (BoneWeight& each : influences) each.weight /= total;
+  for (const BoneWeight& each : sums) total += each.weight;
+  for (BoneWeight& each : sums) each.weight /= total;
+  influences = std::move(sums);
 }
 
-// One of each cell and bone, in rising order.
-void merge(std::vector<StiffPart>& stiff) {
-  std::sort(stiff.begin(), stiff.end(), [](const StiffPart& a, const StiffPart& b) { return a.place != b.place ? a.place < b.place : a.bone < b.bone; });
-  size_t kept = 0;
-  for (size_t i = 0; i < stiff.size(); ++i) {
-    if (kept > 0 && stiff[kept - 1].place == stiff[i].place && stiff[kept - 1].bone == stiff[i].bone) stiff[kept - 1].parts |= stiff[i].parts;
-    else stiff[kept++] = stiff[i];
-  }
-  stiff.resize(kept);
+// The share of two corners' weights that goes to different bones.
+double apart(const Influences& a, const Influences& b) {
+  double common = 0;
+  for (const BoneWeight& x : a)
+    for (const BoneWeight& y : b)
+      if (x.bone == y.bone) common += std::min(x.weight, y.weight);
+  return 1 - common;
 }
 
 // Cells with tissue, and the ring around them.
@@ -148,6 +81,165 @@ std::vector<std::uint8_t> cells_in_use(const PreviewLattice& lattice, const Tiss
     used = std::move(grown);
   }
   return used;
+}
+
+// What lies in a cell and the 26 around it, in sides that do not hang together there.
+class Sides {
+ public:
+  Sides(const PreviewLattice& lattice, const PiecesByCell& pieces, const glm::ivec3& cell) : lattice_(lattice), cell_(cell) {
+    std::array<int, 28> begin{};  // by cell around
+    for (int n = 0; n < 27; ++n) {
+      begin[n] = static_cast<int>(pieces_.size());
+      for (const CellPiece& piece : pieces.of(cell + offset_of(n))) pieces_.push_back(&piece);
+    }
+    begin[27] = static_cast<int>(pieces_.size());
+    side_.resize(pieces_.size());
+    std::iota(side_.begin(), side_.end(), 0);
+    constexpr std::array<int, 3> kNext = {1, 3, 9};
+    for (int n = 0; n < 27; ++n)
+      for (int axis = 0; axis < 3; ++axis) {
+        if (offset_of(n)[axis] == 1) continue;
+        const int next = n + kNext[axis];
+        for (int a = begin[n]; a < begin[n + 1]; ++a)
+          for (int b = begin[next]; b < begin[next + 1]; ++b)
+            if (side_[a] != side_[b] && touch(*pieces_[a], *pieces_[b], axis, lattice.step)) unite(side_[a], side_[b]);
+      }
+    const std::vector<int> found = sides();
+    if (found.size() < 2) return;
+    std::vector<std::array<Influences, 8>> corners;
+    for (const int side : found) corners.push_back(influences(side));
+    for (size_t a = 0; a < found.size(); ++a)
+      for (size_t b = 0; b < a; ++b) {
+        bool alike = true;
+        for (int c = 0; c < 8; ++c) alike = alike && apart(corners[a][c], corners[b][c]) < kApart;
+        if (alike) unite(side_[found[a]], side_[found[b]]);
+      }
+  }
+
+  // Each by its first piece; two or more where the tissue moves apart.
+  std::vector<int> sides() const {
+    std::vector<int> found;
+    for (size_t i = 0; i < side_.size(); ++i)
+      if (side_[i] == static_cast<int>(i)) found.push_back(static_cast<int>(i));
+    return found;
+  }
+  // Of the cell's corners, by the tissue of one side alone.
+  std::array<Influences, 8> influences(int side) const {
+    std::array<Influences, 8> corners;
+    for (size_t i = 0; i < pieces_.size(); ++i) {
+      if (side_[i] != side) continue;
+      for (const CellPiece::Share& share : pieces_[i]->shares) {
+        const glm::ivec3 corner = pieces_[i]->cell + corner_of(share.corner) - cell_;
+        if (glm::any(glm::lessThan(corner, glm::ivec3(0))) || glm::any(glm::greaterThan(corner, glm::ivec3(1)))) continue;
+        corners[corner.x + 2 * corner.y + 4 * corner.z].push_back({share.bone, share.weight});
+      }
+    }
+    std::array<Influences, 8> all;
+    for (int c = 0; c < 8; ++c)
+      if (!corners[c].empty()) normalize(all[c] = corners[c]), corners[c] = all[c];
+    for (int c = 0; c < 8; ++c) {
+      if (!all[c].empty()) continue;
+      for (int other = 0; other < 8; ++other) {
+        const glm::dvec3 away = glm::dvec3(corner_of(c) - corner_of(other)) * lattice_.grid.spacing;
+        for (const BoneWeight& each : corners[other]) all[c].push_back({each.bone, each.weight / glm::dot(away, away)});
+      }
+      normalize(all[c]);
+    }
+    return all;
+  }
+  // Of the cell, those with tissue of a side.
+  std::uint64_t places(int side) const {
+    std::uint64_t places = 0;
+    for (size_t i = 0; i < pieces_.size(); ++i)
+      if (side_[i] == side && pieces_[i]->cell == cell_) places |= pieces_[i]->places;
+    return places;
+  }
+
+  // By place of the cell, to the tissue of other sides.
+  std::array<std::int8_t, 64> to_others(int side) const {
+    std::vector<glm::vec3> others;
+    for (size_t i = 0; i < pieces_.size(); ++i) {
+      if (side_[i] == side) continue;
+      const glm::ivec3 low = (pieces_[i]->cell - cell_) * 4;
+      for (std::uint64_t bits = pieces_[i]->places; bits; bits &= bits - 1) others.emplace_back(low + place_at(std::countr_zero(bits)));
+    }
+    std::array<std::int8_t, 64> steps;
+    for (int place = 0; place < 64; ++place) {
+      float least = kUnknown;
+      for (const glm::vec3& other : others) {
+        const glm::vec3 away = other - glm::vec3(place_at(place));
+        least = std::min(least, glm::dot(away, away));
+      }
+      steps[place] = static_cast<std::int8_t>(std::min(CellPart::kStepApart * (std::sqrt(least) - 1) / 4, float(CellPart::kFarApart)));
+    }
+    return steps;
+  }
+
+ private:
+  static glm::ivec3 place_at(int place) { return {place & 3, place >> 2 & 3, place >> 4}; }
+  static glm::ivec3 offset_of(int n) { return glm::ivec3(n % 3, n / 3 % 3, n / 9) - 1; }
+  void unite(int a, int b) {
+    const int first = std::min(a, b), second = std::max(a, b);
+    std::replace(side_.begin(), side_.end(), second, first);
+  }
+
+  const PreviewLattice& lattice_;
+  glm::ivec3 cell_;
+  std::vector<const CellPiece*> pieces_;
+  std::vector<int> side_;  // of each piece: the first of those it hangs together with
+};
+
+// Whether the cell's corners follow what may move apart.
+bool may_part(const PreviewLattice& lattice, const std::vector<Influences>& influences, const glm::ivec3& cell) {
+  const Influences& first = influences[lattice.place(cell)];
+  for (int i = 0; i < 8; ++i) {
+    const Influences& here = influences[lattice.place(cell + corner_of(i))];
+    if (apart(first, here) > kApart || std::none_of(here.begin(), here.end(), [](const BoneWeight& each) { return each.weight > 1 - kApart; })) return true;
+  }
+  return false;
+}
+
+// The parts of a cell: its sides, then what is stiff, bones rising.
+std::vector<CellPart> parts_of(const PreviewLattice& lattice, const PiecesByCell& pieces, const std::vector<Influences>& influences, std::int32_t index) {
+  const glm::ivec3 cell = lattice.cells[index];
+  std::vector<CellPart> parts;
+  std::vector<std::uint64_t> tissue;  // places of each side's
+  if (may_part(lattice, influences, cell)) {
+    const Sides sides(lattice, pieces, cell);
+    const std::vector<int> found = sides.sides();
+    bool differs = found.size() > 1;
+    if (found.size() == 1) {  // the cell's vertices may follow tissue on the other side of a gap all the same
+      const std::array<Influences, 8> alone = sides.influences(found[0]);
+      for (int c = 0; c < 8; ++c) differs = differs || apart(alone[c], influences[lattice.place(cell + corner_of(c))]) > kStrays;
+    }
+    if (differs) {
+      std::uint64_t all = 0;
+      for (const int side : found) {
+        parts.push_back({index, false, sides.places(side), sides.influences(side), sides.to_others(side)});
+        tissue.push_back(parts.back().places);
+        all |= tissue.back();
+      }
+      for (CellPart& part : parts) part.places |= ~all;
+    }
+  }
+  const auto follows = [](const Influences& all, int bone) {
+    return std::any_of(all.begin(), all.end(), [&](const BoneWeight& each) { return each.bone == bone && each.weight >= kStiff; });
+  };
+  std::map<int, std::uint64_t> stiff;
+  for (const CellPiece& piece : pieces.of(cell))
+    for (const CellPiece::Stiff& each : piece.stiff) stiff[each.bone] |= each.places;
+  for (const auto& [bone, places] : stiff) {
+    bool by_itself = parts.empty();
+    for (int corner = 0; corner < 8; ++corner) by_itself = by_itself && follows(influences[lattice.place(cell + corner_of(corner))], bone);
+    if (by_itself) continue;
+    CellPart part{index, true, places, {}, {}};
+    part.influences.fill({{bone, 1}});
+    part.apart.fill(CellPart::kFarApart);
+    for (size_t side = 0; side < tissue.size(); ++side)
+      if (tissue[side] & places) part.apart = parts[side].apart;
+    parts.push_back(std::move(part));
+  }
+  return parts;
 }
 
 }  // namespace
@@ -183,34 +275,18 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
         }
 
   // What the tissue of each cell gives to its corners.
-  const auto bricks = std::ssize(tissue.bricks());
-  const std::int64_t blocks = (bricks + kGrain - 1) / kGrain;
-  std::vector<std::vector<Share>> shares_of(blocks);
-  std::vector<std::vector<Nearest>> nearest_of(blocks);
-  std::vector<std::vector<StiffPart>> stiff_of(blocks);
-  parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    Gather gather(lattice, tissue, weights);
-    for (auto brick = begin; brick < end; ++brick) gather.add(brick, shares_of[begin / kGrain], nearest_of[begin / kGrain], stiff_of[begin / kGrain]);
-    merge(stiff_of[begin / kGrain]);
-  });
-  std::vector<Share> shares;
+  const std::vector<CellPiece> pieces = cell_pieces(tissue, weights, step, grid.spacing);
+  std::vector<Influences> influences(lattice.places());
   lattice.depth.assign(lattice.places(), kUnknown);
-  for (std::int64_t block = 0; block < blocks; ++block) {
-    shares.insert(shares.end(), shares_of[block].begin(), shares_of[block].end());
-    for (const Nearest& nearest : nearest_of[block]) {
-      float& least = lattice.depth[nearest.place];
-      least = std::min(least, nearest.squared_distance);
+  for (const CellPiece& piece : pieces) {
+    for (const CellPiece::Share& share : piece.shares) influences[lattice.place(piece.cell + corner_of(share.corner))].push_back({share.bone, share.weight});
+    for (int corner = 0; corner < 8; ++corner) {
+      float& least = lattice.depth[lattice.place(piece.cell + corner_of(corner))];
+      least = std::min(least, piece.away[corner]);
     }
   }
-  std::stable_sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.place != b.place ? a.place < b.place : a.bone < b.bone; });
 
   // Of the vertices with tissue around, then of those that have such neighbours, until all follow something.
-  std::vector<std::vector<BoneWeight>> influences(lattice.places());
-  for (const Share& share : shares) {
-    auto& here = influences[share.place];
-    if (here.empty() || here.back().bone != share.bone) here.push_back({share.bone, 0});
-    here.back().weight += share.weight;
-  }
   at = 0;
   std::vector<glm::ivec3> open;
   const glm::ivec3 last = lattice.first + lattice.size;
@@ -224,10 +300,10 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
       }
   while (!open.empty()) {
     std::vector<glm::ivec3> still_open;
-    std::vector<std::pair<std::int64_t, std::vector<BoneWeight>>> found;
+    std::vector<std::pair<std::int64_t, Influences>> found;
     std::vector<std::pair<std::int64_t, float>> distances;
     for (const glm::ivec3& vertex : open) {
-      std::vector<BoneWeight> sum;
+      Influences sum;
       float distance = kUnknown;
       around(vertex, lattice.first, last, [&](const glm::ivec3& next, const glm::ivec3& offset) {
         const std::int64_t place = lattice.place(next);
@@ -241,17 +317,11 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
         still_open.push_back(vertex);
         continue;
       }
-      std::stable_sort(sum.begin(), sum.end(), [](const BoneWeight& a, const BoneWeight& b) { return a.bone < b.bone; });
-      std::vector<BoneWeight> merged;
-      for (const BoneWeight& each : sum) {
-        if (merged.empty() || merged.back().bone != each.bone) merged.push_back({each.bone, 0});
-        merged.back().weight += each.weight;
-      }
-      normalize(merged);
-      found.emplace_back(lattice.place(vertex), std::move(merged));
+      normalize(sum);
+      found.emplace_back(lattice.place(vertex), std::move(sum));
       distances.emplace_back(found.back().first, distance);
     }
-    for (auto& [place, merged] : found) influences[place] = std::move(merged);
+    for (auto& [place, sum] : found) influences[place] = std::move(sum);
     for (const auto& [place, distance] : distances) lattice.depth[place] = distance;
     open = std::move(still_open);
   }
@@ -266,21 +336,18 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
     lattice.depth[place] = inside > 0 ? static_cast<float>(inside) : -std::sqrt(lattice.depth[place]);
   }
 
-  // A cell lies in one brick.
-  std::vector<StiffPart> stiff;
-  for (const auto& parts : stiff_of) stiff.insert(stiff.end(), parts.begin(), parts.end());
-  merge(stiff);
-  auto part = stiff.begin();
-  for (size_t cell = 0; cell < lattice.cells.size(); ++cell)
-    for (const std::int64_t place = lattice.place(lattice.cells[cell]); part != stiff.end() && part->place == place; ++part) {
-      const auto follows = [&](int corner) {
-        const auto& all = influences[lattice.place(lattice.cells[cell] + corner_of(corner))];
-        return std::any_of(all.begin(), all.end(), [&](const BoneWeight& each) { return each.bone == part->bone && each.weight >= kStiff; });
-      };
-      bool stiff_by_itself = true;
-      for (int corner = 0; corner < 8; ++corner) stiff_by_itself = stiff_by_itself && follows(corner);
-      if (!stiff_by_itself) lattice.stiff.push_back({static_cast<std::int32_t>(cell), part->bone, part->parts});
+  const PiecesByCell pieces_by_cell(pieces, lattice.first, lattice.size);
+  std::vector<std::vector<CellPart>> parts((lattice.cells.size() + kGrain - 1) / kGrain);
+  lattice.has_sides.resize(lattice.cells.size());
+  parallel_for(std::ssize(lattice.cells), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto cell = begin; cell < end; ++cell) {
+      for (CellPart& part : parts_of(lattice, pieces_by_cell, influences, static_cast<std::int32_t>(cell))) {
+        if (!part.is_stiff) lattice.has_sides[cell] = 1;
+        parts[begin / kGrain].push_back(std::move(part));
+      }
     }
+  });
+  for (auto& each : parts) lattice.parts.insert(lattice.parts.end(), std::make_move_iterator(each.begin()), std::make_move_iterator(each.end()));
   return lattice;
 }
 

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -21,6 +23,8 @@ constexpr double kFurthest = 32000;  // cells; fixed point holds 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
 constexpr double kNear = 1.0 / 32;  // cells: nodes that chords place this well are left there
 constexpr double kFar = 1.0 / 8;    // cells: nodes that chords miss by more are placed in two steps
+constexpr float kAcross = 2.5;  // steps at rest that nodes of one sheet are apart at most, for each step between them
+constexpr std::int8_t kMostApart = CellPart::kStepApart;  // what is further does not tell how far
 constexpr std::array<glm::ivec3, 8> kCorners = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}};
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
@@ -44,83 +48,6 @@ Lanes apart(const Lanes& a, const Lanes& b) { return most(a - b, b - a); }
 
 bool any_beyond(const Lanes& a, const Lanes& limit) { return a[0] > limit[0] || a[1] > limit[1] || a[2] > limit[2]; }
 
-// Fills PreviewMap::nodes and its cubes from what cells have claimed.
-class Finish {
- public:
-  Finish(PreviewMap& map, const std::vector<glm::u16vec4>& claimed) : map_(map), claimed_(claimed), strides_{1, map.size.x, map.size.x * map.size.y} {
-    const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / map.extent;
-    for (int axis = 0; axis < 3; ++axis) {
-      jump_[axis] = static_cast<int>(std::min(map.jump() * fractions[axis], double(PreviewMap::kFullFraction)));
-      steepest_[axis] = static_cast<int>(std::min(map.steepest() * fractions[axis], double(PreviewMap::kFullFraction)));
-    }
-  }
-
-  void layer(int z) {
-    for (int y = 0; y < map_.size.y; ++y)
-      for (int x = 0; x < map_.size.x; ++x) {
-        const std::int64_t at = map_.index({x, y, z});
-        map_.nodes[at] = claimed_[at].w ? claimed_[at] : carried_on({x, y, z}, at);
-      }
-  }
-
-  // Needs the nodes of layers z and z + 1.
-  void cubes(int z) {
-    if (z + 1 >= map_.size.z) return;
-    for (int y = 0; y + 1 < map_.size.y; ++y)
-      for (int x = 0; x + 1 < map_.size.x; ++x) cube(map_.index({x, y, z}));
-  }
-
- private:
-  // The mean of what the claimed nodes next to it lead to, each with the one behind it; nothing where there are none.
-  glm::u16vec4 carried_on(const glm::ivec3& node, std::int64_t at) const {
-    Lanes sum{};
-    int count = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      for (const int sign : {-1, 1}) {
-        const int behind = node[axis] + 2 * sign;
-        if (behind < 0 || behind >= map_.size[axis]) continue;
-        const glm::u16vec4& next = claimed_[at + sign * strides_[axis]];
-        const glm::u16vec4& second = claimed_[at + 2 * sign * strides_[axis]];
-        if (!next.w || !second.w) continue;
-        const Lanes a = lanes_of(next), b = lanes_of(second);
-        if (any_beyond(apart(a, b), steepest_)) continue;
-        sum += 2 * a - b;
-        ++count;
-      }
-    if (count == 0) return glm::u16vec4(0);
-    const Lanes none{}, full = none + PreviewMap::kFullFraction;
-    const Lanes mean = least(most(sum / (none + count), none), full);
-    return glm::u16vec4(mean[0], mean[1], mean[2], PreviewMap::kFullFraction);
-  }
-
-  void cube(std::int64_t at) {
-    std::array<Lanes, 8> c{};
-    unsigned covered = 0;
-    const Lanes none{}, full = none + PreviewMap::kFullFraction;
-    Lanes low = full, high = none;
-    for (int i = 0; i < 8; ++i) {
-      const glm::u16vec4& node = map_.nodes[at + (i & 1 ? strides_[0] : 0) + (i & 2 ? strides_[1] : 0) + (i & 4 ? strides_[2] : 0)];
-      if (!node.w) continue;
-      covered |= 1u << i;
-      c[i] = lanes_of(node);
-      low = least(low, c[i]);
-      high = most(high, c[i]);
-    }
-    if (covered == 0) return;
-    map_.reach[at] = {glm::u16vec3(low[0], low[1], low[2]), glm::u16vec3(high[0], high[1], high[2])};
-    bool jumps = false;
-    for (const int bit : {1, 2, 4})
-      for (int i = 0; i < 8; ++i)
-        if (!(i & bit) && (covered >> i & 1) && (covered >> (i | bit) & 1)) jumps = jumps || any_beyond(apart(c[i], c[i | bit]), jump_);
-    map_.cubes[at] = jumps ? PreviewMap::kBroken : PreviewMap::kWhole;
-  }
-
-  PreviewMap& map_;
-  const std::vector<glm::u16vec4>& claimed_;
-  std::array<std::int64_t, 3> strides_;
-  Lanes jump_{}, steepest_{};
-};
-
 }  // namespace
 
 std::optional<glm::dvec3> PreviewMap::rest_at(const glm::dvec3& posed) const {
@@ -129,10 +56,24 @@ std::optional<glm::dvec3> PreviewMap::rest_at(const glm::dvec3& posed) const {
   const std::uint8_t cube = cubes[index(glm::ivec3(corner))];
   if (cube == kNothing) return std::nullopt;
   const glm::dvec3 nearest = glm::floor(place + 0.5);
-  if (cube < kBroken || !covers(glm::ivec3(nearest))) return between(place);
+  if (cube < kBroken) return cube >= kBordered && apart_between(place) < 0 ? std::nullopt : between(place);
+  if (!covers(glm::ivec3(nearest))) return std::nullopt;
   const glm::dvec3 here = rest_of_node(glm::ivec3(nearest));
   const glm::dvec3 slope = here - between(2.0 * nearest - place).value_or(here);
-  return glm::all(glm::lessThan(glm::abs(slope), glm::dvec3(steepest()))) ? here + slope : here;
+  if (!glm::all(glm::lessThan(glm::abs(slope), glm::dvec3(steepest())))) return here;
+  const int border = apart[index(glm::ivec3(nearest))];
+  if (border < kMostApart && glm::length(slope) * CellPart::kStepApart > double(border) * step) return std::nullopt;
+  return here + slope;
+}
+
+double PreviewMap::apart_between(const glm::dvec3& place) const {
+  const glm::dvec3 corner = glm::floor(place), t = place - corner;
+  double sum = 0;
+  for (int i = 0; i < 8; ++i) {
+    const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2), node = glm::clamp(glm::ivec3(corner) + offset, glm::ivec3(0), size - 1);
+    sum += (offset.x ? t.x : 1 - t.x) * (offset.y ? t.y : 1 - t.y) * (offset.z ? t.z : 1 - t.z) * apart[index(node)];
+  }
+  return sum;
 }
 
 // Of the covered nodes around.
@@ -147,9 +88,127 @@ std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
     sum += share * rest_of_node(node);
     total += share;
   }
-  if (total < 0.25) return std::nullopt;  // what little is covered tells nothing
+  if (total < 0.5) return std::nullopt;  // what little is covered tells nothing
   return sum / total;
 }
+
+// Fills PreviewMap::nodes and its cubes from what cells have claimed.
+class LivePreview::Finish {
+ public:
+  Finish(PreviewMap& map, const LivePreview& preview) : map_(map), preview_(preview), claimed_(preview.claimed_), strides_{1, map.size.x, map.size.x * map.size.y}, jumps_(map.nodes.size()) {
+    const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / map.extent;
+    for (int axis = 0; axis < 3; ++axis) {
+      jump_[axis] = static_cast<int>(std::min(map.jump() * fractions[axis], double(PreviewMap::kFullFraction)));
+      steepest_[axis] = static_cast<int>(std::min(map.steepest() * fractions[axis], double(PreviewMap::kFullFraction)));
+      steps_[axis] = static_cast<float>(1 / (fractions[axis] * map.step));
+    }
+  }
+
+  void layer(int z) {
+    for (int y = 0; y < map_.size.y; ++y)
+      for (int x = 0; x < map_.size.x; ++x) {
+        const std::int64_t at = map_.index({x, y, z});
+        map_.nodes[at] = claimed_[at];
+        map_.apart[at] = std::min(preview_.claimed_apart_[at], kMostApart);
+        if (!claimed_[at].w) carry_on({x, y, z}, at);
+      }
+  }
+
+  // Needs all layers.
+  void edges(int z) {
+    for (int y = 0; y < map_.size.y; ++y)
+      for (int x = 0; x < map_.size.x; ++x) {
+        const std::int64_t at = map_.index({x, y, z});
+        if (!map_.nodes[at].w) continue;
+        for (int axis = 0; axis < 3; ++axis)
+          if (glm::ivec3(x, y, z)[axis] + 1 < map_.size[axis] && edge_jumps(at, axis)) jumps_[at] |= 1 << axis;
+      }
+  }
+
+  // Needs all edges.
+  void cubes(int z) {
+    if (z + 1 >= map_.size.z) return;
+    for (int y = 0; y + 1 < map_.size.y; ++y)
+      for (int x = 0; x + 1 < map_.size.x; ++x) cube(map_.index({x, y, z}));
+  }
+
+ private:
+  // The mean of what the claimed nodes next to it lead to, each with the one behind it, as far as they agree; nothing where
+  // there are none.
+  void carry_on(const glm::ivec3& node, std::int64_t at) {
+    Lanes sum{}, first{};
+    int count = 0, border = CellPart::kFarApart;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int sign : {-1, 1}) {
+        const int behind = node[axis] + 2 * sign;
+        if (behind < 0 || behind >= map_.size[axis]) continue;
+        const std::int64_t next = at + sign * strides_[axis], second = at + 2 * sign * strides_[axis];
+        if (!claimed_[next].w || !claimed_[second].w) continue;
+        const Lanes a = lanes_of(claimed_[next]), b = lanes_of(claimed_[second]), here = 2 * a - b;
+        if (any_beyond(apart(a, b), steepest_) || (count > 0 && any_beyond(apart(here, first), steepest_))) continue;
+        if (count == 0) first = here;
+        sum += here;
+        ++count;
+        if (const int there = preview_.claimed_apart_[next]; there < CellPart::kFarApart)
+          border = std::min(border, there - int(CellPart::kStepApart * std::sqrt(squared_steps(b - a))));
+      }
+    if (count == 0) return;
+    const Lanes none{}, full = none + PreviewMap::kFullFraction;
+    const Lanes mean = least(most(sum / (none + count), none), full);
+    map_.nodes[at] = glm::u16vec4(mean[0], mean[1], mean[2], PreviewMap::kFullFraction);
+    map_.apart[at] = static_cast<std::int8_t>(std::clamp(border, -CellPart::kFarApart, int(kMostApart)));
+  }
+
+  float squared_steps(const Lanes& fractions) const {
+    const glm::vec3 steps = glm::vec3(fractions[0], fractions[1], fractions[2]) * steps_;
+    return glm::dot(steps, steps);
+  }
+
+  std::int64_t offset(int corner) const { return (corner & 1 ? strides_[0] : 0) + (corner & 2 ? strides_[1] : 0) + (corner & 4 ? strides_[2] : 0); }
+
+  // Whether a node and the next one along an axis lie on different sheets.
+  bool edge_jumps(std::int64_t at, int axis) const {
+    const std::int64_t next = at + strides_[axis];
+    if (!map_.nodes[next].w) return false;
+    const Lanes here = lanes_of(map_.nodes[at]), there = lanes_of(map_.nodes[next]);
+    if (const float squared = squared_steps(there - here); squared > 0.25f && squared < 2.25f) return false;
+    return any_beyond(apart(here, there), jump_) || preview_.strays(at, axis, next, map_.rest_of_node_at(next) - map_.rest_of_node_at(at));
+  }
+
+  void cube(std::int64_t at) {
+    std::array<Lanes, 8> c{};
+    unsigned covered = 0;
+    const Lanes none{}, full = none + PreviewMap::kFullFraction;
+    Lanes low = full, high = none;
+    bool bordered = false;
+    for (int i = 0; i < 8; ++i) {
+      const glm::u16vec4& node = map_.nodes[at + offset(i)];
+      if (!node.w) continue;
+      covered |= 1u << i;
+      bordered = bordered || map_.apart[at + offset(i)] < 0;
+      c[i] = lanes_of(node);
+      low = least(low, c[i]);
+      high = most(high, c[i]);
+    }
+    if (covered == 0) return;
+    map_.reach[at] = {glm::u16vec3(low[0], low[1], low[2]), glm::u16vec3(high[0], high[1], high[2])};
+    bool jumps = false;
+    for (int i = 0; i < 8; ++i) jumps = jumps || (jumps_[at + offset(i)] & ~i & 7);
+    if ((bordered || covered != 255) && squared_steps(high - low) > kAcross * kAcross)  // nodes of two sheets may lie across
+      for (int i = 0; i < 8 && !jumps; ++i)
+        for (int j = 0; j < i && !jumps; ++j)
+          if ((covered >> i & 1) && (covered >> j & 1)) jumps = squared_steps(c[i] - c[j]) > kAcross * kAcross * std::popcount(unsigned(i ^ j));
+    map_.cubes[at] = jumps ? PreviewMap::kBroken : bordered ? PreviewMap::kBordered : PreviewMap::kWhole;
+  }
+
+  PreviewMap& map_;
+  const LivePreview& preview_;
+  const std::vector<glm::u16vec4>& claimed_;
+  std::array<std::int64_t, 3> strides_;
+  Lanes jump_{}, steepest_{};
+  glm::vec3 steps_{0};                // of a fraction
+  std::vector<std::uint8_t> jumps_;  // by node: bit per axis along which the next one lies on another sheet
+};
 
 // What is rasterized again: whole tiles of nodes.
 struct LivePreview::Tiles {
@@ -181,8 +240,8 @@ class LivePreview::Tile {
   VoxelRange range() const { return {low_, low_ + kTile - 1}; }
 
   void claim(std::int32_t cell, const CellClaim& claim) {
-    const StiffCell* stiff = preview_.stiff(cell);
-    if (stiff && !stiff->holds(preview_.middle(cell), claim.rest, preview_.lattice_.step)) return;
+    const CellPart* part = preview_.part(cell);
+    if (part && !part->holds(CellPart::place_of(preview_.middle(cell), claim.rest, preview_.lattice_.step))) return;
     const glm::ivec3 v = claim.voxel - low_;
     const int at = v.x + kTile * (v.y + kTile * v.z);
     const bool inverted = claim.posed_per_rest < 0;
@@ -193,15 +252,18 @@ class LivePreview::Tile {
   }
 
   // Row y of slice z of what was claimed.
-  void write(int y, int z, glm::u16vec4* row, const Span& span) const {
+  void write(int y, int z, glm::u16vec4* row, std::int32_t* cells, std::int8_t* apart, const Span& span) const {
     const double step = preview_.lattice_.step;
     const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / span.extent;
     for (int x = 0; x < kTile; ++x) {
       const int at = x + kTile * (y + kTile * z);
+      cells[x] = cell_[at];
+      apart[x] = cell_[at] < 0 ? 0 : CellPart::kFarApart;
       if (cell_[at] < 0) {
         row[x] = glm::u16vec4(0);
         continue;
       }
+      if (const CellPart* part = preview_.part(cell_[at])) apart[x] = part->apart[CellPart::place_of(preview_.middle(cell_[at]), rest_[at], preview_.lattice_.step)];
       const glm::dvec3 voxel = (preview_.in_bent_cell(cell_[at], low_ + glm::ivec3(x, y, z), rest_[at]) + 0.5) * step - 0.5;
       const glm::dvec3 f = glm::clamp((voxel - span.low) * fractions, 0.0, double(PreviewMap::kFullFraction));
       row[x] = glm::u16vec4(std::lrint(f.x), std::lrint(f.y), std::lrint(f.z), PreviewMap::kFullFraction);
@@ -210,7 +272,7 @@ class LivePreview::Tile {
 
  private:
   bool is_better(std::int32_t cell, const glm::dvec3& rest, bool inverted, int at) const {
-    const bool stiff = preview_.stiff(cell), stiff_there = preview_.stiff(cell_[at]);
+    const bool stiff = preview_.is_stiff(cell), stiff_there = preview_.is_stiff(cell_[at]);
     if (stiff != stiff_there) return stiff;
     if (inverted != inverted_[at]) return !inverted;
     const int mine = preview_.priority_[label_at(rest)], theirs = preview_.priority_[label_at(rest_[at])];
@@ -235,7 +297,8 @@ class LivePreview::Tile {
 LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const TissueTable& tissues, const TissueVoxels& tissue,
                          const SkinWeights& weights, int step)
     : volume_(std::move(volume)), lattice_(preview_lattice(volume_->grid, tissue, weights, step)), priority_(65536, 0),
-      posed_(lattice_.places()), posed_stiff_(lattice_.stiff.size()), moved_(lattice_.places()), range_(lattice_.cells.size() + lattice_.stiff.size()), before_(range_) {
+      posed_(lattice_.places()), posed_parts_(lattice_.parts.size()), moved_(lattice_.places()), part_moved_(lattice_.parts.size()),
+      range_(lattice_.cells.size() + lattice_.parts.size()), before_(range_) {
   priority_[0] = std::numeric_limits<int>::min();
   for (const Tissue& each : tissues.tissues)
     if (each.label != 0) priority_[each.label] = each.priority;
@@ -244,7 +307,9 @@ LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const Tissue
   for (size_t i = 0; i < lattice_.vertices.size(); ++i)
     if (lattice_.offsets[i + 1] - lattice_.offsets[i] == 1) only[lattice_.place(lattice_.vertices[i])] = lattice_.influences[lattice_.offsets[i]].bone;
   motion_of_.assign(lattice_.places(), -1);
-  for (const glm::ivec3& cell : lattice_.cells) {
+  for (size_t i = 0; i < lattice_.cells.size(); ++i) {
+    if (lattice_.has_sides[i]) continue;
+    const glm::ivec3 cell = lattice_.cells[i];
     const std::int64_t first = lattice_.place(cell);
     if (only[first] >= 0 && std::all_of(kCorners.begin(), kCorners.end(), [&](const glm::ivec3& c) { return only[lattice_.place(cell + c)] == only[first]; })) continue;
     for (const glm::ivec3& c : kCorners) motion_of_[lattice_.place(cell + c)] = 0;
@@ -252,6 +317,10 @@ LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const Tissue
   std::int32_t count = 0;
   for (std::int32_t& motion : motion_of_)
     if (motion == 0) motion = count++;
+  for (const CellPart& part : lattice_.parts) {
+    const bool bends = std::any_of(part.influences.begin(), part.influences.end(), [&](const auto& each) { return each.size() > 1 || each[0].bone != part.influences[0][0].bone; });
+    first_motion_.push_back(bends ? std::exchange(count, count + 8) : -1);
+  }
   motion_.resize(count);
 }
 
@@ -300,12 +369,17 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
       if (motion >= 0) motion_[motion] = blended_transform(blend, bones, influences);
     }
   });
-  parallel_for(std::ssize(lattice_.stiff), 512, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(std::ssize(lattice_.parts), 128, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = begin; i < end; ++i) {
-      const StiffCell& cell = lattice_.stiff[i];
-      if (!bone_moved_[cell.bone]) continue;
-      const BoneWeight whole{cell.bone, 1};
-      for (int c = 0; c < 8; ++c) posed_stiff_[i][c] = posed(lattice_.cells[cell.cell] + glm::ivec3(c & 1, c >> 1 & 1, c >> 2), {&whole, 1});
+      const CellPart& part = lattice_.parts[i];
+      part_moved_[i] = 0;
+      for (int c = 0; c < 8; ++c) {
+        const std::vector<BoneWeight>& influences = part.influences[c];
+        if (std::none_of(influences.begin(), influences.end(), [&](const BoneWeight& each) { return bone_moved_[each.bone]; })) continue;
+        part_moved_[i] = 1;
+        posed_parts_[i][c] = posed(lattice_.cells[part.cell] + kCorners[c], influences);
+        if (first_motion_[i] >= 0) motion_[first_motion_[i] + c] = blended_transform(blend, bones, influences);
+      }
     }
   });
   posed_from_rest_ = posed_from_rest;
@@ -316,9 +390,8 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
 // The rest point whose image the node is, near `rest`, which is what the chords between the cell's corners say.
 glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, const glm::dvec3& rest) const {
   const glm::ivec3 middle = this->middle(cell);
-  if (stiff(cell)) return rest;
   std::array<BoneWeight, 8> corners;
-  for (int i = 0; i < 8; ++i) corners[i].bone = motion_of_[lattice_.place(middle + kCorners[i])];
+  for (int i = 0; i < 8; ++i) corners[i].bone = motion(cell, i);
   if (std::any_of(corners.begin(), corners.end(), [](const BoneWeight& each) { return each.bone < 0; })) return rest;
   const auto posed = [&](const glm::dvec3& at) {
     const glm::dvec3 t = at - glm::dvec3(middle) + 0.5, world = world_from_cell_ * at;
@@ -329,10 +402,7 @@ glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, 
   const auto is_within = [&](double limit) { return glm::all(glm::lessThan(glm::abs(missing), glm::dvec3(limit))); };
   if (is_within(kNear)) return rest;
   // What the chords say of the slope is right to a fraction of what is missing.
-  glm::dmat3 slope(0);
-  for (int i = 0; i < 8; ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      slope[axis] += (i >> axis & 1 ? 0.25 : -0.25) / kFixedOne * glm::dvec3(posed_[lattice_.place(middle + kCorners[i])]);
+  const glm::dmat3 slope = this->slope(cell);
   if (!(glm::determinant(slope) > 0.05)) return rest;
   const glm::dmat3 back = glm::inverse(slope);
   glm::dvec3 more = back * missing;
@@ -343,8 +413,42 @@ glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, 
   return glm::all(glm::lessThan(glm::abs(more), glm::dvec3(0.5))) ? rest + more : rest;
 }
 
+const FixedPoint& LivePreview::corner(std::int64_t cell, int i) const {
+  return part(cell) ? posed_parts_[part_of(cell)][i] : posed_[lattice_.place(middle(cell) + kCorners[i])];
+}
+
+// Of motion_, -1 in a cell that does not bend.
+std::int32_t LivePreview::motion(std::int64_t cell, int corner) const {
+  if (!part(cell)) return motion_of_[lattice_.place(middle(cell) + kCorners[corner])];
+  const std::int32_t first = first_motion_[part_of(cell)];
+  return first < 0 ? first : first + corner;
+}
+
+// Of its posed place along rest, both in cells, on the whole.
+glm::dmat3 LivePreview::slope(std::int64_t cell) const {
+  glm::dmat3 slope(0);
+  for (int i = 0; i < 8; ++i)
+    for (int axis = 0; axis < 3; ++axis) slope[axis] += (i >> axis & 1 ? 0.25 : -0.25) / kFixedOne * glm::dvec3(corner(cell, i));
+  return slope;
+}
+
+// Whether a node and the next one along an axis are both far from where the other's cell leads to.
+//   apart  from the node's rest point to the next one's, voxels
+bool LivePreview::strays(std::int64_t node, int axis, std::int64_t next, const glm::dvec3& apart) const {
+  const double stray = PreviewMap::kStray * lattice_.step;
+  for (const std::int64_t each : {node, next}) {
+    if (claiming_[each] < 0) return false;
+    const glm::dmat3 slope = this->slope(claiming_[each]);
+    if (!(std::abs(glm::determinant(slope)) > 0.05)) continue;
+    const glm::dvec3 off = glm::inverse(slope)[axis] * double(lattice_.step) - apart;
+    if (glm::dot(off, off) < stray * stray) return false;
+  }
+  return true;
+}
+
 bool LivePreview::has_moved(std::int64_t cell) const {
-  if (const StiffCell* stiff = this->stiff(cell)) return bone_moved_[stiff->bone];
+  if (part(cell)) return part_moved_[part_of(cell)];
+  if (lattice_.has_sides[cell]) return false;
   const std::int64_t place = lattice_.place(lattice_.cells[cell]), row = lattice_.row(), slice = lattice_.slice();
   for (const std::int64_t corner : {std::int64_t{0}, row, slice, slice + row})
     if (moved_[place + corner] || moved_[place + corner + 1]) return true;
@@ -352,7 +456,7 @@ bool LivePreview::has_moved(std::int64_t cell) const {
 }
 
 PosedCell LivePreview::posed_cell(std::int64_t cell) const {
-  if (stiff(cell)) return PosedCell(posed_stiff_[cell - std::ssize(lattice_.cells)].data(), 2, 4, middle(cell));
+  if (part(cell)) return PosedCell(posed_parts_[part_of(cell)].data(), 2, 4, middle(cell));
   return PosedCell(&posed_[lattice_.place(middle(cell))], int(lattice_.row()), int(lattice_.slice()), middle(cell));
 }
 
@@ -388,6 +492,8 @@ void LivePreview::rasterize() {
     first_ = first;
     size_ = size;
     claimed_.assign(std::int64_t{size.x} * size.y * size.z, glm::u16vec4(0));
+    claiming_.assign(claimed_.size(), -1);
+    claimed_apart_.assign(claimed_.size(), 0);
   } else {
     for (std::int64_t i = 0; i < cell_count(); ++i) {
       if (!has_moved(i)) continue;
@@ -424,8 +530,10 @@ void LivePreview::rasterize_tile(const glm::ivec3& tile_at, const std::int32_t* 
   const Span span = span_of(lattice_);
   const glm::ivec3 from = tile_at * kTile - first_;
   for (int z = 0; z < kTile; ++z)
-    for (int y = 0; y < kTile; ++y)
-      tile.write(y, z, &claimed_[from.x + std::int64_t{size_.x} * (from.y + y + std::int64_t{size_.y} * (from.z + z))], span);
+    for (int y = 0; y < kTile; ++y) {
+      const std::int64_t row = from.x + std::int64_t{size_.x} * (from.y + y + std::int64_t{size_.y} * (from.z + z));
+      tile.write(y, z, &claimed_[row], &claiming_[row], &claimed_apart_[row], span);
+    }
 }
 
 std::shared_ptr<PreviewMap> LivePreview::finish() const {
@@ -438,11 +546,15 @@ std::shared_ptr<PreviewMap> LivePreview::finish() const {
   map->low = span.low;
   map->extent = span.extent;
   map->nodes.resize(claimed_.size());
+  map->apart.resize(claimed_.size());
   map->cubes.assign(claimed_.size(), PreviewMap::kNothing);
   map->reach.resize(claimed_.size());
-  Finish finish(*map, claimed_);
+  Finish finish(*map, *this);
   parallel_for(size_.z, 1, [&](std::int64_t begin, std::int64_t end) {
     for (auto z = begin; z < end; ++z) finish.layer(int(z));
+  });
+  parallel_for(size_.z, 1, [&](std::int64_t begin, std::int64_t end) {
+    for (auto z = begin; z < end; ++z) finish.edges(int(z));
   });
   parallel_for(size_.z, 1, [&](std::int64_t begin, std::int64_t end) {
     for (auto z = begin; z < end; ++z) finish.cubes(int(z));

@@ -8,7 +8,9 @@
 //
 // Nodes just outside all cells carry their neighbours' map on, straight; so the eight nodes around any place of the body
 // are there. Where those eight jump, in a fold, two sheets of the body meet between them: a place there reads the nearest
-// node and what lies as far on that node's other side, mirrored through it, and so stays on one sheet.
+// node and what lies as far on that node's other side, mirrored through it, and so stays on one sheet. What is carried on
+// may lead into tissue of another side (preview_lattice.h), which has gone elsewhere; so each node knows how far that is, and
+// beyond the border, where that distance falls below zero, nothing is read.
 //
 // Only the surroundings of cells that moved are rasterized again. What comes out never depends on what was posed before.
 #pragma once
@@ -28,8 +30,8 @@ namespace limber {
 
 struct PreviewMap {
   static constexpr int kFullFraction = 65535;
-  // Of a cube: nothing known there; its nodes lie on one sheet; they jump.
-  static constexpr std::uint8_t kNothing = 0, kWhole = 1, kBroken = 128;
+  // Of a cube: nothing known there; its nodes lie on one sheet; so they do, but some beyond its border; they jump.
+  static constexpr std::uint8_t kNothing = 0, kWhole = 1, kBordered = 64, kBroken = 128;
 
   // Boxes of rest points, in the nodes' own fractions.
   struct RestBox {
@@ -40,6 +42,7 @@ struct PreviewMap {
   Grid grid;                        // of the volume; posed points are in its voxels too
   glm::ivec3 first{0}, size{0};     // node n lies at the voxel coordinates (first + n + 1/2) step - 1/2
   std::vector<glm::u16vec4> nodes;  // rest point as fractions of [low, low + extent]; the last is kFullFraction where covered, or 0
+  std::vector<std::int8_t> apart;   // by node: at rest, to what is beyond the border of its sheet, CellPart::kStepApart a step; 0 where not covered
   std::vector<std::uint8_t> cubes;  // between node n and n + 1; as many as nodes
   std::vector<RestBox> reach;       // of each cube's covered nodes; meaningless in cubes without any
   glm::dvec3 low{0}, extent{1};     // voxel coordinates
@@ -51,10 +54,13 @@ struct PreviewMap {
   bool covers(const glm::ivec3& n) const { return nodes[index(n)].w != 0; }
   glm::dvec3 node_from_voxel(const glm::dvec3& voxel) const { return (voxel + 0.5) / double(step) - 0.5 - glm::dvec3(first); }
   glm::dvec3 rest_of(const glm::u16vec3& fraction) const { return low + extent * (glm::dvec3(fraction) / double(kFullFraction)); }
-  glm::dvec3 rest_of_node(const glm::ivec3& n) const { return rest_of(glm::u16vec3(nodes[index(n)])); }
-  // Two nodes next to each other further apart than this at rest, voxels, lie on different sheets.
+  glm::dvec3 rest_of_node(const glm::ivec3& n) const { return rest_of_node_at(index(n)); }
+  glm::dvec3 rest_of_node_at(std::int64_t at) const { return rest_of(glm::u16vec3(nodes[at])); }
+  // Two nodes next to each other lie on different sheets where they are further apart than this at rest, voxels...
   // (A joint twisted by a right angle moves as much as 3 steps without a fold.)
   double jump() const { return 5.0 * step; }
+  // ... or where each is further from where the other's cell leads to than this, steps.
+  static constexpr double kStray = 1.5;
   // What is carried on beyond the nodes of a sheet is no steeper, voxels for a step.
   double steepest() const { return 1.5 * step; }
 
@@ -63,6 +69,7 @@ struct PreviewMap {
 
  private:
   std::optional<glm::dvec3> between(const glm::dvec3& place) const;
+  double apart_between(const glm::dvec3& place) const;
 };
 
 class LivePreview {
@@ -83,11 +90,18 @@ class LivePreview {
  private:
   struct Tiles;
   class Tile;
+  class Finish;
 
-  // The cells of the lattice and, after them, the stiff ones.
+  // The cells of the lattice and, after them, their parts.
   std::int64_t cell_count() const { return std::ssize(range_); }
-  const StiffCell* stiff(std::int64_t cell) const { return cell < std::ssize(lattice_.cells) ? nullptr : &lattice_.stiff[cell - std::ssize(lattice_.cells)]; }
-  const glm::ivec3& middle(std::int64_t cell) const { return lattice_.cells[stiff(cell) ? stiff(cell)->cell : cell]; }
+  std::int64_t part_of(std::int64_t cell) const { return cell - std::ssize(lattice_.cells); }
+  const CellPart* part(std::int64_t cell) const { return part_of(cell) < 0 ? nullptr : &lattice_.parts[part_of(cell)]; }
+  const glm::ivec3& middle(std::int64_t cell) const { return lattice_.cells[part(cell) ? part(cell)->cell : cell]; }
+  bool is_stiff(std::int64_t cell) const { return part(cell) && part(cell)->is_stiff; }
+  const FixedPoint& corner(std::int64_t cell, int i) const;
+  std::int32_t motion(std::int64_t cell, int corner) const;
+  glm::dmat3 slope(std::int64_t cell) const;
+  bool strays(std::int64_t node, int axis, std::int64_t next, const glm::dvec3& apart) const;
   bool has_moved(std::int64_t cell) const;
   PosedCell posed_cell(std::int64_t cell) const;
   glm::dvec3 in_bent_cell(std::int64_t cell, const glm::ivec3& node, const glm::dvec3& rest) const;
@@ -102,6 +116,7 @@ class LivePreview {
   PreviewLattice lattice_;
   std::vector<int> priority_;  // by label; air lowest
   std::vector<std::int32_t> motion_of_;  // by place: of motion_, at the corners of cells that can bend; else -1
+  std::vector<std::int32_t> first_motion_;  // by part: of its corners; -1 for those that cannot bend
 
   AffineTransform world_from_cell_;
   glm::dmat3 cell_from_world_{1};  // of directions
@@ -111,12 +126,14 @@ class LivePreview {
   Blend blend_ = Blend::Linear;
   std::vector<FixedPoint> posed_;         // by place of the lattice
   std::vector<SkinTransform> motion_;     // blended from those of bones
-  std::vector<std::array<FixedPoint, 8>> posed_stiff_;
-  std::vector<std::uint8_t> moved_;       // by place: by the update under way
+  std::vector<std::array<FixedPoint, 8>> posed_parts_;
+  std::vector<std::uint8_t> moved_, part_moved_;  // by place, by part: by the update under way
   std::vector<std::uint8_t> bone_moved_;
   std::vector<VoxelRange> range_, before_;  // by cell: absolute nodes that its image can hold, of this update and of the last
   glm::ivec3 first_{0}, size_{0};         // nodes, whole tiles
   std::vector<glm::u16vec4> claimed_;     // by node: what a cell says
+  std::vector<std::int8_t> claimed_apart_;
+  std::vector<std::int32_t> claiming_;    // by node: that cell, -1 for none
   std::shared_ptr<const PreviewMap> map_;
   std::int64_t cells_rasterized_ = 0;
 };

@@ -185,7 +185,7 @@ TEST_CASE("preview: bones stay stiff: nineteen voxels of twenty are read within 
   const AffineTransform to_world = world_from_voxel(arm.volume->grid), to_voxel = voxel_from_world(arm.volume->grid);
   LivePreview preview = arm.preview();
   const auto map = preview.update(motions, Blend::DualQuaternion);
-  CHECK(!preview.lattice().stiff.empty());
+  CHECK(!preview.lattice().parts.empty());
   std::int64_t bone = 0, near = 0;
   for (std::int64_t brick = 0; brick < std::ssize(arm.tissue.bricks()); ++brick) {
     auto influence = arm.weights.chunk(brick).begin();
@@ -199,4 +199,74 @@ TEST_CASE("preview: bones stay stiff: nineteen voxels of twenty are read within 
   }
   INFO(near, " of ", bone);
   CHECK(near * 20 > bone * 19);
+}
+
+namespace {
+
+// Two bars along z, a gap of air between them, joined at the bottom: each follows its own bone, as fingers of a hand do.
+Sitter fork_sitter(int gap) {
+  LabelVolume volume{Grid{}, {}};
+  const glm::ivec3 size(40, 20, 72);
+  volume.grid.size = size;
+  volume.voxels.resize(size_t(size.x) * size.y * size.z);
+  for (int z = 4; z < 68; ++z)
+    for (int y = 4; y < 16; ++y)
+      for (int x = 4; x < 28 + gap; ++x)
+        if (z < 12 || x < 16 || x >= 16 + gap) volume.voxels[x + std::int64_t{size.x} * (y + std::int64_t{size.y} * z)] = 1;
+  Sitter sitter{std::make_shared<const LabelVolume>(volume), {}, {}, TissueVoxels(volume), {}};
+  sitter.weights = SkinWeights({"A", "B"}, sitter.tissue);
+  for (std::int64_t brick = 0; brick < std::ssize(sitter.tissue.bricks()); ++brick) {
+    SkinWeights::Chunk chunk;
+    sitter.tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
+      const double b = v.z < 12 ? 0.5 : v.x < 16 ? std::max(0.0, 0.5 - (v.z - 12) / 16.0) : std::min(1.0, 0.5 + (v.z - 12) / 16.0);
+      chunk.push_back(quantize({{0, 1 - b}, {1, b}}));
+    });
+    sitter.weights.set_chunk(brick, std::move(chunk));
+  }
+  return sitter;
+}
+
+}  // namespace
+
+TEST_CASE("preview: what lies on both sides of a narrow gap moves apart, and nothing is drawn between") {
+  for (const int step : {4, 8})
+    for (const int gap : {1, 2, 3, 5}) {
+      CAPTURE(step);
+      CAPTURE(gap);
+      const Sitter fork = fork_sitter(gap);
+      const RigidTransform still{glm::dquat(1, 0, 0, 0), {0, 0, 0}}, turned{glm::angleAxis(0.6, glm::dvec3(0, 1, 0)), {4, 0, 6}};
+      const std::vector<RigidTransform> motions{still, turned};
+      LivePreview preview = fork.preview(step);
+      CHECK(std::any_of(preview.lattice().has_sides.begin(), preview.lattice().has_sides.end(), [](std::uint8_t each) { return each; }));
+      const auto map = preview.update(motions, Blend::DualQuaternion);
+      const std::vector<SkinTransform> bones = skin_transforms(motions);
+      const auto posed = [&](const glm::ivec3& v) {
+        const std::int64_t brick = fork.tissue.brick_at(v);
+        const Influence& follows = fork.weights.chunk(brick)[fork.tissue.index_of(v) - fork.tissue.bricks()[brick].first];
+        const std::array<BoneWeight, 2> weights{{{0, follows.of(0)}, {1, follows.of(1)}}};
+        return blend_point(Blend::DualQuaternion, bones, weights, glm::dvec3(v));
+      };
+      // Where the bars follow one bone each.
+      std::int64_t bars = 0, near = 0, drawn = 0, astray = 0;
+      fork.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
+        if (v.z < 30) return;
+        const auto rest = map->rest_at(posed(v));
+        ++bars;
+        near += rest && glm::length(*rest - glm::dvec3(v)) < 1;
+      });
+      for (int z = 0; z < map->size.z * step; ++z)
+        for (int y = 0; y < map->size.y * step; ++y)
+          for (int x = 0; x < map->size.x * step; ++x) {
+            const glm::dvec3 at = glm::dvec3(map->first * step + glm::ivec3(x, y, z));
+            const auto rest = map->rest_at(at);
+            if (!rest) continue;
+            const glm::ivec3 v(glm::floor(*rest + 0.5));
+            if (v.z < 30 || !fork.volume->at_or_air(v)) continue;
+            ++drawn;
+            astray += glm::length(posed(v) - at) > 2.5;
+          }
+      INFO(near, " of ", bars, " found, ", astray, " of ", drawn, " astray");
+      CHECK(near * 10 > bars * 9);
+      CHECK(astray * 50 < drawn);
+    }
 }
