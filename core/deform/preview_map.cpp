@@ -96,6 +96,7 @@ std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
 class LivePreview::Finish {
  public:
   Finish(PreviewMap& map, const LivePreview& preview) : map_(map), preview_(preview), claimed_(preview.claimed_), strides_{1, map.size.x, map.size.x * map.size.y}, jumps_(map.nodes.size()) {
+    for (int i = 0; i < 8; ++i) offsets_[i] = map.index(kCorners[i]);
     const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / map.extent;
     for (int axis = 0; axis < 3; ++axis) {
       jump_[axis] = static_cast<int>(std::min(map.jump() * fractions[axis], double(PreviewMap::kFullFraction)));
@@ -105,13 +106,14 @@ class LivePreview::Finish {
   }
 
   void layer(int z) {
-    for (int y = 0; y < map_.size.y; ++y)
-      for (int x = 0; x < map_.size.x; ++x) {
-        const std::int64_t at = map_.index({x, y, z});
-        map_.nodes[at] = claimed_[at];
-        map_.apart[at] = std::min(preview_.claimed_apart_[at], kMostApart);
-        if (!claimed_[at].w) carry_on({x, y, z}, at);
-      }
+    const std::int64_t begin = map_.index({0, 0, z}), end = begin + strides_[2];
+    std::copy(claimed_.begin() + begin, claimed_.begin() + end, map_.nodes.begin() + begin);
+    for (std::int64_t i = begin; i < end; ++i) map_.apart[i] = std::min(preview_.claimed_apart_[i], kMostApart);
+    if (z == 0 || z + 1 == map_.size.z) return;
+    for (int y = 1; y + 1 < map_.size.y; ++y)
+      for (std::int64_t at = map_.index({1, y, z}), last = at + map_.size.x - 2; at < last; ++at)
+        if (const glm::u16vec4* here = &claimed_[at]; !here->w && (here[-1].w | here[1].w | here[-strides_[1]].w | here[strides_[1]].w | here[-strides_[2]].w | here[strides_[2]].w))
+          carry_on(at);
   }
 
   // Needs all layers.
@@ -128,20 +130,20 @@ class LivePreview::Finish {
   // Needs all edges.
   void cubes(int z) {
     if (z + 1 >= map_.size.z) return;
-    for (int y = 0; y + 1 < map_.size.y; ++y)
-      for (int x = 0; x + 1 < map_.size.x; ++x) cube(map_.index({x, y, z}));
+    for (int y = 0; y + 1 < map_.size.y; ++y) {
+      const std::int64_t begin = map_.index({0, y, z});
+      for (std::int64_t at = begin; at + 1 < begin + map_.size.x; ++at) cube(at);
+    }
   }
 
  private:
   // The mean of what the claimed nodes next to it lead to, each with the one behind it, as far as they agree; nothing where
-  // there are none.
-  void carry_on(const glm::ivec3& node, std::int64_t at) {
+  // there are none. (The tiles leave two nodes at every border that no cell claims.)
+  void carry_on(std::int64_t at) {
     Lanes sum{}, first{};
     int count = 0, border = CellPart::kFarApart;
     for (int axis = 0; axis < 3; ++axis)
       for (const int sign : {-1, 1}) {
-        const int behind = node[axis] + 2 * sign;
-        if (behind < 0 || behind >= map_.size[axis]) continue;
         const std::int64_t next = at + sign * strides_[axis], second = at + 2 * sign * strides_[axis];
         if (!claimed_[next].w || !claimed_[second].w) continue;
         const Lanes a = lanes_of(claimed_[next]), b = lanes_of(claimed_[second]), here = 2 * a - b;
@@ -164,8 +166,6 @@ class LivePreview::Finish {
     return glm::dot(steps, steps);
   }
 
-  std::int64_t offset(int corner) const { return (corner & 1 ? strides_[0] : 0) + (corner & 2 ? strides_[1] : 0) + (corner & 4 ? strides_[2] : 0); }
-
   // Whether a node and the next one along an axis lie on different sheets.
   bool edge_jumps(std::int64_t at, int axis) const {
     const std::int64_t next = at + strides_[axis];
@@ -176,24 +176,27 @@ class LivePreview::Finish {
   }
 
   void cube(std::int64_t at) {
+    const glm::u16vec4* nodes = &map_.nodes[at];
+    int any = 0;
+    for (const std::int64_t offset : offsets_) any |= nodes[offset].w;
+    if (!any) return;
     std::array<Lanes, 8> c{};
     unsigned covered = 0;
     const Lanes none{}, full = none + PreviewMap::kFullFraction;
     Lanes low = full, high = none;
     bool bordered = false;
     for (int i = 0; i < 8; ++i) {
-      const glm::u16vec4& node = map_.nodes[at + offset(i)];
+      const glm::u16vec4& node = nodes[offsets_[i]];
       if (!node.w) continue;
       covered |= 1u << i;
-      bordered = bordered || map_.apart[at + offset(i)] < 0;
+      bordered = bordered || map_.apart[at + offsets_[i]] < 0;
       c[i] = lanes_of(node);
       low = least(low, c[i]);
       high = most(high, c[i]);
     }
-    if (covered == 0) return;
     map_.reach[at] = {glm::u16vec3(low[0], low[1], low[2]), glm::u16vec3(high[0], high[1], high[2])};
     bool jumps = false;
-    for (int i = 0; i < 8; ++i) jumps = jumps || (jumps_[at + offset(i)] & ~i & 7);
+    for (int i = 0; i < 8; ++i) jumps = jumps || (jumps_[at + offsets_[i]] & ~i & 7);
     if ((bordered || covered != 255) && squared_steps(high - low) > kAcross * kAcross)  // nodes of two sheets may lie across
       for (int i = 0; i < 8 && !jumps; ++i)
         for (int j = 0; j < i && !jumps; ++j)
@@ -205,6 +208,7 @@ class LivePreview::Finish {
   const LivePreview& preview_;
   const std::vector<glm::u16vec4>& claimed_;
   std::array<std::int64_t, 3> strides_;
+  std::array<std::int64_t, 8> offsets_;  // of a cube's corners
   Lanes jump_{}, steepest_{};
   glm::vec3 steps_{0};                // of a fraction
   std::vector<std::uint8_t> jumps_;  // by node: bit per axis along which the next one lies on another sheet
