@@ -10,6 +10,8 @@
 #include "core/pose/pose_io.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bvh.h"
+#include "core/rig/motion_edit.h"
+#include "core/rig/up_axis.h"
 #include "core/skin/weights_io.h"
 #include "core/volume/dicom.h"
 #include "core/volume/phantom.h"
@@ -117,8 +119,13 @@ Import read_pose_file(const Path& path, const Document& now) {
 }
 
 Import read_motion(const Path& path) {
-  auto motion = shared(read_bvh(path));
-  if (motion->frame_count == 0) refuse("this motion has no frames", path, "import it as a rig, or choose another file");
+  Motion read = read_bvh(path);
+  if (read.frame_count == 0) refuse("this motion has no frames", path, "import it as a rig, or choose another file");
+  if (const UpGuess up = up_axis_of(read); up.axis == UpAxis::Z) {
+    read = y_up_from_z_up(read);
+    read.warnings.push_back("Its z axis points up (" + reason_of(up) + "): turned upright. File > Import > Motion lets you choose.");
+  }
+  auto motion = shared(std::move(read));
   return {[motion, name = path.stem().string()](Document& d) { add_clip(d, clip_of(motion, name)); }, motion->warnings};
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/rig/motion_edit.h"
+#include "core/rig/up_axis.h"
 #include "editor/form.h"
 #include "editor/project.h"
 #include "editor/task.h"
@@ -22,6 +23,7 @@ constexpr double kUnits[] = {0, 1, 10, 1000, 25.4};  // mm of a file's unit; 0: 
 struct Incoming {
   std::shared_ptr<const Motion> motion;
   std::string name;
+  UpGuess up;
   std::string facts, match;
 };
 
@@ -44,19 +46,24 @@ std::string match_of(std::shared_ptr<const Motion> motion, const std::shared_ptr
 
 void take_in(Editor& editor, const Incoming& incoming, const std::vector<FormField>& fields) {
   std::shared_ptr<const Motion> motion = incoming.motion;
-  if (fields[1].chosen == 1) motion = std::make_shared<const Motion>(y_up_from_z_up(*motion));
+  const bool z_up = fields[1].chosen == 1;
+  if (z_up) motion = std::make_shared<const Motion>(y_up_from_z_up(*motion));
   Clip clip = clip_of(motion, incoming.name, static_cast<int>(std::round(fields[2].value)));
   clip.rate = fields[3].value;
   clip.retarget.scale = kUnits[fields[0].chosen];
   Document next = editor.document();
   add_clip(next, std::move(clip));
   commit(editor, "Import " + incoming.name + ".bvh", std::move(next));
+  if (z_up) editor.messages.info(incoming.name + ".bvh is turned upright", "Its z axis points up.");
 }
 
 void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
   const double rate = clip_of(incoming->motion, "").rate;
   const auto outcome = [incoming](const Editor&, const std::vector<FormField>& fields) {
     std::string words = incoming->facts + " " + incoming->match;
+    const bool as_guessed = fields[1].chosen == static_cast<int>(incoming->up.axis);
+    if (const std::string reason = reason_of(incoming->up); !reason.empty() && (!as_guessed || incoming->up.axis == UpAxis::Z))
+      words += (as_guessed ? " Z is up: " : " Mind the axis: ") + reason + ".";
     if (std::abs(fields[3].value - clip_of(incoming->motion, "").rate) > 1e-3) {
       char text[64];
       std::snprintf(text, sizeof text, " Plays in %.2f s.", incoming->motion->frame_count / fields[3].value);
@@ -69,7 +76,7 @@ void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
                                 "A new clip of this motion, carried over to the rig.",
                                 "Import",
                                 {choice_of("Scale", "How far the body travels: as far as its legs carry it, or in the file's own unit.", {"Fit to the rig", "1 = 1 mm", "1 = 1 cm", "1 = 1 m", "1 = 1 inch"}),
-                                 choice_of("Up", "The axis that points up in the file.", {"Y", "Z"}),
+                                 choice_of("Up", "The axis that points up in the file.", {"Y", "Z"}, static_cast<int>(incoming->up.axis)),
                                  number_of("First frame", "Where it begins in the timeline.", 0, -100'000, 100'000, "%.0f"),
                                  number_of("Frame rate", "Frames in a second. The file's own unless it is known to be wrong.", rate, 1, 1000, "%.6g", "fps")},
                                 outcome,
@@ -127,6 +134,7 @@ void import_motion(Editor& editor, const Path& path) {
     incoming->motion = std::make_shared<const Motion>(read_bvh(path));
     incoming->name = path.stem().string();
     if (incoming->motion->frame_count == 0) throw Error("this motion has no frames", path.string(), "import it as a rig, or choose another file");
+    incoming->up = up_axis_of(*incoming->motion);
     incoming->facts = facts_of(*incoming->motion);
     incoming->match = match_of(incoming->motion, armature);
     return [incoming](Editor& e) { ask(e, incoming); };

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber export-gltf VOLUME --rig R --weights W [--tissues T] [--motion F.bvh ...] [--map M] [--root-motion] [--step MM] -o OUT.glb
+// limber export-gltf VOLUME --rig R --weights W [--tissues T] [--motion F.bvh ...] [--up y|z|auto] [--map M] [--root-motion] [--step MM] -o OUT.glb
 #include <filesystem>
 #include <memory>
 
 #include "core/base/error.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
+#include "core/cmd/pose_options.h"
 #include "core/pose/gltf_export.h"
 #include "core/skin/weights_io.h"
 
@@ -14,15 +15,14 @@ namespace limber::cmd {
 namespace {
 struct Options {
   BodyOptions body;
-  std::string weights, map, output, progress;
+  std::string weights, map, output, progress, up = "y";
   std::vector<std::string> motions;
   bool root_motion = false;
   GltfSettings settings;
 };
 
 std::shared_ptr<const Clip> clip_of_file(const Options& options, const std::string& file, const Armature& rig, const std::vector<std::shared_ptr<const Clip>>& before) {
-  auto motion = std::make_shared<const Motion>(read_bvh(file));
-  warn(motion->warnings);
+  auto motion = std::make_shared<const Motion>(read_motion(file, options.up));
   if (motion->frame_count == 0) throw Error("this motion has no frames", file, "choose another file");
   Clip clip = clip_of(motion, unique_clip_name(before, std::filesystem::path(file).stem().string()));
   clip.map = options.map.empty() ? match_by_names(*motion, rig) : read_retarget_map(options.map, *motion, rig);
@@ -48,6 +48,7 @@ void add_export_gltf(CLI::App& app) {
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "W.nrrd, or a folder with Bender's weights")->required();
   auto* motion = command->add_option("--motion", options->motions, "motion capture (BVH) that becomes an animation (repeatable)")->type_name("F.bvh")->expected(1)->take_all();
+  add_up_option(*command, options->up, motion);
   command->add_option("--map", options->map, "which joint moves which bone (default: by names)")->type_name("M.json")->needs(motion);
   command->add_flag("--root-motion", options->root_motion, "let the body travel as the motion does")->needs(motion);
   command->add_option("--step", options->settings.step, "mm between the surface's points (default: 1/400 of the longest side)")->type_name("MM")->check(CLI::PositiveNumber);

@@ -7,7 +7,9 @@
 #include "core/base/error.h"
 #include "core/cmd/command.h"
 #include "core/pose/pose_io.h"
+#include "core/rig/motion_edit.h"
 #include "core/rig/retarget.h"
+#include "core/rig/up_axis.h"
 
 namespace limber::cmd {
 
@@ -26,8 +28,7 @@ void apply_flex(Pose& pose, const Armature& armature, const std::string& request
 
 // Of one frame, or of all.
 std::vector<Pose> poses_of_motion(const PoseOptions& options, const Armature& armature, std::optional<int> frame) {
-  const Motion motion = read_bvh(options.motion);
-  warn(motion.warnings);
+  const Motion motion = read_motion(options.motion, options.up);
   const RetargetMap map = options.map.empty() ? match_by_names(motion, armature) : read_retarget_map(options.map, motion, armature);
   const Retarget retarget(motion, armature, map, {.travel = options.root_motion ? Travel::Free : Travel::Locked});
   if (frame) return {retarget.at(*frame)};
@@ -37,6 +38,20 @@ std::vector<Pose> poses_of_motion(const PoseOptions& options, const Armature& ar
 }
 }  // namespace
 
+void add_up_option(CLI::App& command, std::string& up, CLI::Option* motion) {
+  command.add_option("--up", up, "the axis that points up in the motion's file; auto: by how its body stands")->type_name("y|z|auto")
+      ->check(CLI::IsMember({"y", "z", "auto"}))->needs(motion)->group(motion->get_group());
+}
+
+Motion read_motion(const std::string& file, const std::string& up) {
+  Motion motion = read_bvh(file);
+  warn(motion.warnings);
+  const UpGuess guess = up_axis_of(motion);
+  const bool stands_along_z = guess.axis == UpAxis::Z;
+  if (stands_along_z && up == "y") warn(file + " is read with y up, but " + reason_of(guess) + ": add --up z");
+  return up == "z" || (up == "auto" && stands_along_z) ? y_up_from_z_up(motion) : motion;
+}
+
 void add_pose_options(CLI::App& command, PoseOptions& options) {
   const std::string group = "Pose";
   auto* pose = command.add_option("--pose", options.pose, "pose file (JSON)")->type_name("P.json")->group(group);
@@ -45,6 +60,7 @@ void add_pose_options(CLI::App& command, PoseOptions& options) {
   auto* motion = command.add_option("--motion", options.motion, "motion capture (BVH) to take the pose from")
                      ->type_name("F.bvh")->excludes(pose)->group(group);
   command.add_option("--frame", options.frame, "its frame, from 0")->type_name("N")->check(CLI::NonNegativeNumber)->group(group);
+  add_up_option(command, options.up, motion);
   command.add_option("--map", options.map, "which joint moves which bone (default: by names)")->type_name("M.json")->needs(motion)->group(group);
   command.add_flag("--root-motion", options.root_motion, "let the body travel as the motion does")->needs(motion)->group(group);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How a command is told a pose:
-//   --pose P.json | --motion F.bvh --frame N [--map M.json] [--root-motion]     then, on top of it, any number of
+//   --pose P.json | --motion F.bvh --frame N [--up y|z|auto] [--map M.json] [--root-motion]     then, on top of it, any number of
 //   --flex BONE=DEG
 // Without any of them the pose is rest.
 #pragma once
@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/pose/pose.h"
+#include "core/rig/bvh.h"
 
 namespace limber::cmd {
 
@@ -20,9 +21,15 @@ struct PoseOptions {
   std::vector<std::string> flex;  // BONE=DEG
   std::string motion;             // file
   std::optional<int> frame;       // of the motion, from 0
+  std::string up = "y";           // of the motion's file: y, z, or auto
   std::string map;                // file
   bool root_motion = false;
 };
+
+// --up y|z|auto: the axis that points up in the file of `motion`.
+void add_up_option(CLI::App& command, std::string& up, CLI::Option* motion);
+// The motion with y up. Its warnings go to stderr, with one where it is read with y up but clearly stands along z.
+Motion read_motion(const std::string& file, const std::string& up);
 
 // True when any of them was given; --frame alone is not.
 bool wants_pose(const PoseOptions& options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber project NAME.limber [inspect] [--json]           what is in it
-// limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P] [--motion F.bvh]
+// limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P] [--motion F.bvh [--up y|z|auto]]
 // limber project NAME.limber verify                        checks every byte; exit code 1 when something is wrong
 // limber project NAME.limber recover -o OUT.limber         with the edits that a crash left; of a damaged one, what is whole
 // limber project NAME.limber export PART -o OUT            volume, tissues, rig, weights, pose, motion, gltf, or a result by its name
@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/cmd/command.h"
 #include "core/cmd/info_project.h"
+#include "core/cmd/pose_options.h"
 #include "core/pose/gltf_export.h"
 #include "core/pose/pose_io.h"
 #include "core/project/journal.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct Options {
   std::string file, action = "inspect", part;
-  std::string tissues, rig, weights, pose, motion, output, progress;
+  std::string tissues, rig, weights, pose, motion, output, progress, up = "y";
   bool json = false, replace = false;
 };
 
@@ -73,8 +74,7 @@ Document read_parts(const Options& options, Progress& progress) {
     document.weights = shared(std::move(weights.weights));
   }
   if (!options.motion.empty()) {
-    const auto motion = shared(read_bvh(options.motion));
-    warn(motion->warnings);
+    const auto motion = shared(read_motion(options.motion, options.up));
     document.clips.push_back(shared(clip_of(motion, std::filesystem::path(options.motion).stem().string())));
   }
   return document;
@@ -186,7 +186,7 @@ void add_project(CLI::App& app) {
   command->add_option("--rig", options->rig, "of create: rig");
   command->add_option("--weights", options->weights, "of create: W.nrrd, or a folder with Bender's weights");
   command->add_option("--pose", options->pose, "of create: pose (default: at rest)");
-  command->add_option("--motion", options->motion, "of create: BVH");
+  add_up_option(*command, options->up, command->add_option("--motion", options->motion, "of create: BVH"));
   command->add_option("-o,--output", options->output, "of recover and export: the file to write");
   command->add_flag("--replace", options->replace, "of create and recover: write over a file of that name");
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));

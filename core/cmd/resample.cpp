@@ -110,6 +110,7 @@ void describe(Report& report, const Options& options, const Armature& rig, const
   if (options.spacing) settings["spacing_mm"] = *options.spacing;
   if (!options.pose.flex.empty()) settings["flex"] = options.pose.flex;
   if (!options.pose.motion.empty()) settings["frame"] = std::int64_t{options.pose.frame.value_or(0)};
+  if (options.pose.up != "y") settings["up"] = options.pose.up;
   std::vector<std::string> turned;
   for (size_t b = 0; b < rig.bones.size(); ++b)
     if (pose.rotation[b] != glm::dquat(1, 0, 0, 0)) turned.push_back(rig.bones[b].name);

@@ -7,9 +7,11 @@
 #include "core/pose/pose_io.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/motion_edit.h"
+#include "core/rig/up_axis.h"
 #include "core/skin/weights_io.h"
 #include "tests/editor/sitting.h"
 #include "tests/support/bent_tube.h"
+#include "tests/support/walker.h"
 
 using namespace limber;
 using namespace limber::test;
@@ -44,6 +46,24 @@ TEST_CASE("opening: files are told apart by what they hold") {
   std::ofstream(files / "odd.json") << "[1, 2]";
   std::ofstream(files / "odd.limber") << "no database";
   for (const char* name : {"odd.json", "odd.limber", "missing", "scans"}) CHECK_THROWS_AS(editor::kind_of(files / name), Error);
+}
+
+TEST_CASE("opening: a dropped motion whose z axis points up is turned upright and says so; the dialog opens with z") {
+  const TubeFiles files;
+  const Motion y_up = t_pose_body({{0, 0, 0}, {20, 5, 1}});
+  write_bvh(y_up_from_z_up(y_up_from_z_up(y_up_from_z_up(y_up))), files / "z.bvh");
+  Sitting sitting(files.folder.path());
+  sitting.open_ball();
+  const auto stands = [&] { return up_axis_of(*sitting.editor().document().shown_clip()->motion).axis == UpAxis::Y; };
+  sitting.play("drop " + (files / "z.bvh").string() + "\n wait-job\n wait-idle");
+  REQUIRE(sitting.editor().document().clips.size() == 1);
+  CHECK(stands());
+  CHECK(sitting.editor().messages.log.back().text.find("turned upright") != std::string::npos);
+
+  sitting.play("click File/Import/Motion...\n wait-idle\n type " + (files / "z.bvh").string() + "\n key Return\n wait-job\n wait-idle\n expect dialog yes\n key Return\n wait-idle");
+  REQUIRE(sitting.editor().document().clips.size() == 2);
+  CHECK(stands());
+  CHECK(sitting.editor().messages.log.back().text.starts_with("z.bvh is turned upright"));
 }
 
 TEST_CASE("opening: a volume and what belongs to it come in together, dropped in any order") {
