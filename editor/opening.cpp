@@ -17,6 +17,7 @@
 #include "core/volume/phantom.h"
 #include "core/volume/volume_io.h"
 #include "editor/project.h"
+#include "editor/retargeting.h"
 #include "editor/thumbnails.h"
 #include "editor/timeline.h"
 
@@ -126,7 +127,7 @@ Import read_motion(const Path& path) {
     read.warnings.push_back("Its z axis points up (" + reason_of(up) + "): turned upright. File > Import > Motion lets you choose.");
   }
   auto motion = shared(std::move(read));
-  return {[motion, name = path.stem().string()](Document& d) { add_clip(d, clip_of(motion, name)); }, motion->warnings};
+  return {[motion, name = path.stem().string()](Document& d) { add_clip(d, clip_for(d, motion, name)); }, motion->warnings};
 }
 
 Import read_import(FileKind kind, const Path& path, const Document& now, Progress& progress) {

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/rig/motion_edit.h"
+#include "core/rig/same_skeleton.h"
 #include "core/rig/up_axis.h"
 #include "editor/form.h"
 #include "editor/project.h"
@@ -48,10 +49,10 @@ void take_in(Editor& editor, const Incoming& incoming, const std::vector<FormFie
   std::shared_ptr<const Motion> motion = incoming.motion;
   const bool z_up = fields[1].chosen == 1;
   if (z_up) motion = std::make_shared<const Motion>(y_up_from_z_up(*motion));
-  Clip clip = clip_of(motion, incoming.name, static_cast<int>(std::round(fields[2].value)));
+  Document next = editor.document();
+  Clip clip = clip_for(next, motion, incoming.name, static_cast<int>(std::round(fields[2].value)));
   clip.rate = fields[3].value;
   clip.retarget.scale = kUnits[fields[0].chosen];
-  Document next = editor.document();
   add_clip(next, std::move(clip));
   commit(editor, "Import " + incoming.name + ".bvh", std::move(next));
   if (z_up) editor.messages.info(incoming.name + ".bvh is turned upright", "Its z axis points up.");
@@ -114,6 +115,13 @@ RetargetMap map_in_use(const ClipOnRig& clip) {
       map.sources[name] = given != clip.clip()->map.sources.end() ? given->second : RetargetMap::Source{clip.clip()->motion->joints[joint].name, {}};
     }
   return map;
+}
+
+Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, const std::string& name, int start) {
+  const auto same = document.armature ? same_skeleton(*motion, *document.armature) : std::nullopt;
+  Clip clip = clip_of(std::move(motion), name, start);
+  if (same && same->in_place) clip.retarget.travel = Travel::Free;
+  return clip;
 }
 
 void choose_clip(Editor& editor, int clip) {

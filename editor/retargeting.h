@@ -20,6 +20,9 @@ int moved_bones(const ClipOnRig& clip);
 // The map that is in use: the clip's own, or the one by names; empty where nothing matches.
 RetargetMap map_in_use(const ClipOnRig& clip);
 
+// The motion as a clip at its own rate. One that was written for the document's rig travels as it was written.
+Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, const std::string& name, int start = 0);
+
 void choose_clip(Editor& editor, int clip);
 // Asks how the motion of that file shall come in: its scale, axes, first frame and rate.
 void import_motion(Editor& editor, const Path& path);

@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/rig/body_skeleton.h"
 #include "core/rig/mirror.h"
+#include "core/rig/same_skeleton.h"
 
 namespace limber {
 
@@ -222,6 +223,17 @@ double scale_between(const Skeleton& rig, const Skeleton& source) {
   }
   return 1;
 }
+
+// What takes each matched bone from its joint's turn to its own, from the moment when the source stands as a rig rests.
+std::vector<glm::dquat> offsets_between(const Motion& motion, const Skeleton& rig, Skeleton source, const std::vector<int>& joint_of_bone, Reference reference) {
+  const int standing = reference == Reference::Found ? standing_frame(motion, source) : reference == Reference::RestPose ? -1 : 0;
+  place_joints(source, motion, standing);
+  const auto world = forward_kinematics(motion, standing);
+  std::vector<glm::dquat> offsets = Alignment(rig, source, joint_of_bone, standing < 0).turns();
+  for (size_t b = 0; b < offsets.size(); ++b)
+    if (joint_of_bone[b] >= 0) offsets[b] = glm::normalize(glm::conjugate(lps_from_bvh(world[joint_of_bone[b]].rotation)) * offsets[b]);
+  return offsets;
+}
 }  // namespace
 
 std::string RetargetMap::joint_of(const std::string& bone) const {
@@ -230,6 +242,11 @@ std::string RetargetMap::joint_of(const std::string& bone) const {
 }
 
 RetargetMap match_by_names(const Motion& motion, const Armature& armature) {
+  RetargetMap map;
+  if (same_skeleton(motion, armature)) {
+    for (const Bone& bone : armature.bones) map.sources[bone.name] = {bone.name, {}};
+    return map;
+  }
   const Skeleton rig = skeleton_of(armature), source = skeleton_of(motion);
   std::vector<int> joint_of(armature.bones.size(), -1);
   auto match = [&](int bone, int joint) {
@@ -259,7 +276,6 @@ RetargetMap match_by_names(const Motion& motion, const Armature& armature) {
   for (size_t b = 0; b < armature.bones.size(); ++b)
     if (const auto found = by_name.find(plain_name(armature.bones[b].name)); !rig.role[b] && found != by_name.end()) match(static_cast<int>(b), found->second);
 
-  RetargetMap map;
   for (size_t b = 0; b < joint_of.size(); ++b)
     if (joint_of[b] >= 0) map.sources[armature.bones[b].name] = {motion.joints[joint_of[b]].name, {}};
   if (map.sources.empty()) throw Error("no joint of the motion is known by its name", names_of(motion), "write a map file and give it with --map");
@@ -287,19 +303,15 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
     const bool in_gap = role->part == BodyPart::Spine && role->index > 0 && !rig.joint.contains({role->part, role->side, role->index - 1});
     if (!in_gap && rig.joint.emplace(*role, static_cast<int>(b)).second) rig.role[b] = role;
   }
-  const int standing = settings.reference == Reference::Found ? standing_frame(motion, source) : settings.reference == Reference::RestPose ? -1 : 0;
-  place_joints(source, motion, standing);
-  const auto world = forward_kinematics(motion, standing);
-  const Alignment alignment(rig, source, joint_of_bone_, standing < 0);
-  for (size_t b = 0; b < rest_offset_.size(); ++b) {
-    if (joint_of_bone_[b] < 0) continue;
-    const auto& given = map.sources.at(armature.bones[b].name).rest_offset;
-    const glm::dquat at_standing = lps_from_bvh(world[joint_of_bone_[b]].rotation);
-    rest_offset_[b] = given ? *given : glm::normalize(glm::conjugate(at_standing) * alignment.turns()[b]);
-  }
-  scale_ = settings.scale > 0 ? settings.scale : scale_between(rig, source);
+  const bool by_their_names = std::all_of(map.sources.begin(), map.sources.end(), [](const auto& pair) { return pair.first == pair.second.joint; });
+  const auto same = by_their_names && settings.reference == Reference::Found ? same_skeleton(motion, armature) : std::nullopt;
+  const std::vector<glm::dquat> found = same ? std::vector(rest_offset_.size(), glm::conjugate(same->rig_from_source)) : offsets_between(motion, rig, source, joint_of_bone_, settings.reference);
+  for (size_t b = 0; b < rest_offset_.size(); ++b)
+    if (joint_of_bone_[b] >= 0) rest_offset_[b] = map.sources.at(armature.bones[b].name).rest_offset.value_or(found[b]);
+  scale_ = settings.scale > 0 ? settings.scale : same ? same->scale : scale_between(rig, source);
   const auto first = std::find_if(joint_of_bone_.begin(), joint_of_bone_.end(), [](int joint) { return joint >= 0; });
-  if (first != joint_of_bone_.end()) lead_ = *first, start_ = forward_kinematics(motion, 0)[lead_].translation;
+  const bool from_rest = same && same->in_place;
+  if (first != joint_of_bone_.end()) lead_ = *first, start_ = forward_kinematics(motion, from_rest ? -1 : 0)[lead_].translation;
 
   // Bones of the trunk that lie between matched ones: nearest below by walking up, nearest above by what walks up to them.
   for (size_t top = 0; top < joint_of_bone_.size(); ++top) {
@@ -321,7 +333,7 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
     const double length = glm::length(armature.bones[foot->second].head - armature.bones[thigh->second].head);
     legs_.push_back({thigh->second, foot->second, kMostSwing * length});
   }
-  if (settings.travel != Travel::Locked && !legs_.empty()) follow_the_feet();
+  if (settings.travel != Travel::Locked && !legs_.empty() && !same) follow_the_feet();
 }
 
 RetargetMap Retarget::map() const {

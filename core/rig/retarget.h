@@ -10,7 +10,7 @@
 //   - feet keep their pitch to the ground and get its heading; pelvis, spine, neck, head and collars, whose bones run
 //     differently in every skeleton, keep their rest shape and get the heading of hips and shoulders.
 // The body faces where the actor faces. Bones of the trunk between matched ones share the bend; all others follow the bone
-// they hang from. Lengths stay the rig's; travel is scaled by the legs' lengths.
+// they hang from. Lengths stay the rig's; travel is scaled by the legs' lengths. In a motion of the rig itself each joint is its bone.
 #pragma once
 
 #include <map>

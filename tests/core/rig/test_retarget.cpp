@@ -3,13 +3,18 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <functional>
 #include <numbers>
+#include <random>
 
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/mirror.h"
+#include "core/rig/motion_edit.h"
+#include "core/rig/same_skeleton.h"
 #include "tests/support/program.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/walker.h"
@@ -157,6 +162,72 @@ TEST_CASE("retarget: a map of one's own is read, written and held to what is the
   refused(R"({"Hips": 3})");
   refused(R"({"Hips": "Pelvis", "Spine": "Pelvis"})");
   refused(R"({"Hips": {"bone": "Pelvis", "rest_offset_wxyz": [0, 0, 0, 0]}})");
+}
+
+namespace {
+
+// What a rig of any make is written as and comes back as: the largest differences of bones' turns (degrees) and joints' places (mm).
+std::pair<double, double> lost_in_a_file(const Armature& rig, const std::vector<Pose>& poses, const std::function<Motion(Motion)>& changed) {
+  const Motion written = motion_of_poses(rig, static_cast<int>(poses.size()), 30, [&](int frame) { return poses[frame]; });
+  const Motion motion = changed(parse_bvh(bvh_text(written), "again"));
+  const Retarget retarget(motion, rig, match_by_names(motion, rig), {.travel = Travel::Free});
+  double turned = 0, moved = 0;
+  for (std::size_t frame = 0; frame < poses.size(); ++frame) {
+    const auto before = posed_from_rest(rig, poses[frame]), after = posed_from_rest(rig, retarget.at(static_cast<int>(frame)));
+    for (std::size_t b = 0; b < rig.bones.size(); ++b) {
+      const glm::dquat off = before[b].rotation * glm::conjugate(after[b].rotation);
+      turned = std::max(turned, glm::degrees(2 * std::atan2(glm::length(glm::dvec3(off.x, off.y, off.z)), std::abs(off.w))));
+      moved = std::max(moved, glm::distance(before[b] * rig.bones[b].head, after[b] * rig.bones[b].head));
+    }
+  }
+  return {turned, moved};
+}
+
+std::vector<Pose> random_poses(const Armature& rig, int count) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  std::vector<Pose> poses(count, rest_pose(rig));
+  for (Pose& pose : poses) {
+    pose.root_translation = 200.0 * glm::dvec3(normal(random), normal(random), normal(random));
+    for (glm::dquat& turn : pose.rotation) turn = glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
+  }
+  return poses;
+}
+
+}  // namespace
+
+TEST_CASE("retarget: a motion written for the rig comes back as it was, also in other units or axes, but no other is taken for one") {
+  std::vector<Armature> rigs{hanging_body()};
+  if (const auto file = test::shared_path("data/makehuman/body.armature.json"); std::filesystem::exists(file)) rigs.push_back(read_armature(file));
+  for (const Armature& rig : rigs) {
+    const std::vector<Pose> poses = random_poses(rig, 5);
+    const auto [turned, moved] = lost_in_a_file(rig, poses, [](const Motion& motion) { return motion; });
+    CHECK(turned < 1e-4);
+    CHECK(moved < 0.1);
+
+    std::vector<Pose> in_place = poses;
+    for (Pose& pose : in_place) pose.root_translation = {0, 0, 0};
+    const auto [turned_small, moved_small] = lost_in_a_file(rig, in_place, [](Motion motion) {
+      for (BvhJoint& joint : motion.joints) {
+        joint.offset *= 0.1;
+        if (joint.end_site) *joint.end_site *= 0.1;
+        for (std::size_t c = 0; c < joint.channels.size(); ++c)
+          for (int frame = 0; joint.channels[c] < BvhChannel::Xrotation && frame < motion.frame_count; ++frame) motion.values[static_cast<std::size_t>(frame) * motion.channel_count + joint.first_channel + c] *= 0.1f;
+      }
+      return motion;
+    });
+    CHECK(turned_small < 1e-4);
+    CHECK(moved_small < 0.1);
+  }
+
+  const Armature rig = hanging_body();
+  const Motion own = motion_of_poses(rig, 1, 30, [&](int) { return rest_pose(rig); });
+  CHECK(same_skeleton(y_up_from_z_up(own), rig));
+  CHECK_FALSE(same_skeleton(y_up_from_z_up(own), rig)->in_place);
+  CHECK_FALSE(same_skeleton(t_pose_body({{0, 0, 0}}), rig));
+  Motion longer = own;
+  longer.joints.back().offset *= 1.1;
+  CHECK_FALSE(same_skeleton(longer, rig));
 }
 
 TEST_CASE("retarget: real motions keep the directions of matched bones on real rigs") {

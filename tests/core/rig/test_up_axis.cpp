@@ -78,7 +78,6 @@ TEST_CASE("up axis: of the real takes those made in Blender's axes are found, an
     const UpGuess guess = up_axis_of(motion);
     CHECK((guess.axis == UpAxis::Z) == z_up.contains(name));
     if (guess.axis == UpAxis::Z) CHECK(up_axis_of(y_up_from_z_up(motion)).axis == UpAxis::Y);
-    MESSAGE(name, ": ", reason_of(guess));
   }
 }
 
