@@ -388,27 +388,42 @@ bool ends_with_any(const std::string& name, std::initializer_list<const char*> p
   return std::any_of(parts.begin(), parts.end(), [&](const char* part) { return name.ends_with(part); });
 }
 
-// Per bone: how little its skin and its parent's is that of the body that was laid over it, 0 for the same and 1 for another
-// shape. Voxels alone put it off by a tenth of a cell.
-std::vector<double> strangeness(const Fitted& fitted, const Target& target) {
-  constexpr double kSame = 0.8, kOther = 0.8;  // mm, and mm more
-  const Mannequin& m = *fitted.body;
+// Per bone: how little its surface and its parent's is that of the body that was laid over it, 0 for the same and 1 for another
+// shape.
+struct Likeness {
+  double same, other, of_cell;  // mm off for the same shape, mm more for another, and what voxels alone put it off, of a cell
+};
+std::vector<double> strangeness(const Mannequin& m, const std::vector<AtlasPoint>& points, const FitSurface& surface, const Likeness& like, const Target& target) {
+  const Armature& rig = m.atlas().rig;
   std::vector<std::vector<double>> off(m.bone_count());
   const double reach = 0.05 * target.length;
-  for (const AtlasPoint& point : m.atlas().skin) {
+  for (const AtlasPoint& point : points) {
     const glm::dvec3 here = m.carried(point.bone, point.place);
-    const int n = target.skin->tree.nearest(here, m.turn_at(point.bone, point.place) * point.normal, reach);
+    const int n = surface.tree.nearest(here, m.turn_at(point.bone, point.place) * point.normal, reach);
     if (beyond(target.cuts, here) > 0) continue;
-    off[point.bone].push_back(n < 0 ? reach : std::abs(glm::dot(target.skin->points[n].normal, here - target.skin->points[n].place)));
+    off[point.bone].push_back(n < 0 ? reach : std::abs(glm::dot(surface.points[n].normal, here - surface.points[n].place)));
   }
   std::vector<double> result;
   for (int b = 0; b < m.bone_count(); ++b) {
     std::vector<double> both = off[b];
-    if (const int parent = m.atlas().rig.bones[b].parent; parent >= 0) both.insert(both.end(), off[parent].begin(), off[parent].end());
+    const auto join = [&](int beside) { both.insert(both.end(), off[beside].begin(), off[beside].end()); };
+    for (int c = b + 1; c < m.bone_count() && off[b].empty(); ++c)
+      if (rig.bones[c].parent == b) join(c);
+    if (rig.bones[b].parent >= 0) join(rig.bones[b].parent);
     std::nth_element(both.begin(), both.begin() + both.size() / 2, both.end());
     const double scale = std::exp(m.across[m.group_of(b)]);
-    result.push_back(both.empty() ? 1 : std::clamp((both[both.size() / 2] - kSame * scale - 0.08 * target.cell) / (kOther * scale), 0.0, 1.0));
+    result.push_back(both.empty() ? 1 : std::clamp((both[both.size() / 2] - like.same * scale - like.of_cell * target.cell) / (like.other * scale), 0.0, 1.0));
   }
+  return result;
+}
+
+// By its skin; and where bones are known that are alike, it is alike, however fat lies over them.
+std::vector<double> strangeness(const Fitted& fitted, const Target& target) {
+  const Mannequin& m = *fitted.body;
+  std::vector<double> result = strangeness(m, m.atlas().skin, *target.skin, {.same = 0.8, .other = 0.8, .of_cell = 0.08}, target);
+  if (!target.bone || fitted.is_rods) return result;
+  const std::vector<double> bones = strangeness(m, m.atlas().bone, *target.bone, {.same = 0.5, .other = 0.4, .of_cell = 0.15}, target);
+  for (size_t b = 0; b < result.size(); ++b) result[b] = std::min(result[b], bones[b]);
   return result;
 }
 

@@ -15,6 +15,7 @@
 #include "core/resample/resample.h"
 #include "core/rig/templates.h"
 #include "core/skin/heat_diffusion.h"
+#include "core/volume/distance.h"
 #include "core/volume/phantom.h"
 #include "core/volume/volume_io.h"
 #include "tests/support/shared_data.h"
@@ -100,6 +101,31 @@ TEST_CASE("auto-fit: every joint of the procedural body lies within 8 mm of the 
   const AutoFit fitted = auto_fit(body.volume, body.tissues, rig_template("adult"));
   CHECK(largest(errors(fitted.armature, body.armature)) < 8);
   CHECK(median_of_main(errors(fitted.armature, body.armature)) < 3);
+}
+
+TEST_CASE("auto-fit: where bones are labelled, a thick layer of fat does not move the joints") {
+  const Phantom body = make_body_phantom(5);
+  const Grid& lean = body.volume.grid;
+  constexpr int kPadding = 4;
+  Grid grid = lean;
+  grid.size += 2 * kPadding;
+  grid.origin = world_from_voxel(lean) * glm::dvec3(-kPadding);
+  LabelVolume fat{grid, ZeroedVector<Label>(grid.voxel_count(), 0)};
+  for (int z = 0; z < lean.size.z; ++z)
+    for (int y = 0; y < lean.size.y; ++y)
+      for (int x = 0; x < lean.size.x; ++x) fat.at(glm::ivec3(x, y, z) + kPadding) = body.volume.at({x, y, z});
+  std::vector<std::uint8_t> tissue(grid.voxel_count());
+  for (std::int64_t i = 0; i < grid.voxel_count(); ++i) tissue[i] = fat.voxels[i] != 0;
+  const std::vector<float> squared = squared_distance({glm::ivec3(0), grid.size}, tissue, grid.spacing);
+  for (std::int64_t i = 0; i < grid.voxel_count(); ++i)
+    if (!tissue[i] && squared[i] < 11 * 11) fat.voxels[i] = 3;
+  REQUIRE(body.tissues.find(3)->name == "fat");
+  const AutoFit fitted = auto_fit(fat, body.tissues, rig_template("adult"));
+  for (const auto& [error, name] : errors(fitted.armature, body.armature)) {
+    CAPTURE(name);
+    for (const char* part : {"UpperArm", "Forearm", "Thigh", "Foot", "Neck"})
+      if (name.ends_with(part)) CHECK(error < 8);
+  }
 }
 
 TEST_CASE("auto-fit: the template that suits an arm is the arm, with a hand of five fingers too") {
