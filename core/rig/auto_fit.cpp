@@ -378,7 +378,12 @@ std::vector<double> shares_near(const Fitted& fitted, const Target& target) {
   std::vector<double> result(share.size(), 0);
   for (int b = 0; b < m.bone_count(); ++b) {
     const int parent = m.atlas().rig.bones[b].parent;
-    const double own = share[b] < 0 ? 0.5 : share[b], above = parent < 0 || share[parent] < 0 ? own : share[parent];
+    double own = share[b], sum = 0;
+    int children = 0;
+    for (int c = b + 1; c < m.bone_count() && own < 0; ++c)
+      if (m.atlas().rig.bones[c].parent == b && share[c] >= 0) sum += share[c], ++children;
+    if (own < 0) own = children ? sum / children : 0.5;
+    const double above = parent < 0 || share[parent] < 0 ? own : share[parent];
     result[b] = std::sqrt(own * above);
   }
   return result;
@@ -435,8 +440,9 @@ struct FoundJoints {
 
 FoundJoints found_joints(const Fitted& fitted, const Target& target) {
   using How = JointFit::How;
-  // mm that joints lay off on segmented adults, beside those that another shape adds.
-  constexpr double kLeastError = 3, kByBone = 10, kBySkin = 22, kHipsBySkin = 55, kByGirth = 10, kNeckByGirth = 20, kByBall = 6, kByAxis = 10;
+  // mm within which nine of ten such joints lay on segmented adults, beside those that another shape adds. Of hips even the
+  // authors of rigs differ by 5 cm where skin is all there is.
+  constexpr double kLeastError = 3, kByBone = 12, kBySkin = 22, kShoulderBySkin = 26, kHipsBySkin = 58, kByGirth = 12, kHandByGirth = 15, kNeckByGirth = 22, kByBall = 8, kByAxis = 14;
   const Mannequin& m = *fitted.body;
   const Armature& rig = m.atlas().rig;
   const bool by_bone = target.bone && !fitted.is_rods;
@@ -445,7 +451,8 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
   for (int b = 0; b < m.bone_count(); ++b) {
     const std::string& name = rig.bones[b].name;
     const bool rod = fitted.is_rods && ends_with_any(name, {"UpperArm", "Forearm", "Thigh", "Shank", "Foot"});
-    const double other = by_bone ? kByBone : ends_with_any(name, {"Thigh", "Hips", "Neck", "Spine"}) ? kHipsBySkin : kBySkin;
+    const double by_skin = ends_with_any(name, {"Thigh", "Hips", "Neck", "Spine"}) ? kHipsBySkin : name.ends_with("UpperArm") ? kShoulderBySkin : kBySkin;
+    const double other = by_bone ? kByBone : by_skin;
     found.places.push_back(m.joint(b));
     found.how.push_back({.how = rod ? How::BoneAxis : by_bone ? How::BoneSurface : How::Skin, .confidence = rod ? 0.9 : near[b], .error = rod ? kByAxis : kLeastError + strange[b] * other});
   }
@@ -454,8 +461,8 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
     found.places[mark.bone] = glm::mix(found.places[mark.bone], mark.place, weight);
     JointFit& joint = found.how[mark.bone];
     joint.error = std::min(joint.error, glm::mix(joint.error, error, weight));
-    // Two ways of finding it that disagree: skin alone slides along a limb.
-    if (how == How::Girth && joint.how == How::Skin) joint.error = std::max(joint.error, (1 - weight) * off);
+    // Two ways of finding it that disagree: skin alone slides along a limb, and a joint put between the two is told by neither.
+    if (how == How::Girth && joint.how == How::Skin) joint.error = std::max({joint.error, (1 - weight) * off, 4 * weight * (1 - weight) * weight * off});
     if (weight > 0.5) joint.how = how;
   };
   // Skin alone slides along a limb by a tenth of the bone above, rarely more: a waist farther off is another one. Rods say
@@ -472,22 +479,36 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
     // Bones tell elbow and wrist themselves. Of the knee they show the condyles' middle and skin the gap below it; rigs
     // bend in between.
     const double share = name == "Neck" ? 1 : by_bone ? (name.ends_with("Shank") ? 0.5 : 0) : fitted.is_rods ? double(name.ends_with("Hand")) : 1;
-    take(mark, How::Girth, share * strange[mark.bone] * believable(mark), name == "Neck" ? kNeckByGirth : kByGirth);
+    // Flesh folds where a limb is bent, and its waist moves down.
+    constexpr double kBent = 45, kHardlyBent = 0.09;  // mm at a right angle, radians
+    const double bent = kBent * std::max(0.0, std::sin(mark.bend) - kHardlyBent);
+    take(mark, How::Girth, share * strange[mark.bone] * believable(mark), (name == "Neck" ? kNeckByGirth : name.ends_with("Hand") ? kHandByGirth : kByGirth) + bent);
   }
+  // A hand that lies against something has no wrist to be seen, and slides.
+  constexpr double kHandSlides = 38;
+  for (int b = 0; b < m.bone_count(); ++b)
+    if (found.how[b].how == How::Skin && rig.bones[b].name.ends_with("Hand")) found.how[b].error = std::max(found.how[b].error, kLeastError + strange[b] * kHandSlides);
   if (by_bone)
     for (const JointLandmark& mark : ball_landmarks(m, *target.bone)) take(mark, How::Ball, strange[mark.bone], kByBall);
   // Where little of the body lies where it should, nothing is sure, whatever was found there.
-  constexpr double kFew = 0.35, kFarOff = 100;  // share, and mm at none
+  // Bones of limbs are much alike, those of trunks are not, and a ball is told by itself.
+  constexpr double kFew = 0.35, kFewOfLimb = 0.62, kFewOfHand = 0.7, kFarOff = 100, kLimbFarOff = 300;  // share, and mm for a share of 1 less
   // Of the tissue's diagonal: whole bodies of other shapes came out at 0.011 at most, parts at 0.015 with joints 11 mm off, at
   // 0.019 with 50 mm, and limbs laid the wrong way round above that.
   constexpr double kUnlike = 0.013, kWrong = 6, kSteep = 0.004;
   const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.misfit) / target.length - kUnlike);
   const double wrong = kWrong * unlike * target.length * (1 + unlike * unlike / (kSteep * kSteep));
+  const auto doubt = [&](int b) {
+    const std::string& name = rig.bones[b].name;
+    const bool in_limb = by_bone && ends_with_any(name, {"UpperArm", "Forearm", "Hand", "Thigh", "Shank", "Foot"});
+    const double few = !in_limb || found.how[b].how == How::Ball ? kFew : name.ends_with("Hand") ? kFewOfHand : kFewOfLimb;
+    return (in_limb ? kLimbFarOff : kFarOff) * std::max(0.0, few - near[b]);
+  };
   // Half sure of what may lie off by as much as a joint is thick.
   constexpr double kJoint = 40;
   for (int b = 0; b < m.bone_count(); ++b) {
     JointFit& joint = found.how[b];
-    if (joint.how != How::BoneAxis) joint.error = std::max(joint.error, kFarOff * std::max(0.0, kFew - near[b]));
+    if (joint.how != How::BoneAxis) joint.error = std::max(joint.error, doubt(b));
     joint.error = std::max(joint.error, wrong);
     joint.confidence *= 1 / (1 + joint.error / kJoint);
   }
@@ -520,7 +541,8 @@ LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, cons
 // What lies beyond a cut is laid on by proportion alone, and a limb that is cut off looks short.
 void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& found, std::vector<std::string>& warnings) {
   constexpr double kNear = 0.05, kStrange = 5;  // of the tissue's diagonal; mm of error from which a joint is of another shape
-  constexpr double kLeast = 30, kGrowth = 0.25;  // mm off at the cut, and more with every mm beyond it
+  constexpr double kLeast = 36, kGrowth = 0.33;  // mm off at the cut, and more with every mm beyond it
+  constexpr double kSureBall = 12;               // mm: a ball that is this sure is one, however near the cut
   const Armature& rig = fitted.atlas->rig;
   const std::vector<std::uint8_t> seen = seen_bones(fitted, target);
   std::string unseen, doubted;
@@ -536,7 +558,7 @@ void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& fo
       // Each bone on the way from what is seen may be turned otherwise.
       if (parent >= 0 && !seen[parent]) joint.error = std::max(joint.error, found.how[parent].error + kGrowth * glm::distance(found.places[parent], found.places[b]));
       if (!is_digit(rig.bones[b].name)) list(unseen, b);
-    } else if (out > -kNear * target.length && joint.error > kStrange) {
+    } else if (out > -kNear * target.length && joint.error > kStrange && !(joint.how == JointFit::How::Ball && joint.error < kSureBall)) {
       near_cut[b] = 1;
       joint.confidence *= 0.4;
       joint.error = std::max(joint.error, kLeast);
@@ -555,6 +577,17 @@ void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& fo
     if (beside == 0) continue;
     found.how[b].error = std::max(own[b].error, kWithIt * std::min(kMost, beside));
     found.how[b].confidence *= kLessSure;
+  }
+  // A limb alone that is cut off at its upper end may be longer or shorter than it looks, from its free end on.
+  constexpr double kLonger = 0.11;
+  const auto upper = std::find_if(rig.bones.begin(), rig.bones.end(), [](const Bone& bone) { return bone.name == "UpperArm" || bone.name == "Thigh"; });
+  if (upper != rig.bones.end() && is_doubted(static_cast<int>(upper - rig.bones.begin()))) {
+    std::vector<double> from_end(rig.bones.size(), 0);
+    for (int b = static_cast<int>(std::ssize(rig.bones)); b-- > 0;) {
+      if (from_end[b] == 0) from_end[b] = glm::distance(rig.bones[b].head, rig.bones[b].tail);
+      if (const int parent = rig.bones[b].parent; parent >= 0) from_end[parent] = std::max(from_end[parent], from_end[b] + glm::distance(found.places[parent], found.places[b]));
+      if (own[b].error > kStrange) found.how[b].error = std::max(found.how[b].error, kLonger * from_end[b]);
+    }
   }
   if (!unseen.empty()) warnings.push_back("the tissue is cut off, and beyond the cut these joints are laid on by proportion alone: " + unseen);
   if (!doubted.empty()) warnings.push_back("the tissue is cut off close to these joints, which may lie far off: " + doubted);
@@ -581,7 +614,7 @@ void warn_of_joints(AutoFit& result) {
     if (result.check.share[b] < kOutside) list(outside);
   }
   if (!doubtful.empty()) result.warnings.push_back("found with little confidence, check by eye: " + doubtful);
-  if (!far_off.empty()) result.warnings.push_back("the body is of another shape here and no landmark tells these joints, which may lie up to some " + std::to_string(std::lround(farthest)) + " mm off: " + far_off);
+  if (!far_off.empty()) result.warnings.push_back("the body is of another shape here and little tells these joints, which may lie up to some " + std::to_string(std::lround(farthest)) + " mm off: " + far_off);
   if (!outside.empty()) result.warnings.push_back("bones that leave the tissue: " + outside);
 }
 
@@ -636,7 +669,7 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
       result.joints.push_back(joint);
     }
     // A joint gives way by what it may be off, not by much more.
-    constexpr double kGivesWay = 1.5;
+    constexpr double kGivesWay = 1.25;
     std::vector<double> free;
     for (const JointFit& joint : result.joints) free.push_back(kGivesWay * joint.error);
     result.armature = drawn_inside(placed.armature, volume, target.cuts, free);

@@ -188,7 +188,8 @@ void add_waists(const Mannequin& m, const Occupancy& body, const Waist& known, s
     const Section& section = limb.profile.sections[at];
     if (section.area <= 0) continue;
     const glm::dvec3 tangent = limb.bend.tangent(along), forward = glm::normalize(limb.bend.forward - tangent * glm::dot(limb.bend.forward, tangent));
-    found.push_back({limb.bone, section.centre + known.forward * section.depth * forward});
+    const double straight = glm::dot(glm::normalize(limb.bend.corner - limb.bend.above), glm::normalize(limb.bend.below - limb.bend.corner));
+    found.push_back({limb.bone, section.centre + known.forward * section.depth * forward, std::acos(std::clamp(straight, -1.0, 1.0))});
   }
 }
 

@@ -18,6 +18,7 @@ namespace limber {
 struct JointLandmark {
   int bone = 0;  // of the mannequin, whose head it is
   glm::dvec3 place{0};
+  double bend = 0;  // radians, of the limb there
 };
 
 // Elbows, knees, wrists and the neck, those that can be told; both sides agree on how far along the limb they lie.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include <doctest/doctest.h>
+#include <glm/gtc/quaternion.hpp>
 
 namespace limber {
 
@@ -47,6 +48,20 @@ TEST_CASE("joint landmarks: the knee is found where the girth is least, wherever
     CHECK(found[0].bone == shank);
     const glm::dvec3 way = found[0].place - m.joint(shank);
     CHECK(std::abs(-way.z - off) < 12);  // two sections, and the share of the thigh that the joint lies lower
+  }
+}
+
+TEST_CASE("joint landmarks: a waist says how far the limb is bent there") {
+  Mannequin m(leg());
+  const int shank = require_bone(leg().rig, "Shank"), hip = require_bone(leg().rig, "Thigh"), foot = require_bone(leg().rig, "Foot");
+  for (double more : {0.0, 0.3}) {
+    m.turn_branch(shank, glm::mat3_cast(glm::angleAxis(more, glm::dvec3(1, 0, 0))));
+    const double thigh = glm::distance(m.joint(hip), m.joint(shank));
+    const auto found = girth_landmarks(m, round_leg(m, [&](double along) { return 50 + 20 * std::min(1.0, std::abs(along - thigh) / 150); }));
+    REQUIRE(found.size() == 1);
+    const double straight = glm::dot(glm::normalize(m.joint(shank) - m.joint(hip)), glm::normalize(m.joint(foot) - m.joint(shank)));
+    CHECK(found[0].bend == doctest::Approx(std::acos(straight)));
+    CHECK(found[0].bend > more - 0.2);
   }
 }
 
