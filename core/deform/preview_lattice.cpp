@@ -189,13 +189,17 @@ class Sides {
   std::vector<int> side_;  // of each piece: the first of those it hangs together with
 };
 
-// Whether the cell's corners follow what may move apart.
+// Whether the vertices of the cell and those around it follow what may move apart.
 bool may_part(const PreviewLattice& lattice, const std::vector<Influences>& influences, const glm::ivec3& cell) {
   const Influences& first = influences[lattice.place(cell)];
-  for (int i = 0; i < 8; ++i) {
-    const Influences& here = influences[lattice.place(cell + corner_of(i))];
-    if (apart(first, here) > kApart || std::none_of(here.begin(), here.end(), [](const BoneWeight& each) { return each.weight > 1 - kApart; })) return true;
-  }
+  const glm::ivec3 low = glm::max(cell - 1, lattice.first), high = glm::min(cell + 2, lattice.first + lattice.size);
+  for (int z = low.z; z <= high.z; ++z)
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x) {
+        const Influences& here = influences[lattice.place({x, y, z})];
+        if (here.empty()) continue;
+        if (apart(first, here) > kApart || std::none_of(here.begin(), here.end(), [](const BoneWeight& each) { return each.weight > 1 - kApart; })) return true;
+      }
   return false;
 }
 
