@@ -59,8 +59,8 @@ std::optional<glm::dvec3> PreviewMap::rest_at(const glm::dvec3& posed) const {
   if (cube < kBroken) return cube >= kBordered && apart_between(place) < 0 ? std::nullopt : between(place);
   if (!covers(glm::ivec3(nearest))) return std::nullopt;
   const glm::dvec3 here = rest_of_node(glm::ivec3(nearest));
-  const glm::dvec3 slope = here - between(2.0 * nearest - place).value_or(here);
-  if (!glm::all(glm::lessThan(glm::abs(slope), glm::dvec3(steepest())))) return here;
+  glm::dvec3 slope = here - between(2.0 * nearest - place).value_or(here);
+  if (!glm::all(glm::lessThan(glm::abs(slope), glm::dvec3(steepest())))) slope = glm::dvec3(0);
   const int border = apart[index(glm::ivec3(nearest))];
   if (border < kMostApart && glm::length(slope) * CellPart::kStepApart > double(border) * step) return std::nullopt;
   return here + slope;
