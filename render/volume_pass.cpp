@@ -238,14 +238,23 @@ void main() {
 #endif
 
   // The first label of the set, from a little outside the surface inward: first through air, then through hidden tissue.
+  // A step from air over an edge or a corner is not taken past the voxels beside it: a skin one voxel thick has no gaps.
   vec3 step = (cap ? d : inward) * 0.5;
   vec3 inside = at + u_label_shift + (cap ? step * 0.02 : inward * -1.4);
   uint label = label_at(slot.atlas, ivec3(inside));
   int steps = 0;
   while (label == 0u && steps < 8) {
+    ivec3 from = ivec3(inside);
     inside += step;
     ++steps;
-    label = label_at(slot.atlas, ivec3(inside));
+    ivec3 to = ivec3(inside);
+    label = label_at(slot.atlas, to);
+    if (label != 0u && abs(to.x - from.x) + abs(to.y - from.y) + abs(to.z - from.z) > 1) {
+      ivec3 beside[6] = ivec3[6](ivec3(to.x, from.yz), ivec3(from.x, to.y, from.z), ivec3(from.xy, to.z), ivec3(from.x, to.yz), ivec3(to.x, from.y, to.z), ivec3(to.xy, from.z));
+      uint first = 0u;
+      for (int i = 0; i < 6 && first == 0u; ++i) first = label_at(slot.atlas, beside[i]);
+      if (first != 0u) label = first;
+    }
   }
   while ((texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & 7u) <= u_layer) {
     inside += step;

@@ -231,6 +231,35 @@ TEST_CASE("view: a volume for which there is no room at all is refused in one se
   CHECK_THROWS_WITH_AS(view.draw(scene_of(ball(grid, 10)), camera_of(grid), kSize, 0, 1), doctest::Contains("no room"), Error);
 }
 
+TEST_CASE("view: a skin one voxel thick, closed by edges alone, hides what lies beneath from everywhere") {
+  Studio studio;
+  const Grid grid = grid_of({60, 60, 60});
+  LabelVolume body = *ball(grid, 22);
+  for (Label& label : body.voxels) label = label ? 3 : 0;
+  const LabelVolume flesh = body;
+  for (int z = 1; z < 59; ++z)
+    for (int y = 1; y < 59; ++y)
+      for (int x = 1; x < 59; ++x)
+        for (int axis = 0; axis < 3; ++axis)
+          for (const int sign : {-1, 1}) {
+            glm::ivec3 beside(x, y, z);
+            beside[axis] += sign;
+            if (flesh.at({x, y, z}) && !flesh.at(beside)) body.at({x, y, z}) = 1;
+          }
+  const Scene scene = scene_of(std::make_shared<const LabelVolume>(body));
+  for (const glm::dvec2& turn : {glm::dvec2(0, 0), glm::dvec2(75, -50), glm::dvec2(-160, 90)}) {
+    View3D view(studio.renderer);
+    view.draw(scene, orbited(camera_of(grid), turn), kSize, 0, 1);
+    int skin = 0, other = 0;
+    for (int y = 0; y < kSize.y; y += 3)
+      for (int x = 0; x < kSize.x; x += 3)
+        if (const auto hit = view.pick({x, y})) ++(hit->label == 1 ? skin : other);
+    INFO(skin, " of skin, ", other, " of what lies beneath");
+    CHECK(skin > 300);
+    CHECK(other == 0);
+  }
+}
+
 TEST_CASE("view: hiding a label shows what lies beneath, and showing it again gives the first picture") {
   Studio studio;
   const Grid grid = grid_of({64, 64, 64});
