@@ -37,14 +37,15 @@ bool number_field(Editor& editor, const std::string& name, const Rect& rect, dou
                   const char* unit, bool filled, bool& committed) {
   const Look& look = editor.look;
   committed = false;
-  // The text stands at the right with its unit; ImGui's own field appears while a number is typed.
+  // The text stands at the right with its unit; ImGui's own field appears while a number is typed, without its label.
+  const std::string id = "##" + name;
   ImGui::SetCursorScreenPos(im(rect.low));
   ImGui::SetNextItemWidth(rect.width());
   ImGui::PushFont(look.fonts.mono);
-  ImGui::PushStyleColor(ImGuiCol_Text, with_alpha(look.theme.text, ImGui::TempInputIsActive(ImGui::GetID(name.c_str())) ? 1 : 0));
+  ImGui::PushStyleColor(ImGuiCol_Text, with_alpha(look.theme.text, ImGui::TempInputIsActive(ImGui::GetID(id.c_str())) ? 1 : 0));
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(look.px(7), std::round((rect.height() - look.fonts.mono->FontSize) / 2)));
   const double speed = std::clamp((high - low) / std::max(1.0f, rect.width()), 1e-6, kFastest);
-  const bool changed = ImGui::DragScalar(name.c_str() , ImGuiDataType_Double, &value, static_cast<float>(speed), &low, &high, format, ImGuiSliderFlags_AlwaysClamp);
+  const bool changed = ImGui::DragScalar(id.c_str(), ImGuiDataType_Double, &value, static_cast<float>(speed), &low, &high, format, ImGuiSliderFlags_AlwaysClamp);
   const bool typing = ImGui::TempInputIsActive(ImGui::GetItemID());
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/tooltip.h"
 
+#include <utility>
+
+#include <imgui_internal.h>
+
 #include "editor/operators/operator.h"
 #include "editor/paint.h"
 #include "editor/dispatch.h"
@@ -27,11 +31,11 @@ void operator_tooltip(Editor& editor, const Operator& op, const Rect& rect) {
 
 void draw_tooltip(Editor& editor) {
   auto& tip = editor.tip;
-  if (!tip.asked || editor.input.down(MouseButton::Left)) {
-    if (!tip.asked) tip.widget.clear();
-    return;
-  }
-  tip.asked = false;
+  // While a number is typed a tip would hide the fields below it.
+  const ImGuiID active = ImGui::GetActiveID();
+  const bool typing = active != 0 && ImGui::TempInputIsActive(active);
+  if (!std::exchange(tip.asked, false) || typing) return tip.widget.clear();
+  if (editor.input.down(MouseButton::Left)) return;
   if (editor.now - tip.since < editor.preferences.tooltip_delay) return editor.wake_at(tip.since + editor.preferences.tooltip_delay);
 
   const Look& look = editor.look;
