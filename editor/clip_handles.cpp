@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/clip_handles.h"
 
+#include "editor/gizmo_painter.h"
 #include "editor/project.h"
 #include "editor/widgets.h"
 
@@ -137,7 +138,7 @@ void draw_plane(Editor& editor, const Painter& painter) {
   const glm::dvec3 corners[] = {plane.point + half * (right + up), plane.point + half * (up - right), plane.point - half * (right + up), plane.point + half * (right - up)};
   for (int i = 0; i < 4; ++i) painter.line(corners[i], corners[(i + 1) % 4]);
   painter.line(plane.point, plane.point + half * normal);
-  const Pressed pressed = painter.handle("Clip plane", plane.point + half * normal, editor.look.theme.accent_text, "Drag to move the clip plane along its normal, with Ctrl by 10 mm. A double click brings it to the cross-hair.");
+  const Pressed pressed = painter.handle("Clip plane", plane.point + half * normal, kViewAccent, "Drag to move the clip plane along its normal, with Ctrl by 10 mm. A double click brings it to the cross-hair.");
   if (pressed.double_clicked) {
     Visibility next = *editor.document().visibility;
     next.clip_plane.point = editor.views->cross_hair;

@@ -260,15 +260,14 @@ void draw_marks(Editor& editor, const SeenFrom& view) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !armature || !editor.views->bones) return;
   const GizmoPainter painter(editor, view);
-  const Theme& theme = editor.look.theme;
   if (const Anchors& anchors = anchors_of(editor.document()); !anchors.pins.empty()) {
     const auto posed = posed_from_rest(*armature, shown_pose(editor));
     for (const std::string& name : anchors.pins)
-      if (const auto bone = armature->find(name)) painter.diamond(posed[*bone] * armature->bones[*bone].tail, theme.accent_text, 12);
+      if (const auto bone = armature->find(name)) painter.diamond(posed[*bone] * armature->bones[*bone].tail, kViewAccent, 12);
   }
   for (const Pole& pole : poles_of(editor)) {
-    painter.line(pole.middle, pole.point, theme.accent_text, 1, true);
-    painter.dot(pole.point, theme.accent_text, 0xFF1A1614, 5);
+    painter.line(pole.middle, pole.point, kViewAccent, 1, true);
+    painter.dot(pole.point, kViewAccent, 0xFF1A1614, 5);
   }
 }
 
@@ -290,7 +289,7 @@ void draw_limits(Editor& editor, const SeenFrom& view) {
   }
   const JointLimits& limits = bone.limits;
   const GizmoPainter painter(editor, view);
-  const Colour line = with_alpha(editor.look.theme.warn, posed ? 0.6f : 0.9f), area = with_alpha(editor.look.theme.warn, posed ? 0.09f : 0.16f);
+  const Colour line = with_alpha(kViewWarn, posed ? 0.6f : 0.9f), area = with_alpha(kViewWarn, posed ? 0.09f : 0.16f);
   const glm::dvec3 head = carried * bone.head, along = carried.rotation * (bone.tail - bone.head);
   if (limits.type == JointLimits::Type::Hinge) {
     const glm::dvec3 axis = carried.rotation * limits.axis, across = along - glm::dot(along, axis) * axis;

@@ -144,20 +144,26 @@ void GizmoPainter::arrow(const glm::dvec3& from, const glm::dvec3& direction, Co
   canvas().AddTriangleFilled(im(*foot + side), im(*tip), im(*foot - side), colour);
 }
 
+Rect place_of_read_out(const Look& look, const Rect& view, const glm::vec2& point) {
+  const glm::vec2 size{look.px(182), look.px(46)}, first = view.low + look.px(8), last = glm::max(first, view.high - size - look.px(8));
+  const float aside = look.px(128), away = look.px(40);
+  glm::vec2 low = point + glm::vec2(aside, -look.px(66));
+  if (low.x > last.x) low.x = point.x - aside - size.x;
+  if (low.x < first.x) low = {point.x - size.x / 2, point.y - away - size.y < first.y ? point.y + away : point.y - away - size.y};
+  low = glm::round(glm::clamp(low, first, last));
+  return {low, low + size};
+}
+
 void GizmoPainter::read_out(const glm::dvec3& at, const std::string& number, const std::string& axis, const std::string& below, Colour below_colour) const {
   const auto centre = view_.pixel_of(at);
   if (!centre) return;
   const Look& look = editor_.look;
-  const Rect& inside = view_.place.rect;
-  const glm::vec2 size{look.px(182), look.px(46)}, middle(*centre);
-  glm::vec2 low = middle + glm::vec2(look.px(128), -look.px(66));
-  if (low.x + size.x > inside.high.x - look.px(8)) low.x = middle.x - look.px(128) - size.x;
-  low.y = std::clamp(low.y, inside.low.y + look.px(8), std::max(inside.low.y + look.px(8), inside.high.y - size.y - look.px(8)));
-  low = glm::round(low);
-  fill({low, low + size}, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
+  const Rect place = place_of_read_out(look, view_.place.rect, glm::vec2(*centre));
+  const glm::vec2 low = place.low;
+  fill(place, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
   const float right = put_text(editor_, look.fonts.mono, kGizmoActive, low + glm::vec2(look.px(10), look.px(5)), number);
   put_text(editor_, look.fonts.small, look.theme.view_text2, glm::vec2(right + look.px(10), low.y + look.px(6)), axis);
-  put_text(editor_, look.fonts.small, below_colour, Rect{{low.x + look.px(10), low.y + look.px(23)}, {low.x + size.x - look.px(8), low.y + size.y - look.px(4)}}, below);
+  put_text(editor_, look.fonts.small, below_colour, Rect{{low.x + look.px(10), low.y + look.px(23)}, place.high - glm::vec2(look.px(8), look.px(4))}, below);
 }
 
 }  // namespace limber::editor

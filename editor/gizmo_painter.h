@@ -28,6 +28,10 @@ struct Ring {
 // `pixels` large on the screen.
 Ring ring_of(const SeenFrom& view, float scale, const glm::dvec3& centre, const glm::dvec3& axis, double pixels);
 
+// Where a read-out stands: beside the point, at its other side near the view's edge, above or below it where neither has
+// room; inside the view, whatever the point.
+Rect place_of_read_out(const Look& look, const Rect& view, const glm::vec2& point);
+
 class GizmoPainter {
  public:
   GizmoPainter(Editor& editor, const SeenFrom& view) : editor_(editor), view_(view) {}
@@ -42,7 +46,7 @@ class GizmoPainter {
   void square(const glm::dvec3& middle, const glm::dvec3& half_a, const glm::dvec3& half_b, Colour colour) const;  // halves in mm
   void diamond(const glm::dvec3& at, Colour colour, float size) const;
   void arrow(const glm::dvec3& from, const glm::dvec3& direction, Colour colour, float begin, float end, float width, bool box) const;
-  // Beside the point, at the other side near the view's edge: a bold line and a quiet one.
+  // A bold line and a quiet one.
   void read_out(const glm::dvec3& at, const std::string& number, const std::string& axis, const std::string& below, Colour below_colour) const;
 
  private:
@@ -53,5 +57,8 @@ class GizmoPainter {
 };
 
 constexpr Colour kGizmoActive = 0xFF8AE0FF;  // FFE08A, what is dragged
+// Views are dark in every theme, and so are these for it.
+constexpr Colour kViewOk = 0xFF9AD15A, kViewWarn = 0xFF52BCF4, kViewError = 0xFF807AFF;  // 5AD19A, F4BC52, FF7A80
+constexpr Colour kViewAccent = 0xFFFFBE8F;                                               // 8FBEFF
 
 }  // namespace limber::editor

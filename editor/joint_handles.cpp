@@ -63,7 +63,7 @@ void draw_joint_handles(Editor& editor, const SeenFrom& view) {
     painter.line(from, *handle, with_alpha(colour, hovered ? 1 : 0.8f), 2);
     painter.dot(*handle, hovered ? kGizmoActive : colour, 0xFF1A1614, 6);
   };
-  put(hinge_handle(editor, view), bone->head, theme.warn);
+  put(hinge_handle(editor, view), bone->head, kViewWarn);
   put(roll_handle(editor, view), (bone->head + bone->tail) / 2.0, theme.axis[0]);
 }
 

@@ -69,7 +69,7 @@ void draw_rig_check(Editor& editor, const SeenFrom& view) {
   const KnownRigCheck* known = editor.views->bones && editor.handling->rig_check_marks ? rig_check(editor) : nullptr;
   if (!known) return;
   const GizmoPainter painter(editor, view);
-  const Colour colour = editor.look.theme.error;
+  const Colour colour = kViewError;
   for (const RigCheck::Leaving& stretch : known->check.leaving) {
     const Bone& bone = known->rig->bones[stretch.bone];
     painter.line(glm::mix(bone.head, bone.tail, stretch.from), glm::mix(bone.head, bone.tail, stretch.to), with_alpha(colour, view.shows(stretch.place) ? 0.9f : 0.3f), 3);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/gizmo_painter.h"
 #include "editor/paint.h"
 #include "editor/posing.h"
 #include "editor/rigging.h"
@@ -145,7 +146,7 @@ class CircleSelection final : public AreaSelection {
   void draw(Editor& editor, const ViewPlace& place) override {
     if (place.id != view_.place.id) return;
     const bool taking_out = editor.input.down(Key::Shift);
-    ImGui::GetWindowDrawList()->AddCircle(im(pointer_), radius_ * editor.look.scale, taking_out ? editor.look.theme.error : editor.look.theme.view_text, 64, 1.5f * editor.look.line());
+    ImGui::GetWindowDrawList()->AddCircle(im(pointer_), radius_ * editor.look.scale, taking_out ? kViewError : editor.look.theme.view_text, 64, 1.5f * editor.look.line());
   }
 
   std::vector<KeyHint> hints(const Editor&) const override {

@@ -58,16 +58,16 @@ class Dragging final : public TransformTool {
     const auto posed = posed_from_rest(*armature_, shown_pose(editor));
     int bone = bone_;
     for (int i = 0; !is_root_ && i < chain_ && bone >= 0; ++i, bone = armature_->bones[bone].parent)
-      painter.line(posed[bone] * armature_->bones[bone].head, posed[bone] * armature_->bones[bone].tail, theme.accent_text, 2);
+      painter.line(posed[bone] * armature_->bones[bone].head, posed[bone] * armature_->bones[bone].tail, kViewAccent, 2);
     if (lock_.axis >= 0 && !lock_.plane) {
       const double far = view_.millimetres_per_pixel(from_) * 2000;
       painter.line(from_ - far * lock_axis(), from_ + far * lock_axis(), with_alpha(theme.axis[lock_.axis], 0.6f), 1);
     }
     painter.line(from_, target_, theme.view_text2, 1, true);
-    painter.diamond(target_, reached_ ? theme.select : theme.error, 12);
+    painter.diamond(target_, reached_ ? theme.select : kViewError, 12);
     const std::string number = (number_.typed() ? number_.text() : text_of_number("%.1f", glm::distance(target_, from_))) + " mm";
     const std::string words = is_root_ ? "The body" : std::to_string(chain_) + (chain_ == 1 ? " bone follows" : " bones follow");
-    painter.read_out(target_, number, lock_.axis < 0 ? "" : lock_text("along").substr(1), reached_ ? words : text_of_number("Out of reach by %.1f mm", short_of_), reached_ ? theme.view_text2 : theme.error);
+    painter.read_out(target_, number, lock_.axis < 0 ? "" : lock_text("along").substr(1), reached_ ? words : text_of_number("Out of reach by %.1f mm", short_of_), reached_ ? theme.view_text2 : kViewError);
   }
 
  private:

@@ -124,9 +124,8 @@ class Turning final : public TransformTool {
     const auto start = reading(before_);
     if (!start) return editor.look.theme.view_text2;
     const double angle = asked(*start), near = glm::radians(kNearLimit);
-    const Theme& theme = editor.look.theme;
-    if (angle < start->minimum - 1e-6 || angle > start->maximum + 1e-6) return theme.error;
-    return angle < start->minimum + near || angle > start->maximum - near ? theme.warn : theme.ok;
+    if (angle < start->minimum - 1e-6 || angle > start->maximum + 1e-6) return kViewError;
+    return angle < start->minimum + near || angle > start->maximum - near ? kViewWarn : kViewOk;
   }
 
   std::string limit_text(const Editor& editor) const {

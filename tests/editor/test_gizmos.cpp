@@ -78,6 +78,23 @@ struct GizmoEditor : LimbEditor {
 
 }  // namespace
 
+TEST_CASE("gizmo: a read-out stands wholly inside its view, and off the point that it speaks of") {
+  Look look;
+  for (const float scale : {1.0f, 2.0f}) {
+    look.scale = scale;
+    for (const glm::vec2 size : {glm::vec2(240, 160), glm::vec2(477, 214), glm::vec2(956, 430)}) {
+      const Rect view{{44 * scale, 70 * scale}, glm::vec2(44, 70) * scale + size * scale};
+      for (float x = 0; x <= 1; x += 0.0625f)
+        for (float y = 0; y <= 1; y += 0.0625f) {
+          const glm::vec2 point = view.low + view.size() * glm::vec2(x, y);
+          const Rect place = place_of_read_out(look, view, point);
+          CHECK(view.contains(place));
+          CHECK_FALSE(place.contains(point));
+        }
+    }
+  }
+}
+
 TEST_CASE("gizmos: dragging a ring turns the bone by the angle swept round it, in both projections and at twice the size") {
   for (const float scale : {1.0f, 2.0f})
     for (const bool parallel : {false, true}) {

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "editor/assets.h"
+#include "editor/gizmo_painter.h"
 #include "tests/support/program.h"
 
 using namespace limber::editor;
@@ -29,6 +30,10 @@ TEST_CASE("theme: every text can be read on what it stands on, in both themes") 
     CHECK(contrast(theme.view_text, theme.view_top) >= 4.5);
     CHECK(contrast(theme.view_text2, theme.view_top) >= 4.5);
     CHECK(contrast(theme.view_text2, theme.view_plate) >= 4.5);
+    for (const Colour mark : {kViewOk, kViewWarn, kViewError, kViewAccent}) {
+      CHECK(contrast(mark, theme.view_plate) >= 4.5);  // words
+      CHECK(contrast(mark, theme.view_top) >= 3);      // lines
+    }
   }
 }
 
