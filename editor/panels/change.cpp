@@ -15,7 +15,7 @@ std::string percent(const std::optional<double>& value) {
 
 Colour colour_of_change(const Theme& theme, const std::optional<double>& percent) {
   if (!percent) return theme.text2;
-  return std::abs(*percent) <= 1 ? theme.ok : std::abs(*percent) <= 5 ? theme.warn : theme.error;
+  return std::abs(*percent) <= kSmallChange ? theme.ok : std::abs(*percent) <= 5 ? theme.warn : theme.error;
 }
 
 }  // namespace limber::editor

@@ -10,6 +10,7 @@
 namespace limber::editor {
 
 std::string percent(const std::optional<double>& value);  // "+1.25 %"; "-" for none
+constexpr double kSmallChange = 1;  // percent: nothing to worry about
 Colour colour_of_change(const Theme& theme, const std::optional<double>& percent);
 
 }  // namespace limber::editor

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Key hints that fit what the pointer is over, what is under it, the job at work, whether all is saved.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
 
 #include "editor/dispatch.h"
 #include "editor/icons.h"
+#include "editor/live_pose.h"
+#include "editor/panels/change.h"
 #include "editor/panels/panels.h"
 #include "editor/tissues.h"
 
@@ -135,6 +138,24 @@ float draw_hover(Editor& editor, const Rect& bar, float right) {
   return left;
 }
 
+// The one figure of the pose that matters, where no sidebar shows it.
+float draw_volume_change(Editor& editor, const Rect& bar, float right) {
+  LivePose& live = *editor.live;
+  if (editor.workspace != Workspace::Pose || !editor.layout.sidebar.empty() || !live.posed() || !live.trouble().empty()) return right;
+  live.metrics().want();
+  const PoseMetrics* known = live.metrics().known();
+  const PoseMetrics* metrics = known ? known : live.metrics().last();
+  if (!metrics) return right;
+  const Look& look = editor.look;
+  const auto change = metrics->total.change_percent();
+  const Colour colour = known ? colour_of_change(look.theme, change) : look.theme.text3;
+  const Rect slot{{right - text_size(look.fonts.small, "Volume +00.00 %").x - look.px(22), bar.low.y}, {right, bar.high.y}};
+  put_icon(look.fonts.small, colour, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, std::abs(change.value_or(0)) <= kSmallChange ? icon::kOk : icon::kWarning);
+  put_text(editor, look.fonts.small, colour, Rect{{slot.low.x + look.px(20), slot.low.y}, {slot.high.x + 1, slot.high.y}}, "Volume " + percent(change));
+  if (press_area(editor, "Volume change", slot).hovered) tooltip(editor, slot, "Volume " + percent(change), "Of all tissue, against rest. N opens the sidebar with every tissue.");
+  return slot.low.x - look.px(12);
+}
+
 }  // namespace
 
 void draw_status_bar(Editor& editor) {
@@ -147,6 +168,7 @@ void draw_status_bar(Editor& editor) {
     const std::string words = "or drop a file on the window";
     put_text(editor, look.fonts.small, look.theme.text2, Rect{{right - text_size(look.fonts.small, words).x - 1, bar.low.y}, {right, bar.high.y}}, words);
   }
+  right = draw_volume_change(editor, bar, right);
   right = draw_job_slot(editor, bar, right);
   right = draw_hover(editor, bar, right);
   draw_hints(editor, bar, right);

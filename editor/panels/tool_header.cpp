@@ -9,7 +9,8 @@ namespace {
 
 class Header {
  public:
-  explicit Header(Editor& editor) : editor_(editor), bar_(editor.layout.tool_header), x_(editor.look.px(8)) {}
+  // `drawn`: else it is only found out what has room.
+  Header(Editor& editor, bool drawn, bool short_labels) : editor_(editor), bar_(editor.layout.tool_header), x_(editor.look.px(8)), drawn_(drawn), short_labels_(short_labels) {}
 
   // Operators of which one is on, as one bar.
   void segments(std::initializer_list<const char*> ids) {
@@ -41,9 +42,10 @@ class Header {
       if (op->checked(editor_)) chosen = op;
       width = std::max(width, width_of_button(editor_, {op->icon, op->label}));
     }
-    const float height = px(26), y = std::round(bar_.centre().y - height / 2);
-    if (button(editor_, name, {{x_, y}, {x_ + width, y + height}}, {chosen->icon, chosen->label})) ImGui::OpenPopup(name);
+    const float height = px(26), y = std::round(bar_.centre().y - height / 2), x = x_;
     x_ += width + px(6);
+    if (!drawn_) return;
+    if (button(editor_, name, {{x, y}, {x + width, y + height}}, {chosen->icon, chosen->label})) ImGui::OpenPopup(name);
     if (!ImGui::BeginPopup(name, ImGuiWindowFlags_NoMove)) return;
     editor_.place.region = Region::Popup;
     push_path(editor_, name);
@@ -69,12 +71,12 @@ class Header {
 
   void label(const std::string& text) {
     const float width = text_size(editor_.look.fonts.regular, text).x;
-    put_text(editor_, editor_.look.fonts.regular, editor_.look.theme.text2, Rect{{x_, bar_.low.y}, {x_ + width + 1, bar_.high.y}}, text);
+    if (drawn_) put_text(editor_, editor_.look.fonts.regular, editor_.look.theme.text2, Rect{{x_, bar_.low.y}, {x_ + width + 1, bar_.high.y}}, text);
     x_ += width + px(8);
   }
 
   void line() {
-    fill({{x_, bar_.low.y + px(9)}, {x_ + editor_.look.line(), bar_.high.y - px(9)}}, editor_.look.theme.line2);
+    if (drawn_) fill({{x_, bar_.low.y + px(9)}, {x_ + editor_.look.line(), bar_.high.y - px(9)}}, editor_.look.theme.line2);
     x_ += editor_.look.line() + px(10);
   }
 
@@ -97,6 +99,9 @@ class Header {
     editor_.place.region = Region::ToolHeader;
     ImGui::EndPopup();
   }
+  bool dropped_any() const { return !dropped_.empty(); }
+  // The width of a toggle without its label, where that is short.
+  float toggle_width(float labelled) const { return short_labels_ ? 36 : labelled; }
   // Whether a group of that width fits; if not, its operators go behind "...".
   bool fits(float width, std::initializer_list<const char*> ids) {
     if (dropped_.empty() && x_ + px(width) < right_ - px(44)) return true;
@@ -109,30 +114,24 @@ class Header {
   float px(float size) const { return editor_.look.px(size); }
   ButtonLook face_of(const Operator& op, bool segment) const {
     const bool layout = segment && *op.icon;
-    const bool icon_alone = layout || (editor_.layout.short_labels && *op.icon);
+    const bool icon_alone = layout || (short_labels_ && *op.icon);
     return {op.icon, icon_alone ? "" : op.label};
   }
   void place(const char* id, const std::string& label, float width, ButtonStyle style) {
     const float height = px(26), y = std::round(bar_.centre().y - height / 2);
-    operator_button(editor_, id, {{x_, y}, {x_ + width, y + height}}, label, style);
+    if (drawn_) operator_button(editor_, id, {{x_, y}, {x_ + width, y + height}}, label, style);
     x_ += width;
   }
 
   Editor& editor_;
   Rect bar_;
   float x_, right_ = 1e9f;
+  bool drawn_, short_labels_;
   std::vector<std::string> dropped_;
 };
 
-}  // namespace
-
-void draw_tool_header(Editor& editor) {
-  const Look& look = editor.look;
-  const Rect& rect = editor.layout.tool_header;
-  begin_region(editor, Region::ToolHeader, "header", rect, look.theme.head);
-  fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
-  fill({{rect.low.x, rect.high.y - look.line()}, rect.high}, look.theme.void_);
-  Header header(editor);
+// How the body is shown, and what the workspace chooses from.
+void put_options(Editor& editor, Header& header) {
   header.layouts();
   header.to_left();
   header.segments({"view.solid", "view.xray_display", "view.tissue"});
@@ -144,7 +143,7 @@ void draw_tool_header(Editor& editor) {
   }
   if (editor.workspace == Workspace::Rig && editor.document().armature) {
     if (header.fits(140, {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle"})) header.choice("Snap", {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle"});
-    if (header.fits(editor.layout.short_labels ? 36 : 110, {"edit.x_mirror"})) header.toggle("edit.x_mirror");
+    if (header.fits(header.toggle_width(110), {"edit.x_mirror"})) header.toggle("edit.x_mirror");
     if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"})) header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
     header.line();
   }
@@ -156,9 +155,24 @@ void draw_tool_header(Editor& editor) {
     if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"})) header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
     if (header.fits(90, {"pose.limits"})) header.toggle("pose.limits", "Limits");
     for (const char* id : {"pose.auto_ik", "edit.x_mirror", "motion.onion_skin"})
-      if (header.fits(editor.layout.short_labels ? 36 : 110, {id})) header.toggle(id);
+      if (header.fits(header.toggle_width(110), {id})) header.toggle(id);
     header.line();
   }
+}
+
+}  // namespace
+
+void draw_tool_header(Editor& editor) {
+  const Look& look = editor.look;
+  const Rect& rect = editor.layout.tool_header;
+  begin_region(editor, Region::ToolHeader, "header", rect, look.theme.head);
+  fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
+  fill({{rect.low.x, rect.high.y - look.line()}, rect.high}, look.theme.void_);
+  // Labels beside icons go before anything goes behind "...".
+  Header measured(editor, false, editor.layout.short_labels);
+  put_options(editor, measured);
+  Header header(editor, true, editor.layout.short_labels || measured.dropped_any());
+  put_options(editor, header);
   if (editor.layout.view_places.size() > 1) {
     if (header.fits(210, {"slice.show_labels", "slice.show_outlines"})) {
       header.label("Slices");
@@ -167,7 +181,7 @@ void draw_tool_header(Editor& editor) {
     if (header.fits(100, {"view.cross_hair"})) header.toggle("view.cross_hair");
   }
   for (const char* id : {"view.clip_box", "view.clip_plane"})
-    if (header.fits(editor.layout.short_labels ? 36 : 120, {id})) header.toggle(id);
+    if (header.fits(header.toggle_width(120), {id})) header.toggle(id);
   header.more();
   end_region(editor);
 }

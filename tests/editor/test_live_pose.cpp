@@ -7,6 +7,7 @@
 #include "core/skin/rigid.h"
 #include "editor/editor_state.h"
 #include "editor/live_pose.h"
+#include "editor/panels/change.h"
 #include "editor/posing.h"
 #include "editor/project.h"
 #include "editor/results.h"
@@ -54,6 +55,15 @@ struct LiveEditor : LimbEditor {
 };
 
 }  // namespace
+
+TEST_CASE("live pose: without a sidebar the status bar tells the change of volume") {
+  LiveEditor test;
+  CHECK(test.fact("text:Volume ") == "absent");
+  test.turn("X", 45);
+  test.play("key Return\nwait 0.5\nwait-idle\nwait 0.5\nwait-idle");
+  REQUIRE(test.editor->live->metrics().known());
+  CHECK(test.fact("text:Volume " + percent(test.editor->live->metrics().known()->total.change_percent())) == "shown");
+}
 
 TEST_CASE("live pose: the volume follows while a bone is turned, is kept with Return and goes back with Escape") {
   LiveEditor test;
