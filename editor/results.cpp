@@ -14,6 +14,14 @@ namespace limber::editor {
 
 namespace {
 
+// A report speaks to the command line: what it says to add is a switch here, or better a lasting cure.
+std::string in_words_of_the_editor(std::string warning) {
+  constexpr std::string_view kOption = "add --fit-joints";
+  if (const auto place = warning.find(kOption); place != std::string::npos) warning.replace(place, kOption.size(), "choose the bone and Fit joint axis in the Rig workspace");
+  return warning;
+}
+
+
 using Json = nlohmann::json;
 
 std::optional<double> number(const Json& json, const char* key) {
@@ -63,7 +71,7 @@ ResultFacts facts_of_report(const std::string& text) {
     }
   if (json.contains("warnings") && json["warnings"].is_array())
     for (const Json& warning : json["warnings"])
-      if (warning.is_string()) facts.warnings.push_back(warning);
+      if (warning.is_string()) facts.warnings.push_back(in_words_of_the_editor(warning));
   return facts;
 }
 

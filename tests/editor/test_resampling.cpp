@@ -58,6 +58,12 @@ std::string failure(LimbEditor& test) {
 
 }  // namespace
 
+TEST_CASE("resampling: what a report tells the command line to add, the editor tells where to find") {
+  const ResultFacts facts = facts_of_report(R"({"warnings": ["501 voxels are claimed by two bones: add --fit-joints"]})");
+  REQUIRE(facts.warnings.size() == 1);
+  CHECK(facts.warnings[0] == "501 voxels are claimed by two bones: choose the bone and Fit joint axis in the Rig workspace");
+}
+
 TEST_CASE("steps: the list names what is missing next, from nothing to a posed volume") {
   {
     SmallEditor empty({1280, 720}, {}, false);
