@@ -8,6 +8,7 @@
 
 #include "editor/assets.h"
 #include "editor/dispatch.h"
+#include "editor/frame_log.h"
 #include "editor/handling.h"
 #include "editor/live_pose.h"
 #include "editor/panels/panels.h"
@@ -62,6 +63,10 @@ bool begins_something(const Event& event) {
   if (const auto* button = std::get_if<ButtonChanged>(&event)) return button->down;
   if (const auto* key = std::get_if<KeyChanged>(&event)) return key->down && key->key < Key::Ctrl;
   return std::holds_alternative<Wheeled>(event);
+}
+
+void ended(const Editor& editor, const char* part_of_frame) {
+  if (editor.timeline->frame_log) editor.timeline->frame_log->part(part_of_frame);
 }
 
 void show_preferred(Editor& editor) {
@@ -148,9 +153,14 @@ void Editor::draw_views() {
   live->follow(*this);
   show_posed(*this);
   move_camera(views->body, now, preferences.reduce_motion);
+  ended(*this, "pose");
   const Document shown = shown_document(*this);
-  for (const ViewPlace& place : layout.view_places) draw_view_picture(*views, shown, place, now);
+  for (const ViewPlace& place : layout.view_places) {
+    draw_view_picture(*views, shown, place, now);
+    ended(*this, place.id == ViewId::Body ? "body" : "slice");
+  }
   hover_views(*this);
+  ended(*this, "hover");
 }
 
 void Editor::draw() {
@@ -194,18 +204,23 @@ void Editor::frame(double time) {
   layout = arrange(size, look.scale, arrangement());
   ImGui_ImplOpenGL3_NewFrame();
   take_input();
+  ended(*this, "input");
   open_waiting_files(*this);
   if (modal && !modal->frame(*this, io.DeltaTime)) modal.reset();
   if (poll_jobs(*this)) touch();
   std::erase_if(each_frame, [this](const auto& act) { return !act(*this); });
+  ended(*this, "jobs");
   layout = arrange(size, look.scale, arrangement());
   advance_time(*this);
+  ended(*this, "time");
   draw_views();
   draw();
+  ended(*this, "panels");
   await_next_frame(*this);
   follow_tour(*this);
   keep_edits(*this);
   keep_remembered(*this);
+  ended(*this, "keeping");
   if (next_dialog_) {
     dialog = std::move(*next_dialog_);
     next_dialog_.reset();
@@ -223,6 +238,7 @@ void Editor::frame(double time) {
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   });
+  ended(*this, "window");
 }
 
 }  // namespace limber::editor

@@ -6,6 +6,8 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "editor/frame_log.h"
+#include "editor/timeline.h"
 
 namespace limber::editor {
 
@@ -84,9 +86,24 @@ std::vector<ScriptLine> parse_script(const std::string& text) {
   return script;
 }
 
+Player::Player(Editor& editor, Offscreen& host) : editor_(editor), host_(host) { editor.timeline->frame_log = std::make_unique<FrameLog>(); }
+
+void Player::frame() {
+  editor_.timeline->frame_log->begin();
+  editor_.frame(now_);
+  editor_.timeline->frame_log->end(doing_);
+}
+
+void Player::step() {
+  now_ += kStep;
+  frame();
+}
+
 void Player::play(const std::vector<ScriptLine>& script, const Path& folder) {
   settle();
   for (const ScriptLine& line : script) {
+    doing_ = "line " + std::to_string(line.number) + ":";
+    for (const std::string& word : line.words) doing_ += " " + word;
     try {
       play_line(line, folder);
     } catch (const Error& error) {
@@ -137,7 +154,7 @@ void Player::wait_for_jobs() {
   const auto start = std::chrono::steady_clock::now();
   do {
     while (editor_.busy()) {
-      editor_.frame(now_);  // time stands still, so that what follows does not depend on how long the job took
+      frame();  // time stands still, so that what follows does not depend on how long the job took
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kLongestJob)) throw Error("the job does not end", "wait-job", "look at what it does");
     }
@@ -146,6 +163,7 @@ void Player::wait_for_jobs() {
 }
 
 void Player::wait_until_idle() {
+  if (editor_.timeline->play.on) throw Error("nothing comes to rest while a clip plays", "wait-idle", "stop it first, or use 'wait'");
   wait_for_jobs();
   for (int i = 0; i < kLongestSettling; ++i) {
     if (editor_.at_rest()) return;
@@ -165,6 +183,7 @@ void Player::expect(const std::vector<std::string>& words) {
 void Player::play_line(const ScriptLine& line, const Path& folder) {
   const std::vector<std::string>& words = line.words;
   const std::string& command = words[0];
+  const auto file_of = [&](const std::string& word) { return Path(word).is_absolute() ? Path(word) : folder / word; };
   if (command == "click" || command == "double-click" || command == "right-click") {
     need(words, 2);
     hold(words, 2, true);
@@ -235,7 +254,7 @@ void Player::play_line(const ScriptLine& line, const Path& folder) {
     settle();
   } else if (command == "drop") {
     need(words, 2);
-    host_.events.push(FilesDropped{{Path(words[1]).is_absolute() ? Path(words[1]) : folder / words[1]}});
+    host_.events.push(FilesDropped{{file_of(words[1])}});
     settle();
   } else if (command == "resize") {
     need(words, 3);
@@ -250,10 +269,14 @@ void Player::play_line(const ScriptLine& line, const Path& folder) {
     wait_until_idle();
   } else if (command == "expect") {
     expect(words);
-  } else if (command == "shot") {
+  } else if (command == "shot" || command == "shot-now") {
     need(words, 2);
-    wait_until_idle();
-    render::write_png(host_.picture(), Path(words[1]).is_absolute() ? Path(words[1]) : folder / words[1]);
+    if (command == "shot" && !editor_.timeline->play.on) wait_until_idle();
+    render::write_png(host_.picture(), file_of(words[1]));
+  } else if (command == "frame-log") {
+    need(words, 2);
+    write_file_atomically(file_of(words[1]), editor_.timeline->frame_log->text());
+    editor_.timeline->frame_log->clear();
   } else {
     throw Error("the command is unknown", command, "see the list in the script's documentation");
   }

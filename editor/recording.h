@@ -14,7 +14,9 @@
 //   resize WIDTH HEIGHT
 //   wait SECONDS | wait-job | wait-idle
 //   expect FACT [VALUE]              facts: fact_names()
-//   shot FILE                        a PNG of the window
+//   shot FILE                        a PNG of the window, once it is at rest; of a clip that plays, at once
+//   shot-now FILE                    a PNG of what was drawn last, coarse or not
+//   frame-log FILE                   what the frames since the last one cost: see frame_log.h
 #pragma once
 
 #include <string>
@@ -35,19 +37,20 @@ std::vector<ScriptLine> parse_script(const std::string& text);
 
 class Player {
  public:
-  Player(Editor& editor, Offscreen& host) : editor_(editor), host_(host) {}
+  Player(Editor& editor, Offscreen& host);
 
   // Throws Error naming the line that cannot be played, or whose expectation fails. Files are beside `folder`.
   void play(const std::vector<ScriptLine>& script, const Path& folder = ".");
   void play(const std::string& script) { play(parse_script(script)); }
   // Frames until every event has been seen and what they changed is drawn.
   void settle();
-  void step() { editor_.frame(now_ += kStep); }
+  void step();
   double now() const { return now_; }
 
  private:
   static constexpr double kStep = 1.0 / 60;  // s
   void play_line(const ScriptLine& line, const Path& folder);
+  void frame();
   glm::vec2 place_of(const std::string& name);
   void hold(const std::vector<std::string>& words, std::size_t first, bool down);
   void click(const std::string& name, MouseButton button, int times);
@@ -58,6 +61,7 @@ class Player {
   Editor& editor_;
   Offscreen& host_;
   double now_ = 0;
+  std::string doing_ = "beginning";  // the line that is played
 };
 
 // A fact about the editor as text: "workspace" is "rig", "history" the number of steps, "text:Muscle" "shown" or "absent".

@@ -58,6 +58,15 @@ FrameRange playing_range(const Editor& editor) {
   return {range.low, std::max(range.low, range.high)};
 }
 
+FrameRange all_frames(const Clip& clip) {
+  FrameRange all{clip.range_start, std::max(clip.range_start, clip.range_end)};
+  const auto take = [&](int frame) { all = {std::min(all.low, frame), std::max(all.high, frame)}; };
+  if (clip.motion) take(clip.start), take(clip.end());
+  for (const int frame : frames_of(clip.keys)) take(frame);
+  for (const Marker& marker : clip.markers) take(marker.frame);
+  return all;
+}
+
 double frame_rate(const Editor& editor) { return shown_clip(editor) ? shown_clip(editor)->rate : Clip{}.rate; }
 
 const ClipOnRig* clip_on_rig(Editor& editor) {
@@ -181,6 +190,12 @@ void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const st
   auto& shown = next.clips[static_cast<std::size_t>(next.clip)];
   Clip clip = *shown;
   edit(clip);
+  if (clip.motion && (clip.start != shown->start || clip.end() != shown->end() || clip.rate != shown->rate)) {
+    const FrameRange left = all_frames(clip);
+    const double moment = shown->start + std::round((next.frame - shown->start) * clip.rate / shown->rate);
+    next.frame = static_cast<int>(std::clamp<double>(moment, left.low, left.high));
+    if (next.frame != moment) editor.messages.info("The play head is at frame " + std::to_string(next.frame), "Where it was is no longer in the clip");
+  }
   shown = std::make_shared<const Clip>(std::move(clip));
   if (pose == PoseThen::FromClip) next.pose = pose_at_frame(next, &editor.timeline->prepared);
   commit(editor, label, std::move(next));

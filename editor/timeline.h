@@ -19,6 +19,7 @@
 
 #include "core/pose/clip.h"
 #include "editor/editor.h"
+#include "editor/frame_log.h"
 
 namespace limber::editor {
 
@@ -50,21 +51,21 @@ struct Timeline {
   std::optional<Rect> box;       // that chooses keys
   struct {                       // the chosen bone's angle and its parent's, over what is seen of the clip
     const Clip* clip = nullptr;
-    int bone = -1;
-    double low = 0, count = 0;
-    float width = 0;
-    std::vector<glm::vec2> angles;  // degrees
+    int bone = -1, first = 0, step = 1;  // frames
+    std::vector<glm::vec2> angles;       // degrees
   } curve;
 
   // What of time is seen: the frame at the left end of the ruler, and how many fit.
   struct {
     std::string clip;  // for which it was fitted
     double low = 0, count = 250;
+    std::optional<int> followed;  // the frame at which the play head was when it came into sight last
   } window;
   Rect ruler, marks, lane, keys, area;  // where these stood in the last picture; empty while the timeline is not shown
 
   std::int64_t revision = -1;  // of the step that the last change of frame made
   std::unique_ptr<ClipOnRig> prepared;
+  std::unique_ptr<FrameLog> frame_log;  // null: nobody asks what frames cost
 };
 
 // ---- what is shown
@@ -74,6 +75,8 @@ struct FrameRange {
   int low, high;
 };
 FrameRange playing_range(const Editor& editor);
+// Where the clip has something: its motion, what plays, keys, markers.
+FrameRange all_frames(const Clip& clip);
 double frame_rate(const Editor& editor);
 // The clip prepared for the rig; nullptr without either.
 const ClipOnRig* clip_on_rig(Editor& editor);
@@ -98,7 +101,8 @@ std::shared_ptr<const Pose> pose_at_frame(const Document& document, std::unique_
 // The clip becomes the shown one, at its first frame.
 void add_clip(Document& document, Clip clip);
 // One edit of the shown clip. Where there is no clip, one without a motion is made. The pose is taken from it anew, or,
-// where the edit says nothing of it, stays with what the user changed.
+// where the edit says nothing of it, stays with what the user changed. Where frames of the motion go, or get another rate,
+// the play head stays at its moment, or goes to the nearest that is left.
 enum class PoseThen { FromClip, Stays };
 void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const std::function<void(Clip&)>& edit);
 // The document with what `pose` changes set as keys at its frame.

@@ -14,6 +14,7 @@ namespace limber::editor {
 
 namespace {
 
+constexpr char kPingPongIcon[] = "\uf07e";
 constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1, 2, 4};
 constexpr double kZoomStep = 1.25, kMostFrames = 1e7;  // seen at once
 
@@ -176,8 +177,8 @@ void zoom(Editor& editor) {
   timeline.window.count = fresh;
 }
 
-Operator at_end(const char* id, const char* label, const char* sentence, AtEnd which) {
-  return {id, label, icon::kLoop, "Motion", sentence,
+Operator at_end(const char* id, const char* label, const char* icon, const char* sentence, AtEnd which) {
+  return {id, label, icon, "Motion", sentence,
           [which](Editor& e) {
             auto& mode = e.timeline->play.at_end;
             mode = mode == which ? AtEnd::Stop : which;
@@ -206,8 +207,8 @@ std::vector<Operator> motion_operators() {
       {"motion.view_selected", "Show chosen keys", "", "Motion", "The chosen keys fit into the timeline.", fit_window_to_keys, needs_chosen_keys},
       {"motion.set_start", "Start range here", "", "Motion", "What plays begins at this frame.", [](Editor& e) { set_range(e, true); }, needs_clip},
       {"motion.set_end", "End range here", "", "Motion", "What plays ends at this frame.", [](Editor& e) { set_range(e, false); }, needs_clip},
-      at_end("motion.loop", "Loop", "Begins again where the range ends.", AtEnd::Loop),
-      at_end("motion.ping_pong", "Ping-pong", "Turns round where the range ends.", AtEnd::PingPong),
+      at_end("motion.loop", "Loop", icon::kLoop, "Begins again where the range ends.", AtEnd::Loop),
+      at_end("motion.ping_pong", "Ping-pong", kPingPongIcon, "Turns round where the range ends.", AtEnd::PingPong),
       {"motion.faster", "Faster", "", "Motion", "Plays at the next higher speed.", [](Editor& e) { change_speed(e, 1); }},
       {"motion.slower", "Slower", "", "Motion", "Plays at the next lower speed.", [](Editor& e) { change_speed(e, -1); }},
       {"motion.play_at_file_rate", "Speed of the file", "", "Motion", "Plays at the rate at which it was recorded.", [](Editor& e) { change_speed(e, 0); }},

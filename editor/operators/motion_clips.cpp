@@ -96,6 +96,7 @@ void delete_clip(Editor& editor) {
   const std::string name = next.shown_clip()->name;
   next.clips.erase(next.clips.begin() + next.clip);
   next.clip = std::max(0, std::min(next.clip, static_cast<int>(next.clips.size()) - 1));
+  if (const Clip* clip = next.shown_clip()) next.frame = std::clamp(next.frame, all_frames(*clip).low, all_frames(*clip).high);
   next.pose = pose_at_frame(next);
   commit(editor, "Delete clip " + name, std::move(next));
 }

@@ -2,6 +2,7 @@
 // Below the views: the transport, and under it time itself: ruler, markers, the clip with the chosen bone's angle, keys.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 #include "editor/fields.h"
@@ -15,7 +16,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kTransport = 34, kRuler = 22, kMarks = 20, kLane = 54, kKeys = 36, kLabels = 56;
+constexpr float kTransport = 34, kRuler = 22, kMarks = 20, kLane = 54, kKeys = 36, kLabels = 56, kThinRow = 16, kEnds = 12;
 constexpr float kLeastTicks = 60;  // pixels from one number to the next
 constexpr Colour kAngle = 0xFF5CB6FF;  // FFB65C
 
@@ -55,7 +56,8 @@ class Transport {
     tool("motion.frame_forward");
     tool("motion.last");
     x_ += look_.px(4);
-    tool(editor_.timeline->play.at_end == AtEnd::PingPong ? "motion.ping_pong" : "motion.loop");
+    tool("motion.loop");
+    tool("motion.ping_pong");
     draw_speed();
     line();
     draw_frame();
@@ -146,7 +148,11 @@ class Transport {
     words("Frame");
     number("Frame", shown_frame(editor_), {}, [this](int frame) {
       stop_playing(editor_);
-      go_to_frame(editor_, frame);
+      // Keys may stand anywhere; a motion has an end.
+      const Clip* clip = shown_clip(editor_);
+      const FrameRange all = clip && clip->motion ? all_frames(*clip) : FrameRange{frame, frame};
+      go_to_frame(editor_, std::clamp(frame, all.low, all.high));
+      if (frame < all.low || frame > all.high) editor_.messages.info("Frame " + std::to_string(frame) + " is outside the clip", clip->name + " has frames " + std::to_string(all.low) + " to " + std::to_string(all.high));
     });
     x_ += look_.px(4);
   }
@@ -154,14 +160,23 @@ class Transport {
   void draw_range() {
     words("Range");
     const FrameRange range = playing_range(editor_);
-    number("Range start", range.low, {}, [&](int frame) { set(frame, std::max(frame, range.high)); });
-    number("Range end", range.high, {}, [&](int frame) { set(std::min(frame, range.low), frame); });
+    number("Range start", range.low, {}, [&](int frame) {
+      set(std::min(frame, range.high), range.high);
+      if (frame > range.high) editor_.messages.info("The range begins at frame " + std::to_string(range.high), "It cannot begin behind its end");
+    });
+    number("Range end", range.high, {}, [&](int frame) {
+      set(range.low, std::max(range.low, frame));
+      if (frame < range.low) editor_.messages.info("The range ends at frame " + std::to_string(range.low), "It cannot end before its beginning");
+    });
   }
+  // In sight, though it may go beyond the clip.
   void set(int low, int high) {
     edit_clip(editor_, "Set range", PoseThen::Stays, [&](Clip& clip) {
       clip.range_start = low;
       clip.range_end = high;
     });
+    const auto& window = editor_.timeline->window;
+    if (low < window.low || high > window.low + window.count) fit_window(editor_);
   }
 
   void draw_keying() {
@@ -203,6 +218,33 @@ double round_step(double least) {
   return 10 * power;
 }
 
+// ---- the play head
+
+std::string frame_text(int frame) { return "frame " + std::to_string(frame); }
+
+// Its tab with what the ruler counts; at the ruler's end while the head itself is out of sight.
+struct Head {
+  float x;
+  int beyond;  // -1 or 1: it is out of sight at the left or right
+  std::string text, other;
+  Rect tab;
+};
+
+Head head_of(const Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const int frame = shown_frame(editor);
+  const std::string seconds = seconds_text(frame, frame_rate(editor));
+  Head head{std::round(x_of(timeline, frame)), 0, timeline.seconds ? seconds : std::to_string(frame), timeline.seconds ? frame_text(frame) : seconds, {}};
+  head.beyond = head.x < timeline.ruler.low.x - 1 ? -1 : head.x > timeline.ruler.high.x + 1 ? 1 : 0;
+  const float half = std::round(std::max(look.px(48), text_size(look.fonts.small_mono, head.text).x + look.px(head.beyond ? 28 : 12)) / 2);
+  const float x = head.beyond ? std::clamp(head.x, timeline.ruler.low.x + half, timeline.ruler.high.x - half) : head.x;
+  head.tab = {{x - half, timeline.ruler.low.y + look.px(2)}, {x + half, timeline.ruler.low.y + look.px(20)}};
+  return head;
+}
+
+// ---- the ruler
+
 void draw_ruler(Editor& editor) {
   const Look& look = editor.look;
   const Timeline& timeline = *editor.timeline;
@@ -218,35 +260,53 @@ void draw_ruler(Editor& editor) {
   const double unit = timeline.seconds ? frame_rate(editor) : 1, per_pixel = timeline.window.count / std::max(1.0f, ruler.width());
   double step = round_step(look.px(kLeastTicks) * per_pixel / unit);
   if (!timeline.seconds) step = std::max(1.0, step);
-  const double first = std::ceil(timeline.window.low / unit / step * 5) * step / 5, last = (timeline.window.low + timeline.window.count) / unit;
-  for (double at = first; at <= last; at += step / 5) {
-    const double whole = at / step;
-    const bool major = std::abs(whole - std::round(whole)) < 1e-6;
+  const double minor = step / 5, end = (timeline.window.low + timeline.window.count) / unit;
+  const Rect tab = head_of(editor).tab;
+  for (auto i = static_cast<std::int64_t>(std::ceil(timeline.window.low / unit / minor)); static_cast<double>(i) * minor <= end; ++i) {
+    const double at = static_cast<double>(i) * minor;
+    const bool major = i % 5 == 0;
     const float x = std::round(x_of(timeline, at * unit));
     fill({{x, ruler.high.y - look.px(major ? 14 : 5)}, {x + look.line(), ruler.high.y}}, look.theme.line2);
     if (!major) continue;
     char text[24];
-    std::snprintf(text, sizeof text, timeline.seconds && step < 1 ? "%.2f" : "%.0f", at + 0.0);
-    put_text(editor, look.fonts.small_mono, look.theme.text2, glm::vec2(x + look.px(4), ruler.low.y + look.px(2)), text);
+    std::snprintf(text, sizeof text, timeline.seconds && step < 1 ? "%.2f" : "%.0f", at);
+    const glm::vec2 corner(x + look.px(4), ruler.low.y + look.px(2));
+    const Rect place{corner - look.px(3), corner + text_size(look.fonts.small_mono, text) + look.px(3)};
+    // Whole or not at all.
+    if (intersection(place, tab).empty() && place.high.x <= ruler.high.x + look.px(kEnds)) put_text(editor, look.fonts.small_mono, look.theme.text2, corner, text);
   }
 }
 
-void draw_markers(Editor& editor) {
+// Names have the room up to the next marker; the last one stands at its marker's left where there is more. Returns what
+// is covered.
+std::vector<Rect> draw_markers(Editor& editor) {
   const Look& look = editor.look;
   const Timeline& timeline = *editor.timeline;
   const Clip* clip = shown_clip(editor);
-  if (!clip || timeline.marks.empty()) return;
-  for (const Marker& marker : clip->markers) {
-    const float x = x_of(timeline, marker.frame), y = timeline.marks.low.y + look.px(6), half = look.px(5);
-    if (x < timeline.marks.low.x - half || x > timeline.marks.high.x) continue;
+  std::vector<Rect> covered;
+  if (!clip || timeline.marks.empty()) return covered;
+  const Rect& row = timeline.marks;
+  const float half = look.px(5), gap = look.px(9), y = std::round(row.centre().y) - look.px(4), end = row.high.x + look.px(kEnds - 2);
+  float begin = row.low.x;  // of what is free
+  for (std::size_t i = 0; i < clip->markers.size(); ++i) {
+    const Marker& marker = clip->markers[i];
+    const float x = x_of(timeline, marker.frame);
+    if (x < row.low.x - half || x > row.high.x + half) continue;
+    const float next = i + 1 < clip->markers.size() ? std::min(end, x_of(timeline, clip->markers[i + 1].frame) - gap) : end;
+    const float width = text_size(look.fonts.small, marker.name).x + 1, right = next - x - gap, left = x - gap - begin;
     ImGui::GetWindowDrawList()->AddTriangleFilled({x - half, y}, {x + half, y}, {x, y + look.px(9)}, look.theme.ok);
-    put_text(editor, look.fonts.small, look.theme.ok, glm::vec2(x + look.px(9), timeline.marks.low.y + look.px(2)), marker.name);
+    const bool at_left = right < width && next == end && left > right;
+    const Rect name = at_left ? Rect{{x - gap - std::min(width, left), row.low.y}, {x - gap, row.high.y}} : Rect{{x + gap, row.low.y}, {x + gap + std::min(width, std::max(0.0f, right)), row.high.y}};
+    put_text(editor, look.fonts.small, look.theme.ok, name, marker.name);
+    covered.push_back({{std::min(x - half, name.low.x), row.low.y}, {std::max(x + half, name.high.x), row.high.y}});
+    begin = covered.back().high.x + gap;
   }
+  return covered;
 }
 
 // ---- the chosen bone's angle
 
-constexpr float kPerSample = 3;        // pixels
+constexpr double kPerSample = 3;       // pixels at least
 constexpr std::size_t kAtOnce = 24;    // samples in one picture, so that none is late
 
 float degrees_from_rest(const Pose& pose, int bone) {
@@ -258,13 +318,15 @@ float degrees_from_rest(const Pose& pose, int bone) {
 void sample_curve(Editor& editor, const ClipOnRig& clip, int bone, const Rect& lane) {
   Timeline& timeline = *editor.timeline;
   auto& curve = timeline.curve;
-  const bool same = curve.clip == clip.clip().get() && curve.bone == bone && curve.low == timeline.window.low && curve.count == timeline.window.count && curve.width == lane.width();
-  if (!same) curve = {clip.clip().get(), bone, timeline.window.low, timeline.window.count, lane.width(), {}};
-  const auto wanted = static_cast<std::size_t>(lane.width() / editor.look.px(kPerSample)) + 1;
+  // At whole frames: between them a motion holds.
+  const double per_pixel = timeline.window.count / std::max(1.0f, lane.width());
+  const int step = static_cast<int>(std::clamp(std::ceil(kPerSample * editor.look.scale * per_pixel), 1.0, 1e7));
+  const int first = static_cast<int>(std::clamp(std::floor(timeline.window.low / step) * step, -1e8, 1e8));
+  if (curve.clip != clip.clip().get() || curve.bone != bone || curve.first != first || curve.step != step) curve = {clip.clip().get(), bone, first, step, {}};
+  const auto wanted = static_cast<std::size_t>(timeline.window.count / step) + 2;
   const int parent = clip.armature()->bones[bone].parent;
   for (std::size_t i = 0; i < kAtOnce && curve.angles.size() < wanted; ++i) {
-    const double frame = frame_at(timeline, lane.low.x + static_cast<float>(curve.angles.size()) * editor.look.px(kPerSample));
-    const Pose pose = clip.at(static_cast<int>(std::clamp(std::round(frame), -1e8, 1e8)));
+    const Pose pose = clip.at(first + step * static_cast<int>(curve.angles.size()));
     curve.angles.emplace_back(degrees_from_rest(pose, bone), parent >= 0 ? degrees_from_rest(pose, parent) : 0.0f);
   }
   if (curve.angles.size() < wanted) editor.touch();
@@ -274,18 +336,18 @@ void draw_curve(Editor& editor, const Rect& bar) {
   const Timeline& timeline = *editor.timeline;
   const ClipOnRig* clip = clip_on_rig(editor);
   const int bone = editor.selection.bone.value_or(-1);
-  if (!clip || bone < 0 || bone >= std::ssize(clip->armature()->bones) || bar.height() < editor.look.px(30)) return;
+  if (!clip || bone < 0 || bone >= std::ssize(clip->armature()->bones) || bar.height() < editor.look.px(40)) return;
   sample_curve(editor, *clip, bone, timeline.lane);
   const auto& angles = timeline.curve.angles;
   float most = 1;
   for (const glm::vec2& angle : angles) most = std::max({most, angle.x, angle.y});
-  const float low = bar.high.y - editor.look.px(5), height = bar.height() - editor.look.px(26);
+  const float low = bar.high.y - editor.look.px(5), height = bar.height() - editor.look.px(32);  // below the name
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImGui::PushClipRect(im(bar.low), im(bar.high), true);
   const Colour colours[] = {kAngle, with_alpha(editor.look.theme.text3, 0.7f)};
   for (int line = clip->armature()->bones[bone].parent >= 0 ? 1 : 0; line >= 0; --line) {
     for (std::size_t i = 0; i < angles.size(); ++i)
-      list.PathLineTo({timeline.lane.low.x + static_cast<float>(i) * editor.look.px(kPerSample), low - height * angles[i][line] / most});
+      list.PathLineTo({x_of(timeline, timeline.curve.first + static_cast<double>(i) * timeline.curve.step), low - height * angles[i][line] / most});
     list.PathStroke(colours[line], 0, (line == 0 ? 1.5f : 1.0f) * editor.look.scale);
   }
   ImGui::PopClipRect();
@@ -336,29 +398,47 @@ void draw_keys(Editor& editor) {
   outline(box, look.theme.select, 0, look.line());
 }
 
-void draw_play_head(Editor& editor) {
+// What the ruler does not count stands beside it, where `covered` leaves room.
+void draw_play_head(Editor& editor, const std::vector<Rect>& covered) {
   const Look& look = editor.look;
   const Timeline& timeline = *editor.timeline;
-  const int frame = shown_frame(editor);
-  const float x = std::round(x_of(timeline, frame));
-  if (x < timeline.ruler.low.x - 1 || x > timeline.ruler.high.x + 1) return;
+  const Head head = head_of(editor);
+  fill(head.tab, look.theme.select, look.px(4));
+  if (head.beyond) {
+    const float side = static_cast<float>(head.beyond), tip = (side > 0 ? head.tab.high.x : head.tab.low.x) - side * look.px(5), y = head.tab.centre().y;
+    ImGui::GetWindowDrawList()->AddTriangleFilled({tip, y}, {tip - side * look.px(6), y - look.px(5)}, {tip - side * look.px(6), y + look.px(5)}, look.theme.on_select);
+    const Rect rest = side > 0 ? Rect{head.tab.low, {tip - look.px(6), head.tab.high.y}} : Rect{{tip + look.px(6), head.tab.low.y}, head.tab.high};
+    return put_text(editor, look.fonts.small_mono, look.theme.on_select, rest, head.text, Align::Centre);
+  }
   const float half = std::max(1.0f, std::round(look.scale));
-  fill({{x - half, timeline.ruler.low.y}, {x + half, timeline.area.high.y}}, look.theme.select);
-  const std::string text = std::to_string(frame);
-  const float width = std::max(look.px(48), text_size(look.fonts.small_mono, text).x + look.px(12));
-  const Rect tab{{x - std::round(width / 2), timeline.ruler.low.y + look.px(2)}, {x + std::round(width / 2), timeline.ruler.low.y + look.px(20)}};
-  fill(tab, look.theme.select, look.px(4));
-  put_text(editor, look.fonts.small_mono, look.theme.on_select, tab, text, Align::Centre);
+  fill({{head.x - half, timeline.ruler.low.y}, {head.x + half, timeline.area.high.y}}, look.theme.select);
+  put_text(editor, look.fonts.small_mono, look.theme.on_select, head.tab, head.text, Align::Centre);
   if (timeline.marks.empty()) return;
-  const std::string seconds = seconds_text(frame, frame_rate(editor));
-  const float wide = text_size(look.fonts.small_mono, seconds).x, left = x + look.px(30) + wide > timeline.marks.high.x ? x - look.px(8) - wide : x + look.px(30);
-  put_text(editor, look.fonts.small_mono, look.theme.select, glm::vec2(left, timeline.marks.low.y + look.px(2)), seconds);
+  const Rect& row = timeline.marks;
+  const float width = text_size(look.fonts.small_mono, head.other).x + 1;
+  for (const float left : {head.x + look.px(8), head.x - look.px(8) - width}) {
+    const Rect place{{left, row.low.y}, {left + width, row.high.y}};
+    const bool free = std::none_of(covered.begin(), covered.end(), [&](const Rect& other) { return !intersection(place, other).empty(); });
+    if (free && place.low.x >= row.low.x && place.high.x <= row.high.x + look.px(kEnds)) return put_text(editor, look.fonts.small_mono, look.theme.select, place, head.other);
+  }
+}
+
+// What is seen of time goes along when the play head leaves it, except under a hand that drags.
+void follow_head(Editor& editor) {
+  auto& window = editor.timeline->window;
+  const int frame = shown_frame(editor);
+  if (window.followed == frame || editor.drag) return;
+  const bool first = !window.followed;
+  window.followed = frame;
+  if (first) return;
+  if (frame < window.low) window.low = frame - 0.9 * window.count;
+  else if (frame > window.low + window.count) window.low = frame - 0.1 * window.count;
 }
 
 void place_rows(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
   Timeline& timeline = *editor.timeline;
-  const float left = rect.low.x + look.px(kLabels), right = rect.high.x - look.px(12);
+  const float left = rect.low.x + look.px(kLabels), right = rect.high.x - look.px(kEnds);
   float y = rect.low.y;
   const auto row = [&](float height) {
     const Rect place{{left, y}, {right, std::min(y + height, rect.high.y)}};
@@ -367,11 +447,11 @@ void place_rows(Editor& editor, const Rect& rect) {
   };
   timeline.area = {{left, y}, {right, rect.high.y}};
   timeline.ruler = row(look.px(kRuler));
-  // Low areas do without markers, and then with thinner rows.
+  // Low areas have thinner rows, and the lowest do without markers.
   const float rest = rect.high.y - y;
-  timeline.marks = rest > look.px(kMarks + 34 + 20) ? row(look.px(kMarks)) : Rect{};
-  const float keys = std::clamp(rest * 0.35f, look.px(16), look.px(kKeys));
-  timeline.lane = row(std::clamp(rect.high.y - y - keys, look.px(16), look.px(kLane)));
+  timeline.marks = rest > look.px(kMarks + 34 + 20) ? row(look.px(kMarks)) : rest >= look.px(3 * kThinRow) ? row(look.px(kThinRow)) : Rect{};
+  const float keys = std::clamp((rect.high.y - y) * 0.35f, look.px(kThinRow), look.px(kKeys));
+  timeline.lane = row(std::clamp(rect.high.y - y - keys, look.px(kThinRow), look.px(kLane)));
   timeline.keys = row(keys);
 }
 
@@ -394,19 +474,21 @@ void draw_timeline(Editor& editor, const Rect& rect) {
   const std::string fitted = clip->name + std::to_string(clip->start) + "+" + std::to_string(clip->end());
   if (timeline.window.clip != fitted) {
     timeline.window.clip = fitted;
+    timeline.window.followed.reset();
     timeline.chosen.clear();
     fit_window(editor);
   }
+  follow_head(editor);
   for (const auto& [name, place] : {std::pair<const char*, Rect>{"Marks", timeline.marks}, {"Clip", timeline.lane}, {"Keys", timeline.keys}})
     if (!place.empty()) put_text(editor, look.fonts.small, look.theme.text3, Rect{{rect.low.x + look.px(12), place.low.y}, {place.low.x - look.px(4), place.high.y}}, name);
   for (const auto& [name, place] : {std::pair<const char*, Rect>{"ruler", timeline.ruler}, {"marks", timeline.marks}, {"lane", timeline.lane}, {"keys", timeline.keys}})
     register_widget(editor, name, place);
-  ImGui::PushClipRect(im(timeline.area.low - glm::vec2(look.px(26), 0)), im(timeline.area.high + glm::vec2(look.px(12), 0)), true);
+  ImGui::PushClipRect(im(timeline.area.low - glm::vec2(look.px(26), 0)), im(timeline.area.high + glm::vec2(look.px(kEnds), 0)), true);
   draw_ruler(editor);
   draw_lane(editor);
-  draw_markers(editor);
+  const std::vector<Rect> covered = draw_markers(editor);
   draw_keys(editor);
-  draw_play_head(editor);
+  draw_play_head(editor, covered);
   ImGui::PopClipRect();
 }
 

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The real editor, played by scripts without a display.
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
 #include <epoxy/gl.h>
 
 #include "core/base/error.h"
+#include "editor/frame_log.h"
 #include "render/gl/object.h"
+#include "render/image_io.h"
+#include "tests/editor/small_clip.h"
 #include "tests/editor/small_editor.h"
 
 using namespace limber;
@@ -297,6 +304,66 @@ TEST_CASE("replay: every operator that can run without more words does, and leav
   }
 }
 
+TEST_CASE("replay: while a number is typed its field shows digits alone, and no tip covers what is below") {
+  SmallEditor test({1280, 720});
+  test.editor->history.reset(bending_limb(), "Open limb");
+  test.play("key Ctrl+3\nclick \"Motion/Onion skin/Onion frames...\"\nwait-idle\nmove \"On either side/value\"\nwait 2");
+  CHECK(test.editor->tip.widget == "On either side");
+  const editor::Rect field = test.editor->widgets.find("On either side/value")->rect;
+  const auto beside = [&] {
+    const render::Image picture = test.host->picture();
+    std::vector<std::uint8_t> pixels;
+    for (int y = static_cast<int>(field.low.y); y < static_cast<int>(field.high.y); ++y) {
+      const auto at = picture.rgba.begin() + 4 * (static_cast<std::ptrdiff_t>(y) * picture.size.x + static_cast<int>(field.high.x) + 1);
+      pixels.insert(pixels.end(), at, at + 4 * 14);
+    }
+    return pixels;
+  };
+  const auto before = beside();
+  test.play("double-click \"On either side/value\"\ntype 7\nwait 2");
+  CHECK(test.editor->tip.widget.empty());
+  CHECK(beside() == before);
+  test.play("key Return\nwait-idle");
+  CHECK(test.editor->timeline->onion.count == 7);
+}
+
+TEST_CASE("replay: a script tells what its frames cost, and what a clip that plays looks like") {
+  SmallEditor test;
+  test.editor->history.reset(bending_limb(), "Open limb");
+  const TemporaryFolder folder;
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  test.play("key Ctrl+3\nwait-idle\nframe-log " + file("before") + "\nmove \"3D view/view\"\nkey Space\nwait 0.5\nexpect playing yes\nshot " + file("a.png") +
+            "\nshot-now " + file("b.png") + "\nwait 0.5\nexpect playing yes\nframe-log " + file("log") + "\nframe-log " + file("empty"));
+  CHECK(render::read_png(file("a.png")).rgba == render::read_png(file("b.png")).rgba);
+  CHECK_THROWS_WITH_AS(test.play("wait-idle"), doctest::Contains("while a clip plays"), Error);
+  std::istringstream log(read_file(file("log")));
+  int frames = 0, waited = 0;
+  double worst = 0;
+  for (std::string line; std::getline(log, line);) {
+    if (line[0] == '#') continue;
+    const double took = std::stod(line.substr(line.find('\t') + 1));
+    worst = std::max(worst, took);
+    CHECK(std::stoi(line) == ++frames);
+    waited += line.find("wait 0.5") != std::string::npos;
+  }
+  CHECK(std::abs(waited - 60) <= 2);  // a second at 60 a second
+  char said[32];
+  std::snprintf(said, sizeof said, "# ms: worst %.1f", worst);
+  const std::string text = read_file(file("log"));
+  CHECK(text.starts_with("# " + std::to_string(frames) + " frames\n"));
+  CHECK(text.find(said) != std::string::npos);
+  CHECK(read_file(file("empty")).starts_with("# 0 frames\n"));
+}
+
+TEST_CASE("frame log: a percentile is the value that so many do not exceed") {
+  std::vector<double> values;
+  for (int i = 100; i > 0; --i) values.push_back(i);
+  CHECK(editor::percentile(values, 95) == 95);
+  CHECK(editor::percentile(values, 100) == 100);
+  CHECK(editor::percentile({3}, 50) == 3);
+  CHECK(editor::percentile({}, 50) == 0);
+}
+
 TEST_CASE("script: a wrong line is named") {
   SmallEditor test;
   CHECK_THROWS_WITH_AS(test.play("key Ctrl+1\nclick Nowhere"), doctest::Contains("line 2"), Error);
@@ -359,6 +426,12 @@ TEST_CASE("replay: the right button chooses what it lists commands for") {
 TEST_CASE("replay: Alt and a click choose, and list what lies behind") {
   SmallEditor test({1280, 720});
   test.play("wait-idle\n click \"3D view/view\" Alt\n expect tissue 143\n expect \"widget:pick/Muscle\"\n click pick/Muscle\n expect tissue 17");
+}
+
+TEST_CASE("replay: labels of the header's switches go before a choice goes behind three dots") {
+  SmallEditor test({1280, 720});
+  test.editor->history.reset(bending_limb(), "Open limb");
+  test.play("key Ctrl+1\nwait-idle\nexpect widget:header/Snap\nexpect widget:header/Axes\nexpect text:Templates");
 }
 
 TEST_CASE("replay: what does not fit the header goes behind three dots") {

@@ -153,6 +153,88 @@ TEST_CASE("timeline: keys without a motion make a clip of their own") {
   CHECK(test.bend() == doctest::Approx(60));
 }
 
+TEST_CASE("timeline: a frame that is typed stays in the clip, and a range does not cross itself; both are told") {
+  BendingEditor test;
+  const auto type = [&](const char* field, const char* number) { test.play(std::string("double-click timeline/\"") + field + "\"\nkey Ctrl+A\ntype \"" + number + "\"\nkey Return\nwait-idle"); };
+  type("Frame", "99999");
+  CHECK(test.editor->document().frame == 60);
+  CHECK(test.fact("text:outside the clip") == "shown");
+  type("Frame", "-50");
+  CHECK(test.editor->document().frame == 0);
+  type("Range start", "500");
+  CHECK(playing_range(*test.editor).low == 60);
+  CHECK(playing_range(*test.editor).high == 60);
+  CHECK(test.fact("text:The range begins at frame 60") == "shown");
+  type("Range start", "20");
+  type("Range end", "-7");
+  CHECK(playing_range(*test.editor).high == 20);
+  type("Range end", "900");
+  CHECK(x_of(*test.editor->timeline, 900) <= test.editor->timeline->ruler.high.x);
+}
+
+TEST_CASE("timeline: the play head stays with its moment when frames go or get another rate, and is never out of sight") {
+  BendingEditor test;
+  const auto head = [&] { return x_of(*test.editor->timeline, shown_frame(*test.editor)); };
+  const auto seen = [&] { return head() >= test.editor->timeline->ruler.low.x && head() <= test.editor->timeline->ruler.high.x; };
+  edit_clip(*test.editor, "Set range", PoseThen::Stays, [](Clip& clip) { clip.range_start = 20, clip.range_end = 40; });
+  go_to_frame(*test.editor, 5);
+  run(*test.editor, "motion.trim");
+  test.player.settle();
+  CHECK(test.editor->document().frame == 20);
+  CHECK(test.bend() == doctest::Approx(20));
+  CHECK(test.fact("text:The play head is at frame 20") == "shown");
+  CHECK(seen());
+
+  go_to_frame(*test.editor, 30);
+  test.play("click \"Motion/Clip/Resample clip...\"\ndouble-click \"Frame rate/value\"\nkey Ctrl+A\ntype 60\nkey Return\nwait-idle");
+  CHECK(test.editor->document().frame == 40);
+  CHECK(test.bend() == doctest::Approx(30).epsilon(0.01));
+
+  auto& window = test.editor->timeline->window;
+  for (const int frame : {-2000, 2000, 33}) {  // keys may be wanted anywhere
+    window.low = 20, window.count = 10;
+    go_to_frame(*test.editor, frame);
+    test.player.settle();
+    CHECK(seen());
+    CHECK(window.count == 10);
+  }
+  window.low = 500;  // by hand: the head's tab waits at the edge
+  test.player.settle();
+  CHECK(window.low == 500);
+  CHECK(test.fact("text:33") == "shown");
+}
+
+TEST_CASE("timeline: the ruler's zero has no sign, and the tab counts what the ruler counts") {
+  BendingEditor test;
+  go_to_frame(*test.editor, 30);
+  for (const bool seconds : {false, true})
+    for (double low = -12.3; low < 0; low += 1.7) {
+      test.editor->timeline->seconds = seconds;
+      test.editor->timeline->window.low = low;
+      test.player.settle();
+      for (const std::string& text : test.editor->widgets.texts()) CHECK_FALSE((text == "-0" || text == "-0.00"));
+      CHECK(test.fact("text:1.00 s") == "shown");
+      CHECK(test.fact("text:frame 30") == (seconds ? "shown" : "absent"));
+    }
+}
+
+TEST_CASE("timeline: the curve has a point at each frame that is wide enough, and markers have a row in small windows too") {
+  {
+    BendingEditor test;
+    test.editor->selection.bone = 1;
+    test.editor->touch();
+    test.player.settle();
+    const auto& curve = test.editor->timeline->curve;
+    CHECK(curve.step == 1);
+    REQUIRE(curve.angles.size() > 60);
+    for (int i = 0; i < std::ssize(curve.angles); ++i) CHECK(curve.angles[i].x == doctest::Approx(std::clamp(curve.first + i, 0, 60)).epsilon(1e-3));
+    CHECK(test.fact("widget:timeline/motion.loop") == "shown");
+    CHECK(test.fact("widget:timeline/motion.ping_pong") == "shown");
+  }
+  BendingEditor small(bending_limb(), {1024, 640});
+  CHECK(small.fact("widget:timeline/marks") == "shown");
+}
+
 TEST_CASE("timeline: buttons and rows stand inside the area and beside one another at every size") {
   for (const auto& [size, scale] : {std::pair<glm::ivec2, double>{{1280, 720}, 1}, {{1600, 900}, 1}, {{2560, 1440}, 2}, {{1024, 640}, 1}}) {
     CAPTURE(size.x);
