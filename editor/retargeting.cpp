@@ -106,7 +106,7 @@ int moved_bones(const ClipOnRig& clip) {
 }
 
 RetargetMap map_in_use(const ClipOnRig& clip) {
-  RetargetMap map;
+  RetargetMap map{.stances = clip.clip()->map.stances};
   if (!clip.retarget()) return map;
   for (int bone = 0; bone < std::ssize(clip.armature()->bones); ++bone)
     if (const int joint = clip.retarget()->joint_of(bone); joint >= 0) {

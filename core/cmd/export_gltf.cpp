@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber export-gltf VOLUME --rig R --weights W [--tissues T] [--motion F.bvh ...] [--up y|z|auto] [--map M] [--root-motion] [--step MM] -o OUT.glb
+// limber export-gltf VOLUME --rig R --weights W [--tissues T] [--motion F.bvh ...] [--up y|z|auto] [--map M]
+//   [--motion-rest POSE] [--rig-rest POSE] [--root-motion] [--step MM] -o OUT.glb
 #include <filesystem>
 #include <memory>
 
@@ -17,6 +18,7 @@ struct Options {
   BodyOptions body;
   std::string weights, map, output, progress, up = "y";
   std::vector<std::string> motions;
+  RestWords rests;
   bool root_motion = false;
   GltfSettings settings;
 };
@@ -26,6 +28,7 @@ std::shared_ptr<const Clip> clip_of_file(const Options& options, const std::stri
   if (motion->frame_count == 0) throw Error("this motion has no frames", file, "choose another file");
   Clip clip = clip_of(motion, unique_clip_name(before, std::filesystem::path(file).stem().string()));
   clip.map = options.map.empty() ? match_by_names(*motion, rig) : read_retarget_map(options.map, *motion, rig);
+  take_over(options.rests, clip.map);
   if (options.root_motion) clip.retarget.travel = Travel::Free;
   return std::make_shared<const Clip>(std::move(clip));
 }
@@ -50,6 +53,7 @@ void add_export_gltf(CLI::App& app) {
   auto* motion = command->add_option("--motion", options->motions, "motion capture (BVH) that becomes an animation (repeatable)")->type_name("F.bvh")->expected(1)->take_all();
   add_up_option(*command, options->up, motion);
   command->add_option("--map", options->map, "which joint moves which bone (default: by names)")->type_name("M.json")->needs(motion);
+  add_rest_options(*command, options->rests, motion, "");
   command->add_flag("--root-motion", options->root_motion, "let the body travel as the motion does")->needs(motion);
   command->add_option("--step", options->settings.step, "mm between the surface's points (default: 1/400 of the longest side)")->type_name("MM")->check(CLI::PositiveNumber);
   command->add_option("-o,--output", options->output, "OUT.glb")->required();

@@ -8,7 +8,6 @@
 #include "core/cmd/command.h"
 #include "core/pose/pose_io.h"
 #include "core/rig/motion_edit.h"
-#include "core/rig/retarget.h"
 #include "core/rig/up_axis.h"
 
 namespace limber::cmd {
@@ -29,7 +28,8 @@ void apply_flex(Pose& pose, const Armature& armature, const std::string& request
 // Of one frame, or of all.
 std::vector<Pose> poses_of_motion(const PoseOptions& options, const Armature& armature, std::optional<int> frame) {
   const Motion motion = read_motion(options.motion, options.up);
-  const RetargetMap map = options.map.empty() ? match_by_names(motion, armature) : read_retarget_map(options.map, motion, armature);
+  RetargetMap map = options.map.empty() ? match_by_names(motion, armature) : read_retarget_map(options.map, motion, armature);
+  take_over(options.rests, map);
   const Retarget retarget(motion, armature, map, {.travel = options.root_motion ? Travel::Free : Travel::Locked});
   if (frame) return {retarget.at(*frame)};
   std::vector<Pose> poses;
@@ -52,6 +52,17 @@ Motion read_motion(const std::string& file, const std::string& up) {
   return up == "z" || (up == "auto" && stands_along_z) ? y_up_from_z_up(motion) : motion;
 }
 
+void add_rest_options(CLI::App& command, RestWords& words, CLI::Option* needed, const std::string& group) {
+  const std::string which = ": T, A, anatomical, or file for as it lies (default: the map's)";
+  command.add_option("--motion-rest", words.motion, "what the motion's rest pose stands for" + which)->type_name("POSE")->needs(needed)->group(group);
+  command.add_option("--rig-rest", words.rig, "what the rig's rest pose stands for" + which)->type_name("POSE")->needs(needed)->group(group);
+}
+
+void take_over(const RestWords& words, RetargetMap& map) {
+  if (!words.motion.empty()) map.stances.source = stance_of_word(words.motion, "--motion-rest");
+  if (!words.rig.empty()) map.stances.rig = stance_of_word(words.rig, "--rig-rest");
+}
+
 void add_pose_options(CLI::App& command, PoseOptions& options) {
   const std::string group = "Pose";
   auto* pose = command.add_option("--pose", options.pose, "pose file (JSON)")->type_name("P.json")->group(group);
@@ -62,6 +73,7 @@ void add_pose_options(CLI::App& command, PoseOptions& options) {
   command.add_option("--frame", options.frame, "its frame, from 0")->type_name("N")->check(CLI::NonNegativeNumber)->group(group);
   add_up_option(command, options.up, motion);
   command.add_option("--map", options.map, "which joint moves which bone (default: by names)")->type_name("M.json")->needs(motion)->group(group);
+  add_rest_options(command, options.rests, motion, group);
   command.add_flag("--root-motion", options.root_motion, "let the body travel as the motion does")->needs(motion)->group(group);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How a command is told a pose:
-//   --pose P.json | --motion F.bvh --frame N [--up y|z|auto] [--map M.json] [--root-motion]     then, on top of it, any number of
+//   --pose P.json | --motion F.bvh --frame N [--up y|z|auto] [--map M.json] [--motion-rest POSE] [--rig-rest POSE] [--root-motion]
+// then, on top of it, any number of
 //   --flex BONE=DEG
 // Without any of them the pose is rest.
 #pragma once
@@ -12,9 +13,16 @@
 #include <CLI/CLI.hpp>
 
 #include "core/pose/pose.h"
-#include "core/rig/bvh.h"
+#include "core/rig/retarget.h"
 
 namespace limber::cmd {
+
+// What motion and rig rest in: words of rest_stance.h; "": as the map says.
+struct RestWords {
+  std::string motion, rig;
+};
+void add_rest_options(CLI::App& command, RestWords& words, CLI::Option* needed, const std::string& group);
+void take_over(const RestWords& words, RetargetMap& map);  // throws Error for what is no such word
 
 struct PoseOptions {
   std::string pose;               // file
@@ -23,6 +31,7 @@ struct PoseOptions {
   std::optional<int> frame;       // of the motion, from 0
   std::string up = "y";           // of the motion's file: y, z, or auto
   std::string map;                // file
+  RestWords rests;
   bool root_motion = false;
 };
 

@@ -57,7 +57,8 @@ ClipOnRig::ClipOnRig(std::shared_ptr<const Clip> clip, std::shared_ptr<const Arm
   try {
     const RetargetMap known = known_part(clip_->map, *clip_->motion, *armature_);
     if (known.sources.empty() && !clip_->map.sources.empty()) throw Error("the map names no bone of this rig", clip_->name, "match the joints again");
-    const RetargetMap map = clip_->map.sources.empty() ? match_by_names(*clip_->motion, *armature_) : known;
+    RetargetMap map = clip_->map.sources.empty() ? match_by_names(*clip_->motion, *armature_) : known;
+    map.stances = clip_->map.stances;
     retarget_ = std::make_shared<const Retarget>(*clip_->motion, *armature_, map, clip_->retarget);
   } catch (const Error& error) {
     problem_ = error.what();

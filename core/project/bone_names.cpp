@@ -63,12 +63,14 @@ Retarget prepared(const Clip& clip, const Armature& armature, const RetargetMap&
 
 void follow_motion(Clip& clip, const Armature& before, const Armature& after, const Names& names) {
   const bool by_names = clip.map.sources.empty();
-  const RetargetMap old = by_names ? matched(clip, before) : known_part(clip.map, *clip.motion, before);
+  RetargetMap old = by_names ? matched(clip, before) : known_part(clip.map, *clip.motion, before);
+  old.stances = clip.map.stances;
   clip.map.sources = names.follow(clip.map.sources);
   if (old.sources.empty()) return;
 
-  RetargetMap next{names.follow(old.sources)};
-  const RetargetMap found = by_names ? matched(clip, after) : RetargetMap{};
+  RetargetMap next{names.follow(old.sources), clip.map.stances};
+  RetargetMap found = by_names ? matched(clip, after) : RetargetMap{};
+  found.stances = clip.map.stances;
   for (const auto& [bone, source] : found.sources)
     if (names.changed(bone)) next.sources.insert({bone, source});
   const Retarget was = prepared(clip, before, old), is = prepared(clip, after, next);

@@ -8,8 +8,8 @@
 
 namespace limber {
 
-// 1 had one motion and no clips, 2 no library of poses, 3 no anchors.
-constexpr std::uint32_t kDocumentLayout = 4;
+// 1 had one motion and no clips, 2 no library of poses, 3 no anchors, 4 nothing above the two lowest bits of a clip's reference.
+constexpr std::uint32_t kDocumentLayout = 5;
 
 // A part's first byte.
 enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors };
@@ -30,6 +30,11 @@ template <> struct PartKindOf<Clip>        { static constexpr PartKind kKind = P
 template <> struct PartKindOf<NamedPose>   { static constexpr PartKind kKind = PartKind::NamedPose;  static constexpr const char* kName = "pose of the library"; };
 template <> struct PartKindOf<Anchors>     { static constexpr PartKind kKind = PartKind::Anchors;    static constexpr const char* kName = "pins and poles"; };
 // clang-format on
+
+// The reference, and above it what source and rig rest in.
+inline std::uint8_t packed_reference(const Clip& clip) {
+  return static_cast<std::uint8_t>(static_cast<int>(clip.retarget.reference) | static_cast<int>(clip.map.stances.source) << 2 | static_cast<int>(clip.map.stances.rig) << 4);
+}
 
 constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;  // voxels and long texts
 constexpr std::int64_t kGroupBricks = 32;                   // of weights in one leaf: 256 KB at most

@@ -173,7 +173,10 @@ void get(ByteReader& in, Clip& clip) {
   clip.retarget.mirror = in.flag();
   clip.retarget.scale = in.get<double>();
   in.require(std::isfinite(clip.retarget.scale) && clip.retarget.scale >= 0);
-  clip.retarget.reference = static_cast<Reference>(in.get_below<std::uint8_t>(static_cast<int>(Reference::FirstFrame) + 1));
+  const int packed = in.get_below<std::uint8_t>(1 << 6);
+  in.require((packed & 3) <= static_cast<int>(Reference::FirstFrame));
+  clip.retarget.reference = static_cast<Reference>(packed & 3);
+  clip.map.stances = {static_cast<RestStance>(packed >> 2 & 3), static_cast<RestStance>(packed >> 4)};
   get(in, clip.keys);
   clip.markers.resize(in.count(8));
   for (Marker& marker : clip.markers) {

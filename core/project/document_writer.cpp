@@ -306,7 +306,7 @@ class DocumentWriter::Writing {
     out.put(static_cast<std::uint8_t>(clip.retarget.travel));
     out.flag(clip.retarget.mirror);
     out.put(clip.retarget.scale);
-    out.put(static_cast<std::uint8_t>(clip.retarget.reference));
+    out.put(packed_reference(clip));
     put(out, clip.keys);
     out.count(clip.markers.size());
     for (const Marker& marker : clip.markers) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/rig/body_skeleton.h"
 
+#include <numbers>
+
 namespace limber {
 
 namespace {
@@ -9,6 +11,16 @@ constexpr BodySide kSides[] = {BodySide::Left, BodySide::Right};
 constexpr BodyPart kFingers[] = {BodyPart::Thumb, BodyPart::Index, BodyPart::Middle, BodyPart::Ring, BodyPart::Little};
 
 }  // namespace
+
+glm::dquat shortest_turn(const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 axis = glm::cross(a, b);
+  const double sine = glm::length(axis);
+  if (sine > 1e-12) return glm::angleAxis(std::atan2(sine, glm::dot(a, b)), axis / sine);
+  if (glm::dot(a, b) > 0) return {1, 0, 0, 0};
+  // A half turn about any axis across.
+  const glm::dvec3 across = glm::cross(a, std::abs(a.z) < 0.9 * glm::length(a) ? kUp : glm::dvec3(1, 0, 0));
+  return glm::angleAxis(std::numbers::pi, glm::normalize(across));
+}
 
 std::optional<glm::dmat3> axes_of(const glm::dvec3& main, const glm::dvec3& side) {
   const glm::dvec3 across = side - main * (glm::dot(side, main) / std::max(glm::dot(main, main), 1e-300));

@@ -19,6 +19,9 @@ inline const glm::dvec3 kUp(0, 0, 1);  // LPS: towards the head
 
 inline double angle_between(const glm::dvec3& a, const glm::dvec3& b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)); }
 
+// The shortest turn that takes direction a to direction b; neither need be of unit length.
+glm::dquat shortest_turn(const glm::dvec3& a, const glm::dvec3& b);
+
 // Right-handed axes: the third along `main`, the first as near to `side` as it can be.
 std::optional<glm::dmat3> axes_of(const glm::dvec3& main, const glm::dvec3& side);
 

@@ -22,24 +22,15 @@ bool is_trunk(BodyPart part) {
   return part == BodyPart::Pelvis || part == BodyPart::Spine || part == BodyPart::Neck || part == BodyPart::Head;
 }
 
-// The shortest turn that takes direction a to direction b.
-glm::dquat shortest_turn(const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 axis = glm::cross(a, b);
-  const double sine = glm::length(axis);
-  if (sine > 1e-12) return glm::angleAxis(std::atan2(sine, glm::dot(a, b)), axis / sine);
-  if (glm::dot(a, b) > 0) return {1, 0, 0, 0};
-  // A half turn about any axis across.
-  const glm::dvec3 across = glm::cross(a, std::abs(a.z) < 0.9 * glm::length(a) ? kUp : glm::dvec3(1, 0, 0));
-  return glm::angleAxis(std::numbers::pi, glm::normalize(across));
-}
-
 // ---- how the rig's bones lie at that moment
 
 class Alignment {
  public:
   // Turns per rig bone, from rest to how the source stands; only those of matched bones are meant.
-  Alignment(const Skeleton& rig, const Skeleton& source, const std::vector<int>& joint_of_bone, bool source_at_rest)
-      : rig_(rig), source_(source), joint_(joint_of_bone), turn_(joint_of_bone.size(), glm::dquat(1, 0, 0, 0)) {
+  //   stances   what is said of both
+  //   rebuilt   joints of the source whose fingers tell nothing any more
+  Alignment(const Skeleton& rig, const Skeleton& source, const std::vector<int>& joint_of_bone, bool source_at_rest, const RestStances& stances, const std::vector<int>& rebuilt)
+      : rig_(rig), source_(source), joint_(joint_of_bone), stances_(stances), rebuilt_(rebuilt), turn_(joint_of_bone.size(), glm::dquat(1, 0, 0, 0)) {
     hips_ = body_turn(BodyPart::Thigh, source_at_rest);
     shoulders_ = body_turn(BodyPart::UpperArm, source_at_rest);
     if (!hips_) hips_ = shoulders_;
@@ -102,7 +93,7 @@ class Alignment {
     const auto hand = rig_.joint.find({BodyPart::Hand, side});
     if (hand == rig_.joint.end() || joint_[hand->second] < 0) return;
     const int bone = hand->second, source = joint_[bone];
-    const auto [here, there] = knuckle_lines(side, source);
+    const auto [here, there] = palm_lines(side, bone, source);
     if (!here || !there) return;
     const auto from = axes_of(turn_[bone] * direction_of(rig_, bone), turn_[bone] * *here), to = axes_of(direction_of(source_, source), *there);
     if (!from || !to) return;
@@ -128,29 +119,42 @@ class Alignment {
     return bone == ancestor;
   }
 
-  // Across the hand, thumb side to little finger, by what both skeletons have: the knuckles, else the thumb.
-  std::pair<std::optional<glm::dvec3>, std::optional<glm::dvec3>> knuckle_lines(BodySide side, int source_hand) const {
+  // Across the hand, thumb side to little finger: by what both skeletons have, the knuckles, else the thumb; else by these
+  // where there are any, and by what is said where there are none.
+  std::pair<std::optional<glm::dvec3>, std::optional<glm::dvec3>> palm_lines(BodySide side, int hand, int source_hand) const {
     const auto& role = source_.role[source_hand];
     const BodySide source_side = role ? role->side : side;
-    auto knuckles = [](const Skeleton& skeleton, BodySide of) -> std::optional<glm::dvec3> {
-      const auto index = skeleton.place_of(BodyPart::Index, of, 1), little = skeleton.place_of(BodyPart::Little, of, 1);
-      return index && little ? std::optional(*little - *index) : std::nullopt;
+    const bool tells = std::find(rebuilt_.begin(), rebuilt_.end(), source_hand) == rebuilt_.end();
+    for (const auto line : {knuckles, thumb})
+      if (const auto here = line(rig_, side), there = line(source_, source_side); here && there && tells) return {here, there};
+    const auto seen_or_said = [&](const Skeleton& skeleton, RestStance stance, BodySide of, int joint, bool sees) -> std::optional<glm::dvec3> {
+      for (const auto line : {knuckles, thumb})
+        if (const auto seen = line(skeleton, of); seen && sees) return seen;
+      const glm::dmat3 body = axes_of_body(skeleton);
+      const auto said = palm_in(stance, of == BodySide::Middle ? source_side : of, glm::transpose(body) * direction_of(skeleton, joint));
+      return said ? std::optional(body * *said) : std::nullopt;
     };
-    auto thumb = [](const Skeleton& skeleton, BodySide of) -> std::optional<glm::dvec3> {
-      for (int segment : {3, 2, 1}) {
-        const auto found = skeleton.joint.find({BodyPart::Thumb, of, segment});
-        const auto hand = skeleton.place_of(BodyPart::Hand, of);
-        if (found != skeleton.joint.end() && hand) return *hand - skeleton.tip[found->second];
-      }
-      return std::nullopt;
-    };
-    if (knuckles(rig_, side) && knuckles(source_, source_side)) return {knuckles(rig_, side), knuckles(source_, source_side)};
-    return {thumb(rig_, side), thumb(source_, source_side)};
+    return {seen_or_said(rig_, stances_.rig, side, hand, true), seen_or_said(source_, stances_.source, source_side, source_hand, tells)};
+  }
+
+  static std::optional<glm::dvec3> knuckles(const Skeleton& skeleton, BodySide of) {
+    const auto index = skeleton.place_of(BodyPart::Index, of, 1), little = skeleton.place_of(BodyPart::Little, of, 1);
+    return index && little ? std::optional(*little - *index) : std::nullopt;
+  }
+  static std::optional<glm::dvec3> thumb(const Skeleton& skeleton, BodySide of) {
+    for (int segment : {3, 2, 1}) {
+      const auto found = skeleton.joint.find({BodyPart::Thumb, of, segment});
+      const auto hand = skeleton.place_of(BodyPart::Hand, of);
+      if (found != skeleton.joint.end() && hand) return *hand - skeleton.tip[found->second];
+    }
+    return std::nullopt;
   }
 
   const Skeleton& rig_;
   const Skeleton& source_;
   const std::vector<int>& joint_;
+  const RestStances stances_;
+  const std::vector<int>& rebuilt_;
   std::vector<glm::dquat> turn_;
   std::optional<glm::dquat> hips_, shoulders_;
 };
@@ -225,11 +229,11 @@ double scale_between(const Skeleton& rig, const Skeleton& source) {
 }
 
 // What takes each matched bone from its joint's turn to its own, from the moment when the source stands as a rig rests.
-std::vector<glm::dquat> offsets_between(const Motion& motion, const Skeleton& rig, Skeleton source, const std::vector<int>& joint_of_bone, Reference reference) {
-  const int standing = reference == Reference::Found ? standing_frame(motion, source) : reference == Reference::RestPose ? -1 : 0;
+std::vector<glm::dquat> offsets_between(const Motion& motion, const Skeleton& rig, Skeleton source, const std::vector<int>& joint_of_bone, int standing, const RestStances& stances,
+                                        const std::vector<int>& rebuilt) {
   place_joints(source, motion, standing);
   const auto world = forward_kinematics(motion, standing);
-  std::vector<glm::dquat> offsets = Alignment(rig, source, joint_of_bone, standing < 0).turns();
+  std::vector<glm::dquat> offsets = Alignment(rig, source, joint_of_bone, standing < 0 || stances.source != RestStance::AsItLies, stances, rebuilt).turns();
   for (size_t b = 0; b < offsets.size(); ++b)
     if (joint_of_bone[b] >= 0) offsets[b] = glm::normalize(glm::conjugate(lps_from_bvh(world[joint_of_bone[b]].rotation)) * offsets[b]);
   return offsets;
@@ -283,7 +287,7 @@ RetargetMap match_by_names(const Motion& motion, const Armature& armature) {
 }
 
 Retarget::Retarget(const Motion& motion, const Armature& armature, const RetargetMap& map, const RetargetSettings& settings)
-    : motion_(&motion), armature_(&armature), settings_(settings), joint_of_bone_(armature.bones.size(), -1),
+    : motion_(&motion), armature_(&armature), settings_(settings), stances_(map.stances), joint_of_bone_(armature.bones.size(), -1),
       rest_offset_(armature.bones.size(), glm::dquat(1, 0, 0, 0)), between_(armature.bones.size()) {
   if (motion.frame_count == 0) throw Error("the motion has no frames", names_of(motion), "use a BVH with frames");
   std::map<std::string, int> joints;
@@ -303,15 +307,23 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
     const bool in_gap = role->part == BodyPart::Spine && role->index > 0 && !rig.joint.contains({role->part, role->side, role->index - 1});
     if (!in_gap && rig.joint.emplace(*role, static_cast<int>(b)).second) rig.role[b] = role;
   }
-  const bool by_their_names = std::all_of(map.sources.begin(), map.sources.end(), [](const auto& pair) { return pair.first == pair.second.joint; });
+  const bool by_their_names = stances_ == RestStances{} && std::all_of(map.sources.begin(), map.sources.end(), [](const auto& pair) { return pair.first == pair.second.joint; });
   const auto same = by_their_names && settings.reference == Reference::Found ? same_skeleton(motion, armature) : std::nullopt;
-  const std::vector<glm::dquat> found = same ? std::vector(rest_offset_.size(), glm::conjugate(same->rig_from_source)) : offsets_between(motion, rig, source, joint_of_bone_, settings.reference);
+  const bool said = stances_.source != RestStance::AsItLies;
+  const int standing = settings.reference == Reference::FirstFrame ? 0 : settings.reference == Reference::RestPose || said || same ? -1 : standing_frame(motion, source);
+  if (said) {
+    Straightened straight = straightened(motion, stances_.source, standing);
+    turned_joints_ = std::move(straight.turned);
+    if (!turned_joints_.empty()) straight_ = std::make_shared<const Motion>(std::move(straight.motion)), motion_ = straight_.get();
+  }
+  const std::vector<glm::dquat> found =
+      same ? std::vector(rest_offset_.size(), glm::conjugate(same->rig_from_source)) : offsets_between(*motion_, rig, source, joint_of_bone_, standing, stances_, turned_joints_);
   for (size_t b = 0; b < rest_offset_.size(); ++b)
     if (joint_of_bone_[b] >= 0) rest_offset_[b] = map.sources.at(armature.bones[b].name).rest_offset.value_or(found[b]);
   scale_ = settings.scale > 0 ? settings.scale : same ? same->scale : scale_between(rig, source);
   const auto first = std::find_if(joint_of_bone_.begin(), joint_of_bone_.end(), [](int joint) { return joint >= 0; });
   const bool from_rest = same && same->in_place;
-  if (first != joint_of_bone_.end()) lead_ = *first, start_ = forward_kinematics(motion, from_rest ? -1 : 0)[lead_].translation;
+  if (first != joint_of_bone_.end()) lead_ = *first, start_ = forward_kinematics(*motion_, from_rest ? -1 : 0)[lead_].translation;
 
   // Bones of the trunk that lie between matched ones: nearest below by walking up, nearest above by what walks up to them.
   for (size_t top = 0; top < joint_of_bone_.size(); ++top) {
@@ -337,7 +349,7 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
 }
 
 RetargetMap Retarget::map() const {
-  RetargetMap map;
+  RetargetMap map{.stances = stances_};
   for (size_t b = 0; b < joint_of_bone_.size(); ++b)
     if (joint_of_bone_[b] >= 0) map.sources[armature_->bones[b].name] = {motion_->joints[joint_of_bone_[b]].name, rest_offset_[b]};
   return map;

@@ -9,19 +9,30 @@
 //     either skeleton rests in), each by the shortest turn from where the bone above carries it; palms get its facing;
 //   - feet keep their pitch to the ground and get its heading; pelvis, spine, neck, head and collars, whose bones run
 //     differently in every skeleton, keep their rest shape and get the heading of hips and shoulders.
+// What the source's joints do not tell then may be said (rest_stance.h): limbs that lie otherwise than said are laid so first, and
+// palms that have no fingers face as said.
 // The body faces where the actor faces. Bones of the trunk between matched ones share the bend; all others follow the bone
 // they hang from. Lengths stay the rig's; travel is scaled by the legs' lengths. In a motion of the rig itself each joint is its bone.
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/pose/pose.h"
 #include "core/rig/bvh.h"
+#include "core/rig/rest_stance.h"
 
 namespace limber {
+
+// What both rest in. The source: at zero angles, or in its first frame where that is the reference.
+struct RestStances {
+  RestStance source = RestStance::AsItLies, rig = RestStance::AsItLies;
+
+  bool operator==(const RestStances&) const = default;
+};
 
 struct RetargetMap {
   struct Source {
@@ -31,6 +42,7 @@ struct RetargetMap {
     bool operator==(const Source&) const = default;
   };
   std::map<std::string, Source> sources;  // by rig bone; bones that are not named follow
+  RestStances stances;
 
   bool operator==(const RetargetMap&) const = default;
   // The bone's source joint, empty when it has none.
@@ -43,7 +55,8 @@ RetargetMap match_by_names(const Motion& motion, const Armature& armature);
 // What of the map both have.
 RetargetMap known_part(const RetargetMap& map, const Motion& motion, const Armature& armature);
 
-// {"source joint": "rig bone" | ["rig bone", ...] | {"bone": name, "rest_offset_wxyz": [4]} | null}
+// {"source joint": "rig bone" | ["rig bone", ...] | {"bone": name, "rest_offset_wxyz": [4]} | null,
+//  "@rests": {"motion": "file" | "T" | "A" | "anatomical", "rig": likewise}}
 // Throws Error for a joint or bone that is not there, a bone named twice, or a map that matches nothing.
 RetargetMap read_retarget_map(const Path& path, const Motion& motion, const Armature& armature);
 RetargetMap parse_retarget_map(const std::string& text, const std::string& where, const Motion& motion, const Armature& armature);
@@ -79,6 +92,7 @@ class Retarget {
   int joint_of(int bone) const { return joint_of_bone_[bone]; }  // -1 where unmatched
   double scale() const { return scale_; }                        // mm per file unit
   RetargetMap map() const;                                       // with the offsets that are in use
+  const std::vector<int>& turned_joints() const { return turned_joints_; }  // that lay otherwise than is said
 
  private:
   // Where the source's joints are so; without what the feet add to the travel.
@@ -100,6 +114,9 @@ class Retarget {
   const Motion* motion_;
   const Armature* armature_;
   RetargetSettings settings_;
+  RestStances stances_;
+  std::shared_ptr<const Motion> straight_;  // what motion_ is, where limbs had to be turned
+  std::vector<int> turned_joints_;
   std::vector<int> joint_of_bone_;
   std::vector<glm::dquat> rest_offset_;  // per bone
   struct Between {

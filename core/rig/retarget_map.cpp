@@ -21,6 +21,19 @@ glm::dquat rest_offset_of(const Json& value, const std::string& where) {
   if (!(length > 1e-9) || !std::isfinite(length)) throw Error("\"rest_offset_wxyz\" is no rotation", where, "give four numbers, not all zero");
   return std::abs(length - 1) < 1e-15 ? q : q / length;
 }
+
+// No joint of a motion, unless one is called so.
+constexpr const char* kRests = "@rests";
+
+RestStances stances_of(const Json& value, const std::string& where) {
+  RestStances stances;
+  if (!value.is_object()) throw Error("\"@rests\" is no object", where, R"(write {"motion": "T", "rig": "anatomical"})");
+  for (const auto& [whose, word] : value.items()) {
+    if ((whose != "motion" && whose != "rig") || !word.is_string()) throw Error("\"" + whose.substr(0, 60) + "\" says no rest pose", where + ", @rests", R"(write {"motion": "T", "rig": "anatomical"})");
+    (whose == "rig" ? stances.rig : stances.source) = stance_of_word(word.get<std::string>(), where + ", @rests");
+  }
+  return stances;
+}
 }  // namespace
 
 RetargetMap parse_retarget_map(const std::string& text, const std::string& where, const Motion& motion, const Armature& armature) {
@@ -40,6 +53,10 @@ RetargetMap parse_retarget_map(const std::string& text, const std::string& where
     };
     for (const auto& [joint, value] : json.items()) {
       const std::string here = where + ", joint " + joint.substr(0, 60);
+      if (joint == kRests && !joints.contains(joint)) {
+        map.stances = stances_of(value, where);
+        continue;
+      }
       if (value.is_null()) continue;
       if (!joints.contains(joint)) throw Error("the motion has no such joint", here, "use the motion's names (limber info BVH lists them)");
       if (value.is_array()) {
@@ -90,6 +107,7 @@ void write_retarget_map(const RetargetMap& map, const Path& path) {
       several.push_back(bone);
     }
   }
+  if (map.stances != RestStances{} && !json.contains(kRests)) json[kRests] = {{"motion", word_of(map.stances.source)}, {"rig", word_of(map.stances.rig)}};
   write_file_atomically(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

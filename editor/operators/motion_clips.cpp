@@ -55,6 +55,19 @@ Operator reference(const char* id, const char* label, const char* sentence, Refe
   return setting(id, label, sentence, [which](RetargetSettings& s) { s.reference = which; }, [which](const RetargetSettings& s) { return s.reference == which; });
 }
 
+// Offsets that were read from a file give way to what is said.
+Operator rest(const char* id, const char* label, const char* sentence, RestStance RestStances::*whose, RestStance which) {
+  return {id, label, "", "Motion", sentence,
+          [=](Editor& e) {
+            if (shown_clip(e)->map.stances.*whose == which) return;
+            edit_clip(e, std::string("At rest: ") + label, PoseThen::FromClip, [&](Clip& clip) {
+              clip.map.stances.*whose = which;
+              for (auto& [bone, source] : clip.map.sources) source.rest_offset.reset();
+            });
+          },
+          needs_motion, [=](const Editor& e) { return shown_clip(e) && shown_clip(e)->map.stances.*whose == which; }};
+}
+
 // Into sight; where the sidebar is closed it opens.
 void show_retargeting(Editor& editor) {
   editor.workspace = Workspace::Pose;
@@ -64,7 +77,7 @@ void show_retargeting(Editor& editor) {
 }
 
 void map_by_names(Editor& editor) {
-  edit_clip(editor, "Match by names", PoseThen::FromClip, [](Clip& clip) { clip.map = {}; });
+  edit_clip(editor, "Match by names", PoseThen::FromClip, [](Clip& clip) { clip.map.sources = {}; });
 }
 
 void load_map(Editor& editor) {
@@ -180,6 +193,14 @@ std::vector<Operator> motion_clip_operators() {
       reference("motion.reference_found", "Most upright", "The source stands as the rig rests where it stands most upright.", Reference::Found),
       reference("motion.reference_rest", "Its rest pose", "The source stands as the rig rests in the file's rest pose.", Reference::RestPose),
       reference("motion.reference_first", "Its first frame", "The source stands as the rig rests in its first frame.", Reference::FirstFrame),
+      rest("motion.rest_file", "Motion as it lies", "The clip's rest pose is what its joints show: bones take their directions.", &RestStances::source, RestStance::AsItLies),
+      rest("motion.rest_t", "Motion in T-pose", "At rest the actor stands with arms to the sides and palms down, however the file lays the joints.", &RestStances::source, RestStance::TPose),
+      rest("motion.rest_a", "Motion in A-pose", "At rest the actor stands with arms half way down and thumbs forward, however the file lays the joints.", &RestStances::source, RestStance::APose),
+      rest("motion.rest_anatomical", "Motion supine", "At rest the actor's arms hang and the palms face forward, as of a body on its back, however the file lays the joints.", &RestStances::source, RestStance::Anatomical),
+      rest("motion.rig_rest_file", "Rig as it lies", "Where the rig's palms face at rest is what its fingers show.", &RestStances::rig, RestStance::AsItLies),
+      rest("motion.rig_rest_t", "Rig in T-pose", "The rig rests with its palms down; of use where it has no fingers.", &RestStances::rig, RestStance::TPose),
+      rest("motion.rig_rest_a", "Rig in A-pose", "The rig rests with its thumbs forward; of use where it has no fingers.", &RestStances::rig, RestStance::APose),
+      rest("motion.rig_rest_anatomical", "Rig supine", "The rig rests with its palms forward; of use where it has no fingers.", &RestStances::rig, RestStance::Anatomical),
       setting("motion.mirror", "Mirror", "The left side does what the right side of the source does.", [](RetargetSettings& s) { s.mirror = !s.mirror; }, [](const RetargetSettings& s) { return s.mirror; }),
       {"motion.rename_clip", "Rename clip...", icon::kRename, "Motion", "Gives the shown clip another name.", ask_clip_name, needs_clip},
       {"motion.delete_clip", "Delete clip", icon::kTrash, "Motion", "Takes the shown clip out of the project.", delete_clip, needs_clip},

@@ -47,6 +47,18 @@ void draw_match(Editor& editor, Column& column, const ClipOnRig& clip) {
   operator_button(editor, "motion.map", {{rect.high.x - button, rect.low.y}, rect.high}, "Map...");
 }
 
+// What the file lays otherwise than is said.
+void draw_turned(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  const ClipOnRig* clip = clip_on_rig(editor);
+  if (!clip || !clip->retarget() || clip->retarget()->turned_joints().empty()) return;
+  const std::vector<int>& turned = clip->retarget()->turned_joints();
+  const std::string first = clip->clip()->motion->joints[turned.front()].name;
+  const std::string words = "The file lays " + first + (turned.size() > 1 ? " and " + std::to_string(turned.size() - 1) + " more" : "") + " otherwise: turned into it.";
+  const Rect row = column.row(34);
+  put_wrapped(editor, look.fonts.small, look.theme.text2, {row.low.x + look.px(10), row.low.y}, row.width() - look.px(20), words, 2);
+}
+
 }  // namespace
 
 void draw_motion(Editor& editor, Column& column) {
@@ -68,6 +80,9 @@ void draw_motion(Editor& editor, Column& column) {
         draw_match(editor, column, *on_rig);
         choice_of_operators(editor, column.property("Travel"), "Travel", {"motion.travel_locked", "motion.travel_in_place", "motion.travel_free"});
         choice_of_operators(editor, column.property("Stands as"), "Stands as", {"motion.reference_found", "motion.reference_rest", "motion.reference_first"});
+        choice_of_operators(editor, column.property("At rest"), "Motion at rest", {"motion.rest_file", "motion.rest_t", "motion.rest_a", "motion.rest_anatomical"});
+        choice_of_operators(editor, column.property(""), "Rig at rest", {"motion.rig_rest_file", "motion.rig_rest_t", "motion.rig_rest_a", "motion.rig_rest_anatomical"});
+        draw_turned(editor, column);
         const Rect mirror = column.property("Options");
         if (checkbox(editor, "motion.mirror", mirror, "Mirror", mirrored)) run(editor, "motion.mirror");
         if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, "motion.mirror"), mirror);

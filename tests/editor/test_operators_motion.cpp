@@ -77,6 +77,10 @@ std::function<bool(Stage&, const Seen&)> settings_are(const std::function<bool(c
 }
 bool maps(Stage& s, const char* bone, const char* joint) { return shown_clip(s.editor())->map.joint_of(bone) == joint; }
 
+std::function<bool(Stage&, const Seen&)> rest_is(RestStance RestStances::*whose, RestStance which) {
+  return [=](Stage& s, const Seen&) { return shown_clip(s.editor())->map.stances.*whose == which; };
+}
+
 }  // namespace
 
 std::vector<Proof> proofs_of_motion() {
@@ -161,6 +165,14 @@ std::vector<Proof> proofs_of_clips() {
       {"motion.reference_first", "click \"Stands as/list\"\n click \"Stands as/Its first frame\"", settings_are([](const auto& r) { return r.reference == Reference::FirstFrame; }), Shows::Nothing, "", stand_at(20)},
       {"motion.reference_found", "click \"Stands as/list\"\n click \"Stands as/Most upright\"", settings_are([](const auto& r) { return r.reference == Reference::Found; }), Shows::Nothing, "",
        edited(20, [](Clip& clip) { clip.retarget.reference = Reference::FirstFrame; })},
+      {"motion.rest_t", "click \"Motion at rest/list\"\n click \"Motion at rest/Motion in T-pose\"", rest_is(&RestStances::source, RestStance::TPose), Shows::Nothing, "", stand_at(20)},
+      {"motion.rest_a", "click \"Motion at rest/list\"\n click \"Motion at rest/Motion in A-pose\"", rest_is(&RestStances::source, RestStance::APose), Shows::Nothing, "", stand_at(20)},
+      {"motion.rest_anatomical", "click \"Motion at rest/list\"\n click \"Motion at rest/Motion supine\"", rest_is(&RestStances::source, RestStance::Anatomical), Shows::Nothing, "", stand_at(20)},
+      {"motion.rest_file", "click \"Motion at rest/list\"\n click \"Motion at rest/Motion as it lies\"", rest_is(&RestStances::source, RestStance::AsItLies), Shows::Nothing, "", edited(20, [](Clip& clip) { clip.map.stances = {RestStance::APose, RestStance::APose}; })},
+      {"motion.rig_rest_t", "click \"Rig at rest/list\"\n click \"Rig at rest/Rig in T-pose\"", rest_is(&RestStances::rig, RestStance::TPose), Shows::Nothing, "", stand_at(20)},
+      {"motion.rig_rest_a", "click \"Rig at rest/list\"\n click \"Rig at rest/Rig in A-pose\"", rest_is(&RestStances::rig, RestStance::APose), Shows::Nothing, "", stand_at(20)},
+      {"motion.rig_rest_anatomical", "click \"Rig at rest/list\"\n click \"Rig at rest/Rig supine\"", rest_is(&RestStances::rig, RestStance::Anatomical), Shows::Nothing, "", stand_at(20)},
+      {"motion.rig_rest_file", "click \"Rig at rest/list\"\n click \"Rig at rest/Rig as it lies\"", rest_is(&RestStances::rig, RestStance::AsItLies), Shows::Nothing, "", edited(20, [](Clip& clip) { clip.map.stances = {RestStance::APose, RestStance::APose}; })},
       {"motion.mirror", "click Motion/motion.mirror", settings_are([](const auto& r) { return r.mirror; }), Shows::Nothing, "", stand_at(20)},
       {"motion.rename_clip", "click \"Motion/Clip/Rename clip...\"\n wait-idle\n key Ctrl+A\n type knee\n key Return", [](Stage& s, const Seen&) { return s.is("clip", "knee"); }, Shows::Nothing, "", stand_at(20)},
       {"motion.trim", "click \"Motion/Clip/Trim to range\"", [](Stage& s, const Seen&) { return shown_clip(s.editor())->first == 10 && shown_clip(s.editor())->last == 30 && shown_clip(s.editor())->start == 10; },

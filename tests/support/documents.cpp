@@ -128,6 +128,7 @@ Motion short_motion() {
 Clip keyed_clip() {
   Clip clip = clip_of(shared(short_motion()), "walk \xff", 7);
   clip.map.sources = {{"Lower", {"Hips", glm::dquat(0.5, -0.5, 0.5, -0.0)}}, {"Upper", {"Hips", {}}}};
+  clip.map.stances = {RestStance::TPose, RestStance::Anatomical};
   clip.retarget = {.travel = Travel::InPlace, .mirror = true, .scale = 2.54, .reference = Reference::FirstFrame};
   clip.range_end = 99;
   clip.keys.bones["Lower"] = {{-5, {1, 0, 0, 0}}, {12, {0.1, 0.2, 0.3, 0.4}}};
