@@ -39,6 +39,7 @@ namespace limber::editor {
 
 struct Timeline;
 struct Handling;
+struct LastOperation;
 
 // What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
 struct Drag {
@@ -192,11 +193,12 @@ struct Editor {
   InputState input;
   std::optional<Drag> drag;
   std::optional<PendingPress> pending_press;
-  std::unique_ptr<Modal> modal;  // null: none
+  std::shared_ptr<Modal> modal;  // null: none
   PointerWrap modal_wrap;
   std::unique_ptr<Timeline> timeline;
   float wheel_rest = 0;  // of the slices' wheel: parts of a step that a pad has made
   std::string last_operator;  // id, for Repeat
+  std::unique_ptr<LastOperation> last_operation;  // of adjust.h; never null
   double now = 0;
 
   Cursor cursor = Cursor::Arrow;  // of this frame

@@ -2,6 +2,7 @@
 #include "editor/form.h"
 
 #include "core/base/error.h"
+#include "editor/adjust.h"
 #include "editor/dialog.h"
 #include "editor/fields.h"
 #include "editor/icons.h"
@@ -12,6 +13,25 @@ namespace {
 
 constexpr float kRow = 34, kLabel = 130;
 constexpr std::size_t kMostBeside = 4;
+
+bool draw_choice(Editor& editor, FormField& field, const Rect& rect) {
+  const Look& look = editor.look;
+  float widest = 0;
+  for (const std::string& choice : field.choices) widest = std::max(widest, width_of_button(editor, {"", choice}));
+  const float width = std::round(rect.width() / static_cast<float>(field.choices.size()));
+  if (field.choices.size() > kMostBeside || widest > width) {
+    const bool changed = choice_field(editor, rect, field.choices, field.chosen);
+    if (ImGui::IsMouseHoveringRect(im(rect.low), im(rect.high)) && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) tooltip(editor, rect, field.label, field.sentence);
+    return changed;
+  }
+  const int before = field.chosen;
+  for (int i = 0; i < std::ssize(field.choices); ++i) {
+    const Rect place{{rect.low.x + width * static_cast<float>(i), rect.low.y}, {rect.low.x + width * static_cast<float>(i + 1) - look.px(1), rect.high.y}};
+    if (button(editor, field.choices[i], place, {"", field.choices[i], i == field.chosen ? ButtonStyle::Chosen : ButtonStyle::Plain})) field.chosen = i;
+    if (ImGui::IsItemHovered()) tooltip(editor, place, field.label, field.sentence);
+  }
+  return field.chosen != before;
+}
 
 class Form final : public Dialog {
  public:
@@ -24,43 +44,10 @@ class Form final : public Dialog {
   }
 
  private:
-  void draw_field(Editor& editor, FormField& field, const Rect& row);
-  void draw_choice(Editor& editor, FormField& field, const Rect& rect);
-
   FormRequest request_;
   bool accept_ = false;
   bool focused_ = false;  // its text field has been given the keyboard
 };
-
-void Form::draw_choice(Editor& editor, FormField& field, const Rect& rect) {
-  const Look& look = editor.look;
-  if (field.choices.size() <= kMostBeside) {
-    const float width = std::round(rect.width() / static_cast<float>(field.choices.size()));
-    for (int i = 0; i < std::ssize(field.choices); ++i) {
-      const Rect place{{rect.low.x + width * static_cast<float>(i), rect.low.y}, {rect.low.x + width * static_cast<float>(i + 1) - look.px(1), rect.high.y}};
-      if (button(editor, field.choices[i], place, {"", field.choices[i], i == field.chosen ? ButtonStyle::Chosen : ButtonStyle::Plain})) field.chosen = i;
-      if (ImGui::IsItemHovered()) tooltip(editor, place, field.label, field.sentence);
-    }
-    return;
-  }
-  choice_field(editor, rect, field.choices, field.chosen);
-  if (ImGui::IsMouseHoveringRect(im(rect.low), im(rect.high)) && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) tooltip(editor, rect, field.label, field.sentence);
-}
-
-void Form::draw_field(Editor& editor, FormField& field, const Rect& row) {
-  const Look& look = editor.look;
-  const PathScope path(editor, field.label);
-  put_text(editor, look.fonts.regular, look.theme.text2, Rect{row.low, {row.low.x + look.px(kLabel), row.high.y}}, field.label);
-  const Rect rect{{row.low.x + look.px(kLabel + 8), row.low.y + look.px(4)}, {row.high.x, row.high.y - look.px(4)}};
-  if (field.kind == FormField::Kind::Choice) return draw_choice(editor, field, rect);
-  if (field.kind == FormField::Kind::Text) {
-    text_field(editor, "text", rect, field.text, "", !std::exchange(focused_, true));
-    return;
-  }
-  bool committed = false;
-  number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, false, committed);
-  if (ImGui::IsItemHovered()) tooltip(editor, rect, field.label, field.sentence + "\nDrag it, or type after a double click.");
-}
 
 void Form::draw(Editor& editor) {
   const Look& look = editor.look;
@@ -69,7 +56,7 @@ void Form::draw(Editor& editor) {
   put_wrapped(editor, look.fonts.regular, look.theme.text2, rect.low, rect.width(), request_.sentence, 2);
   float y = rect.low.y + look.px(44);
   for (FormField& field : request_.fields) {
-    draw_field(editor, field, {{rect.low.x, y}, {rect.high.x, y + look.px(kRow)}});
+    draw_field(editor, field, {{rect.low.x, y}, {rect.high.x, y + look.px(kRow)}}, look.px(kLabel), field.kind == FormField::Kind::Text && !std::exchange(focused_, true));
     y += look.px(kRow);
   }
 
@@ -102,10 +89,23 @@ void Form::draw(Editor& editor) {
 
   if (!(pressed || std::exchange(accept_, false)) || !ready) return;
   editor.close_dialog();
-  attempt(editor, request_.title, [this](Editor& e) { request_.act(e, request_.fields); });
+  attempt(editor, request_.title, [this](Editor& e) { act_adjustably(e, request_.fields, request_.act); });
 }
 
 }  // namespace
+
+bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_width, bool focus) {
+  const Look& look = editor.look;
+  const PathScope path(editor, field.label);
+  put_text(editor, look.fonts.regular, look.theme.text2, Rect{row.low, {row.low.x + label_width, row.high.y}}, field.label);
+  const Rect rect{{row.low.x + label_width + look.px(8), row.low.y + look.px(4)}, {row.high.x, row.high.y - look.px(4)}};
+  if (field.kind == FormField::Kind::Choice) return draw_choice(editor, field, rect);
+  if (field.kind == FormField::Kind::Text) return text_field(editor, "text", rect, field.text, "", focus);
+  bool committed = false;
+  number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, false, committed);
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, field.label, field.sentence + "\nDrag it, or type after a double click.");
+  return committed;
+}
 
 FormField number_of(std::string label, std::string sentence, double value, double low, double high, const char* format, const char* unit) {
   FormField field{std::move(label), std::move(sentence)};

@@ -33,6 +33,9 @@ struct NotYet {
   std::string words;
 };
 
+// A row of a field, its label so wide at its left. True when its value was changed: numbers once they are let go, or typed.
+bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_width, bool focus = false);
+
 struct FormRequest {
   std::string title;
   std::string sentence;  // what it does, above the fields

@@ -164,22 +164,25 @@ Armature dissolved(const Armature& armature, const std::vector<int>& bones) {
   return dropped(next, marks);
 }
 
-Armature subdivided(const Armature& armature, const std::vector<int>& bones) {
+Armature subdivided(const Armature& armature, const std::vector<int>& bones, int parts) {
   const std::vector<bool> marks = marked(armature, bones);
   std::vector<Bone> all = armature.bones;
   Armature names = armature;
   for (int bone = 0; bone < std::ssize(marks); ++bone) {
     if (!marks[bone]) continue;
-    Bone half = all[bone];
-    half.name = free_name(names, half.name);
-    names.bones.push_back(half);
-    half.parent = bone;
-    half.head = all[bone].tail = (armature.bones[bone].head + armature.bones[bone].tail) / 2.0;
-    half.limits = {};
-    const int place = static_cast<int>(all.size());
+    const Bone whole = armature.bones[bone];
+    const auto place_at = [&](int part) { return glm::mix(whole.head, whole.tail, double(part) / parts); };
+    all[bone].tail = place_at(1);
+    int above = bone;
+    for (int part = 1; part < parts; ++part) {
+      Bone next{free_name(names, whole.name), above, place_at(part), part + 1 == parts ? whole.tail : place_at(part + 1)};
+      next.roll = whole.roll;
+      names.bones.push_back(next);
+      above = static_cast<int>(all.size());
+      all.push_back(next);
+    }
     for (int child = 0; child < std::ssize(armature.bones); ++child)
-      if (armature.bones[child].parent == bone) all[child].parent = place;
-    all.push_back(half);
+      if (armature.bones[child].parent == bone) all[child].parent = above;
   }
   return parents_first(std::move(all), "subdivided rig");
 }

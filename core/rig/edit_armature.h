@@ -44,8 +44,8 @@ Armature filled(const Armature& armature, const BoneEnd& from, const BoneEnd& to
 Armature without_bones(const Armature& armature, const std::vector<int>& bones);
 // As without_bones; where a bone was connected its parent reaches on to its tail, so that the chain stays whole.
 Armature dissolved(const Armature& armature, const std::vector<int>& bones);
-// Each in two halves; the limits stay with the first.
-Armature subdivided(const Armature& armature, const std::vector<int>& bones);
+// Each in so many equal parts [2, 100]; the limits stay with the first.
+Armature subdivided(const Armature& armature, const std::vector<int>& bones, int parts = 2);
 // Copies at the same places, at the end, in the order of `bones`.
 Armature duplicated(const Armature& armature, const std::vector<int>& bones);
 // Throws Error for an empty name.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/adjust.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
 #include "editor/results.h"
@@ -41,6 +42,7 @@ std::vector<Operator> edit_operators() {
   return {
       {"edit.undo", "Undo", icon::kUndo, "Edit", "Takes the last edit back.", [](Editor& e) { e.history.undo(); }, nothing_to_undo},
       {"edit.redo", "Redo", icon::kRedo, "Edit", "Does the edit again that was taken back.", [](Editor& e) { e.history.redo(); }, nothing_to_redo},
+      {"edit.adjust_last", "Adjust last operation", "", "Edit", "Does what was done last again with other numbers, as the same step of the history.", [](Editor& e) { e.last_operation->wanted_at_pointer = true; }, why_not_adjust},
       {"edit.rename", "Rename", icon::kRename, "Edit", "Gives the chosen tissue or bone, or the result that is shown, another name.", rename, nothing_to_rename},
       {"edit.history", "History", icon::kHistory, "Edit", "Opens the list of edits in the sidebar.",
        [](Editor& e) {

@@ -14,7 +14,7 @@ namespace {
 
 // For Repeat and for the search, which offers what was used last and most.
 void note_use(Editor& editor, const Operator& op) {
-  if (op.id == "search.commands" || op.id == "edit.repeat_last" || needs_pointer(editor, op)) return;
+  if (op.id == "search.commands" || op.id == "edit.repeat_last" || op.id == "edit.adjust_last" || needs_pointer(editor, op)) return;
   editor.last_operator = op.id;
   auto& recent = editor.preferences.recent_commands;
   std::erase(recent, op.id);

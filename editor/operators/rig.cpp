@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Edits of the rig at rest.
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "core/base/error.h"
 #include "core/rig/mirror.h"
 #include "core/rig/motion_range.h"
-#include "editor/form.h"
+#include "editor/adjust.h"
 #include "editor/handling.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
@@ -141,8 +142,22 @@ void hang(Editor& editor, Join join) {
   });
 }
 
+void subdivide(Editor& editor) {
+  act_adjustably(editor, {number_of("Parts", "How many bones each chosen one becomes.", 2, 2, 100, "%.0f")}, [](Editor& e, const std::vector<FormField>& fields) {
+    edit(e, "Subdivide", [&](const Armature& rig, const std::vector<int>& bones) { return subdivided(rig, bones, static_cast<int>(std::round(fields[0].value))); }, Sides::Mirrored);
+  });
+}
+
 void symmetrize(Editor& editor) {
-  edit(editor, "Symmetrize", [](const Armature& rig, const std::vector<int>& bones) { return symmetrized(rig, bones); });
+  act_adjustably(editor, {choice_of("From", "The side whose mirror image the other one becomes.", {"Chosen", "Not chosen"})}, [](Editor& e, const std::vector<FormField>& fields) {
+    edit(e, "Symmetrize", [&](const Armature& rig, const std::vector<int>& bones) {
+      std::vector<int> from = bones;
+      const std::vector<int> pairs = mirror_pairs(rig);
+      if (fields[0].chosen == 1)
+        for (int& bone : from) bone = pairs[bone];
+      return symmetrized(rig, from);
+    });
+  });
 }
 
 // The chosen bones with the limits of that joint, or where it is -1 of what their names mean.
@@ -277,7 +292,7 @@ std::vector<Operator> rig_operators() {
       {"rig.extrude", "Extrude", icon::kExtrude, "Bone", "A new bone grows from the chosen joint with the pointer.", extrude, needs_rig_bone},
       {"rig.fill", "Fill", "", "Bone", "A bone between two chosen ones, or from the chosen joint to the cross-hair.", fill, needs_gap},
       {"rig.duplicate", "Duplicate", icon::kDuplicate, "Bone", "Copies of the chosen bones go with the pointer.", duplicate, needs_rig_bone},
-      edit_operator("rig.subdivide", "Subdivide", "", "Each chosen bone becomes two.", "Subdivide", subdivided),
+      {"rig.subdivide", "Subdivide", "", "Bone", "Each chosen bone becomes two, or more by adjusting it.", subdivide, needs_rig_bone},
       edit_operator("rig.delete", "Delete", icon::kTrash, "Takes the chosen bones away; what hung on them hangs on the next one above.", "Delete", without_bones),
       edit_operator("rig.dissolve", "Dissolve", "", "Takes the chosen bones away and lengthens those above, so that the chain stays whole.", "Dissolve", dissolved),
       edit_operator("rig.separate", "Separate", icon::kCut, "Cuts the chosen bones loose from the others.", "Separate", separated),

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "editor/adjust.h"
 #include "editor/clip_handles.h"
 #include "editor/live_pose.h"
 #include "editor/onion_skin.h"
@@ -92,6 +93,7 @@ void draw_body_overlay(Editor& editor, const Rect& rect) {
   draw_axis_ball(editor, rect);
   if (!editor.document().volume) return draw_empty_view(editor, rect);
   draw_clip_handles(editor, rect);
+  draw_last_operation(editor, rect);
   const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
   draw_scale_bar(editor, rect, visible_height / rect.height());
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "editor/adjust.h"
 #include "editor/dispatch.h"
 #include "editor/gizmo.h"
 #include "editor/icons.h"
@@ -214,6 +215,7 @@ void draw_views_region(Editor& editor) {
   }
   draw_pointer_menu(editor);
   draw_pick_list(editor);
+  draw_last_operation_popup(editor);
   end_region(editor);
 }
 

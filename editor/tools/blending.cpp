@@ -62,6 +62,9 @@ class Blending final : public TransformTool {
     return limited(editor, std::move(next), bones_);
   }
 
+  std::vector<FormField> parameters() const override { return {number_of("Amount", "How far the chosen bones go.", 100 * amount_, blend_.back ? -100 * blend_.most : 0, 100 * blend_.most, "%.1f", "%")}; }
+  void set(const std::vector<FormField>& fields) override { number_.set(fields[0].value); }
+
   void show(Editor& editor) override { show_pose(editor, pose(editor)); }
   void keep(Editor& editor) override { commit_pose(editor, blend_.label, pose(editor)); }
 

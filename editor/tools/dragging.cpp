@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Joints dragged, limbs following.
 #include <algorithm>
+#include <cmath>
 
 #include "core/pose/inverse_kinematics.h"
 #include "editor/gizmo_painter.h"
@@ -100,6 +101,16 @@ class Dragging final : public TransformTool {
   }
 
   void show(Editor& editor) override { show_pose(editor, pose(editor)); }
+  std::vector<FormField> parameters() const override {
+    std::vector<FormField> fields = fields_of_way(target_ - from_);
+    if (!is_root_) fields.push_back(number_of("Bones", "How many bones follow.", chain_, 1, depth_of(bone_), "%.0f"));
+    return fields;
+  }
+  void set(const std::vector<FormField>& fields) override {
+    set_way(fields);
+    if (!is_root_) chain_ = static_cast<int>(std::round(fields[4].value));
+  }
+
   void keep(Editor& editor) override { commit_pose(editor, is_root_ ? "Move body" : "Reach with " + armature_->bones[bone_].name, pose(editor)); }
 
   std::shared_ptr<const Armature> armature_;
@@ -138,6 +149,22 @@ class DraggingPole final : public TransformTool {
   }
 
   void show(Editor& editor) override {
+  Pose turned(const Editor& editor, const Pose& pose, int bone, const glm::dvec3& pole) const {
+    const glm::dvec3 end = posed_from_rest(*armature_, before_)[bone] * armature_->bones[bone].tail;
+    return reach(*armature_, pose, {{.bone = bone, .target = end, .chain = limb_of(*armature_, bone)}}, {.keep_limits = editor.posing.keep_limits, .pole = pole}).pose;
+  }
+
+  // As seen from the body, wherever it went.
+  glm::dvec3 mirrored() const {
+    int root = bone_;
+    while (armature_->bones[root].parent >= 0) root = armature_->bones[root].parent;
+    const RigidTransform posed = posed_from_rest(*armature_, before_)[root];
+    return posed * mirror_plane(*armature_).place(inverse(posed) * to_);
+  }
+
+  std::vector<FormField> parameters() const override { return fields_of_way(to_ - from_); }
+  void set(const std::vector<FormField>& fields) override { set_way(fields); }
+
     show_pose(editor, pose(editor));
     editor.handling->shown_pole = {armature_->bones[bone_].name, to_};
   }

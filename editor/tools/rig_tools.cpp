@@ -107,7 +107,7 @@ class RigTool final : public TransformTool {
   glm::dvec3 moved_to(const Editor& editor) {
     snapped_to_.clear();
     const Snap snap = editor.handling->snap;
-    if (snap == Snap::Steps || editor.input.down(Key::Ctrl) == editor.handling->snapping || number_.typed()) return dragged(editor, pivot_, kSnapMillimetres, kSnapFineMillimetres);
+    if (way_ || snap == Snap::Steps || editor.input.down(Key::Ctrl) == editor.handling->snapping || number_.typed()) return dragged(editor, pivot_, kSnapMillimetres, kSnapFineMillimetres);
     const glm::dvec3 free = dragged(editor, pivot_, 0, 0);
     const auto place = snap == Snap::Joint ? joint_below(editor) : snap == Snap::Voxel ? nearest_voxel(editor.document(), free) : middle_of_bone(editor.document(), view_, pointer_);
     if (!place) return free;
@@ -143,6 +143,24 @@ class RigTool final : public TransformTool {
       }
     }
     return change_.start;
+  }
+
+  std::vector<FormField> parameters() const override {
+    switch (change_.kind) {
+      case RigChange::Kind::Move: return fields_of_way(target_ - pivot_);
+      case RigChange::Kind::Roll: return {number_of("Angle", "How far the bones turn about themselves.", shown_, -360, 360, "%.2f", "\u00b0")};
+      case RigChange::Kind::Turn: break;
+      case RigChange::Kind::Scale: break;
+    }
+    std::vector<FormField> fields = fields_of_axis();
+    const bool turn = change_.kind == RigChange::Kind::Turn;
+    fields.insert(fields.begin(), turn ? number_of("Angle", "How far the bones turn.", shown_, -360, 360, "%.2f", "\u00b0") : number_of("Factor", "How many times as long.", shown_, kLeastScale, 100, "%.3f"));
+    return fields;
+  }
+  void set(const std::vector<FormField>& fields) override {
+    if (change_.kind == RigChange::Kind::Move) return set_way(fields);
+    number_.set(fields[0].value);
+    if (change_.kind != RigChange::Kind::Roll) set_axis(fields, 1);
   }
 
   void show(Editor& editor) override { show_rig(editor, mirrored_too(editor, changed(editor))); }

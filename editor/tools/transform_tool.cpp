@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "editor/adjust.h"
 #include "editor/dispatch.h"
 
 namespace limber::editor {
@@ -13,6 +14,9 @@ namespace {
 
 constexpr double kPrecise = 0.1;     // of the pointer's way, with Shift
 constexpr double kClickPixels = 4;   // at scale 1: a release within them is a click
+
+constexpr const char* kAxisNames[] = {"X", "Y", "Z"};
+constexpr double kFarthest = 10'000;  // mm
 
 int axis_of_key(Key key) { return key == Key::X ? 0 : key == Key::Y ? 1 : key == Key::Z ? 2 : -1; }
 
@@ -99,8 +103,33 @@ bool TransformTool::key(Editor& editor, const KeyChanged& event) {
 }
 
 bool TransformTool::confirm(Editor& editor) {
-  keep(editor);
+  const auto again = [self = shared_from_this()](Editor& e, const std::vector<FormField>& fields) {
+    self->set(fields);
+    self->keep(e);
+  };
+  act_adjustably(editor, parameters(), again, [this](Editor& e) { keep(e); });
   return false;
+}
+
+std::vector<FormField> TransformTool::fields_of_way(const glm::dvec3& way) const {
+  const Space space = lock_.axis < 0 ? Space::Global : lock_.space;
+  const glm::dvec3 along = glm::transpose(axes(space)) * way;
+  std::vector<FormField> fields;
+  for (int axis = 0; axis < 3; ++axis) fields.push_back(number_of(kAxisNames[axis], "How far along this axis.", along[axis], -kFarthest, kFarthest, "%.2f", "mm"));
+  fields.push_back(choice_of("Axes", "Whose axes these are.", {"Global", "Local", "Parent", "View"}, static_cast<int>(space)));
+  return fields;
+}
+
+void TransformTool::set_way(const std::vector<FormField>& fields) { way_ = axes(static_cast<Space>(fields[3].chosen)) * glm::dvec3(fields[0].value, fields[1].value, fields[2].value); }
+
+std::vector<FormField> TransformTool::fields_of_axis() const {
+  return {choice_of("Axis", "The axis that it goes by; none is the line of sight, or all.", {"None", "X", "Y", "Z"}, lock_.axis + 1),
+          choice_of("Axes", "Whose axes these are.", {"Global", "Local", "Parent", "View"}, static_cast<int>(lock_.space))};
+}
+
+void TransformTool::set_axis(const std::vector<FormField>& fields, std::size_t first) {
+  lock_.axis = fields[first].chosen - 1;
+  lock_.space = static_cast<Space>(fields[first + 1].chosen);
 }
 
 bool TransformTool::drop(Editor& editor) {
@@ -128,6 +157,7 @@ std::vector<KeyHint> TransformTool::shared_hints() const {
 }
 
 glm::dvec3 TransformTool::dragged(const Editor& editor, const glm::dvec3& from, double step, double fine) const {
+  if (way_) return from + *way_;
   const glm::dvec3 axis = lock_axis();
   const bool free = axis == glm::dvec3(0), line = !free && !lock_.plane;
   if (number_.typed()) return from + number_.value() * (line ? axis : lock_.plane ? axes(lock_.space)[(lock_.axis + 1) % 3] : view_.right);

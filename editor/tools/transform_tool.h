@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What moving, turning and scaling share: the view they act in, the lock to an axis or plane, the number that is typed,
-// snapping, confirming and dropping.
+// snapping, confirming and dropping. A tool that was confirmed lives on while its numbers may still be adjusted.
 #pragma once
 
 #include <memory>
 #include <optional>
 
 #include "editor/editor.h"
+#include "editor/form.h"
 #include "editor/handling.h"
 #include "editor/tools/typed_number.h"
 
@@ -26,7 +27,7 @@ struct Grip {
   bool trackball = false;
 };
 
-class TransformTool : public Modal {
+class TransformTool : public Modal, public std::enable_shared_from_this<TransformTool> {
  public:
   TransformTool(Editor& editor, const Grip& grip);
 
@@ -43,6 +44,9 @@ class TransformTool : public Modal {
   virtual glm::dmat3 axes(Space space) const = 0;
   virtual void locked(Editor&) {}  // by a key
   virtual bool own_key(Editor&, Key) { return false; }
+  // What it did, in numbers, and what it is to do: keep() follows.
+  virtual std::vector<FormField> parameters() const { return {}; }
+  virtual void set(const std::vector<FormField>&) {}
 
   void lock_to_way(Editor& editor);
   bool confirm(Editor& editor);
@@ -55,12 +59,19 @@ class TransformTool : public Modal {
   // Where a point goes that the pointer takes along from `from`, held by the lock; `step`, `fine` in mm, 0 for none.
   glm::dvec3 dragged(const Editor& editor, const glm::dvec3& from, double step, double fine) const;
 
+  // Of a way in the world, mm; and of the axis that is turned about or scaled along. The latter's begin at `first`.
+  std::vector<FormField> fields_of_way(const glm::dvec3& way) const;
+  void set_way(const std::vector<FormField>& fields);
+  std::vector<FormField> fields_of_axis() const;
+  void set_axis(const std::vector<FormField>& fields, std::size_t first);
+
   SeenFrom view_;
   AxisLock lock_;
   std::optional<MouseButton> held_;
   TypedNumber number_;
   glm::dvec2 pointer_, start_;  // of the window, as if nothing stopped or slowed it
   double travelled_ = 0;        // pixels, the furthest from the start
+  std::optional<glm::dvec3> way_;  // mm, in place of the pointer's
 };
 
 // The view under the pointer, else the 3D view, else any.

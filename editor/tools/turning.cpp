@@ -106,6 +106,22 @@ class Turning final : public TransformTool {
     return limited(editor, mirrored_too(editor, before_, std::move(next)), bones_);
   }
 
+  std::vector<FormField> parameters() const override {
+    if (trackball_ && !number_.typed())
+      return {number_of("About up", "About the picture's vertical.", glm::degrees(rolled_.x), -360, 360, "%.2f", "\u00b0"), number_of("About right", "About the picture's horizontal.", glm::degrees(rolled_.y), -360, 360, "%.2f", "\u00b0")};
+    std::vector<FormField> fields = fields_of_axis();
+    fields.insert(fields.begin(), number_of("Angle", "How far the bones turn.", shown_, -360, 360, "%.2f", "\u00b0"));
+    return fields;
+  }
+  void set(const std::vector<FormField>& fields) override {
+    if (fields.size() == 2) {
+      rolled_ = glm::radians(glm::dvec2(fields[0].value, fields[1].value));
+      return;
+    }
+    number_.set(fields[0].value);
+    set_axis(fields, 1);
+  }
+
   void show(Editor& editor) override { show_pose(editor, pose(editor)); }
   void keep(Editor& editor) override {
     const std::string what = bones_.size() == 1 ? armature_->bones[bones_[0]].name : std::to_string(bones_.size()) + " bones";

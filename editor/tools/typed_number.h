@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdlib>
+#include <optional>
 #include <string>
 
 #include "editor/keys.h"
@@ -31,8 +32,13 @@ class TypedNumber {
     typed_ = true;
     return true;
   }
+  // As if just that had been typed.
+  void set(double value) {
+    exact_ = value;
+    typed_ = true;
+  }
   bool typed() const { return typed_; }
-  double value() const { return (negative_ ? -1 : 1) * std::strtod(text_.c_str(), nullptr); }
+  double value() const { return exact_ ? *exact_ : (negative_ ? -1 : 1) * std::strtod(text_.c_str(), nullptr); }
   std::string text() const { return (negative_ ? "-" : "") + text_; }
 
  private:
@@ -46,6 +52,7 @@ class TypedNumber {
 
   std::string text_;
   bool negative_ = false, typed_ = false;
+  std::optional<double> exact_;
 };
 
 }  // namespace limber::editor

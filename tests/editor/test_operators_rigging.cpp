@@ -56,6 +56,9 @@ std::vector<Proof> proofs_of_rigging() {
   return {
       {"tool.scale", "click \"strip/tool.scale\"", [](Stage& s, const Seen&) { return s.is("tool", "scale"); }, Shows::Nothing, "", choose({1}, 1)},
       {"rig.move", "key G\n key X\n key 5\n key Return", edited("Move Fore", [](const Armature& r) { return r.bones[1].tail == glm::dvec3(5, 0, -36) && r.bones[0].tail == glm::dvec3(5, 0, 0); }), Shows::InBody, "", anew({1}, 1)},
+      {"edit.adjust_last", "move \"3D view/view\"\n key F9\n wait-idle\n double-click adjust/X/value\n key Ctrl+A\n type 9\n key Return\n wait-idle",
+       [](Stage& s, const Seen& b) { return s.is("edit", "Move Fore") && static_cast<int>(s.editor().history.position()) == b.position && s.document().armature->bones[1].tail == glm::dvec3(9, 0, -36); }, Shows::InBody,
+       "key G\n key X\n key 5\n key Return\n wait-idle", anew({1}, 1)},
       {"rig.rotate", "key R\n key Y\n key 9\n key 0\n key Return", edited("Rotate Fore", [](const Armature& r) { return glm::distance(r.bones[1].tail, {-36, 0, 0}) < 1e-9; }), Shows::InBody, "", anew({1}, 1)},
       {"rig.scale", "key S\n key 2\n key Return", edited("Scale Fore", [](const Armature& r) { return glm::distance(r.bones[1].tail, {0, 0, -72}) < 1e-9; }), Shows::InBody, "", anew({1}, 1)},
       {"rig.roll", "key Ctrl+R\n key 3\n key 0\n key Return", edited("Roll Fore", [](const Armature& r) { return std::abs(glm::degrees(r.bones[1].roll) - 30) < 1e-9; }), Shows::Nothing, "", anew({1}, 1)},
