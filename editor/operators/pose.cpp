@@ -9,6 +9,7 @@
 #include "editor/operators/pose_neighbours.h"
 #include "editor/pose_library.h"
 #include "editor/posing.h"
+#include "editor/rigging.h"
 #include "editor/project.h"
 #include "editor/tools/pose_tools.h"
 
@@ -176,7 +177,7 @@ void toggle_pins(Editor& editor) {
   const Armature& armature = *editor.document().armature;
   const std::vector<int> bones = chosen_bones(editor);
   const bool all = std::all_of(bones.begin(), bones.end(), [&](int bone) { return anchors.pins.contains(armature.bones[bone].name); });
-  for (const int bone : bones) {
+  for (const int bone : with_other_sides(editor, bones)) {
     if (all) anchors.pins.erase(armature.bones[bone].name);
     else anchors.pins.insert(armature.bones[bone].name);
   }
@@ -199,12 +200,22 @@ glm::dvec3 pole_of(const Editor& editor, int bone) {
   return middle + glm::normalize(out) * std::max(20.0, std::sqrt(squared) / 2);
 }
 
+// The bone, and with X-mirror on that of the other side, where it ends a limb too.
+std::vector<int> limbs_of(const Editor& editor, int bone) {
+  std::vector<int> bones = with_other_sides(editor, {bone});
+  std::erase_if(bones, [&](int other) { return other != bone && limb_of(*editor.document().armature, other) < 2; });
+  return bones;
+}
+
 void toggle_pole(Editor& editor) {
-  const int bone = *editor.selection.bone;
-  const std::string name = editor.document().armature->bones[bone].name;
+  const Armature& armature = *editor.document().armature;
+  const std::string& name = armature.bones[*editor.selection.bone].name;
   Anchors anchors = anchors_of(editor.document());
-  const bool had = anchors.poles.erase(name) > 0;
-  if (!had) anchors.poles[name] = pole_of(editor, bone);
+  const bool had = anchors.poles.contains(name);
+  for (const int bone : limbs_of(editor, *editor.selection.bone)) {
+    if (had) anchors.poles.erase(armature.bones[bone].name);
+    else anchors.poles.insert({armature.bones[bone].name, pole_of(editor, bone)});
+  }
   commit_anchors(editor, (had ? "Remove pole of " : "Add pole to ") + name, std::move(anchors));
 }
 
@@ -213,8 +224,10 @@ void add_ik(Editor& editor) {
   const Armature& armature = *editor.document().armature;
   const int bone = *editor.selection.bone;
   Anchors anchors = anchors_of(editor.document());
-  anchors.pins.insert(armature.bones[bone].name);
-  anchors.poles.insert({armature.bones[bone].name, pole_of(editor, bone)});
+  for (const int end : limbs_of(editor, bone)) {
+    anchors.pins.insert(armature.bones[end].name);
+    anchors.poles.insert({armature.bones[end].name, pole_of(editor, end)});
+  }
   if (anchors != anchors_of(editor.document())) commit_anchors(editor, "Hold " + armature.bones[bone].name + " by IK", std::move(anchors));
 }
 
@@ -222,7 +235,7 @@ void add_ik(Editor& editor) {
 void clear_ik(Editor& editor) {
   Anchors anchors = anchors_of(editor.document());
   if (editor.selection.bones.empty()) anchors = {};
-  for (const int bone : chosen_bones(editor)) {
+  for (const int bone : with_other_sides(editor, chosen_bones(editor))) {
     anchors.pins.erase(editor.document().armature->bones[bone].name);
     anchors.poles.erase(editor.document().armature->bones[bone].name);
   }

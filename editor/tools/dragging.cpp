@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/pose/inverse_kinematics.h"
+#include "core/rig/mirror.h"
 #include "editor/gizmo_painter.h"
 #include "editor/posing.h"
 #include "editor/tools/pose_tools.h"
@@ -100,7 +101,6 @@ class Dragging final : public TransformTool {
     return mirrored_too(editor, before_, found.pose);
   }
 
-  void show(Editor& editor) override { show_pose(editor, pose(editor)); }
   std::vector<FormField> parameters() const override {
     std::vector<FormField> fields = fields_of_way(target_ - from_);
     if (!is_root_) fields.push_back(number_of("Bones", "How many bones follow.", chain_, 1, depth_of(bone_), "%.0f"));
@@ -111,6 +111,7 @@ class Dragging final : public TransformTool {
     if (!is_root_) chain_ = static_cast<int>(std::round(fields[4].value));
   }
 
+  void show(Editor& editor) override { show_pose(editor, pose(editor)); }
   void keep(Editor& editor) override { commit_pose(editor, is_root_ ? "Move body" : "Reach with " + armature_->bones[bone_].name, pose(editor)); }
 
   std::shared_ptr<const Armature> armature_;
@@ -123,12 +124,13 @@ class Dragging final : public TransformTool {
   double short_of_ = 0;
 };
 
-// The limb turns towards its pole while its end stays.
+// The limb turns towards its pole while its end stays; with X-mirror on the other side's does so too, where it has a pole.
 class DraggingPole final : public TransformTool {
  public:
   DraggingPole(Editor& editor, const Grip& grip)
       : TransformTool(editor, grip), armature_(editor.document().armature), before_(pose_of(editor.document())), bone_(*editor.selection.bone), from_(anchors_of(editor.document()).poles.at(armature_->bones[bone_].name)) {
-    end_ = posed_from_rest(*armature_, before_)[bone_] * armature_->bones[bone_].tail;
+    const int other = mirror_pairs(*armature_)[bone_];
+    if (editor.handling->x_mirror && other != bone_ && anchors_of(editor.document()).poles.contains(armature_->bones[other].name)) other_ = other;
   }
 
   std::string title() const override { return "Turn to pole" + lock_text("along"); }
@@ -142,13 +144,11 @@ class DraggingPole final : public TransformTool {
   glm::dmat3 axes(Space space) const override { return axes_of(space, *armature_, before_, bone_, view_); }
 
   Pose pose(Editor& editor) {
-    ReachSettings settings;
-    settings.keep_limits = editor.posing.keep_limits;
-    settings.pole = to_ = dragged(editor, from_, kSnapMillimetres, kSnapFineMillimetres);
-    return reach(*armature_, before_, {{.bone = bone_, .target = end_, .chain = limb_of(*armature_, bone_)}}, settings).pose;
+    to_ = dragged(editor, from_, kSnapMillimetres, kSnapFineMillimetres);
+    const Pose one = turned(editor, before_, bone_, to_);
+    return other_ ? turned(editor, one, *other_, mirrored()) : one;
   }
 
-  void show(Editor& editor) override {
   Pose turned(const Editor& editor, const Pose& pose, int bone, const glm::dvec3& pole) const {
     const glm::dvec3 end = posed_from_rest(*armature_, before_)[bone] * armature_->bones[bone].tail;
     return reach(*armature_, pose, {{.bone = bone, .target = end, .chain = limb_of(*armature_, bone)}}, {.keep_limits = editor.posing.keep_limits, .pole = pole}).pose;
@@ -165,6 +165,7 @@ class DraggingPole final : public TransformTool {
   std::vector<FormField> parameters() const override { return fields_of_way(to_ - from_); }
   void set(const std::vector<FormField>& fields) override { set_way(fields); }
 
+  void show(Editor& editor) override {
     show_pose(editor, pose(editor));
     editor.handling->shown_pole = {armature_->bones[bone_].name, to_};
   }
@@ -173,6 +174,7 @@ class DraggingPole final : public TransformTool {
     Document next = editor.document();
     Anchors anchors = anchors_of(next);
     anchors.poles[armature_->bones[bone_].name] = to_;
+    if (other_) anchors.poles[armature_->bones[*other_].name] = mirrored();
     if (anchors != anchors_of(next)) next.anchors = std::make_shared<const Anchors>(std::move(anchors));
     editor.handling->shown_pole = {};
     commit_pose(editor, "Turn to pole", std::move(turned), std::move(next));
@@ -181,7 +183,8 @@ class DraggingPole final : public TransformTool {
   std::shared_ptr<const Armature> armature_;
   const Pose before_;
   int bone_;
-  glm::dvec3 from_, to_ = from_, end_{0};
+  std::optional<int> other_;
+  glm::dvec3 from_, to_ = from_;
 };
 
 }  // namespace

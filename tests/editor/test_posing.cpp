@@ -3,7 +3,9 @@
 #include <numbers>
 
 #include "core/rig/joint_limits.h"
+#include "editor/handling.h"
 #include "editor/posing.h"
+#include "editor/tools/pose_tools.h"
 #include "tests/editor/small_clip.h"
 #include "editor/timeline.h"
 #include "tests/editor/small_limb.h"
@@ -266,4 +268,46 @@ TEST_CASE("posing: the right button on a bone lists what can be done with it") {
   press_at({0, 0, -18});
   CHECK(test.editor->shown_popup == "Bone");
   CHECK(test.editor->selection.bone == 1);
+}
+
+TEST_CASE("posing: with X-mirror pins and poles come, move and go on both sides") {
+  PosingEditor test;
+  Document next = test.editor->document();
+  Armature rig;
+  rig.bones.push_back({"Trunk", -1, {0, 0, 0}, {0, 0, 10}, 0, {}});
+  for (const double side : {1.0, -1.0}) {
+    const std::string s = side > 0 ? ".L" : ".R";
+    const int above = static_cast<int>(rig.bones.size());
+    rig.bones.push_back({"Arm" + s, 0, {side * 5, 0, 8}, {side * 20, 4, 8}, 0, {}});
+    rig.bones.push_back({"Fore" + s, above, {side * 20, 4, 8}, {side * 35, 0, 8}, 0, {}});
+  }
+  next.armature = std::make_shared<const Armature>(rig);
+  test.editor->history.commit("Two arms", next);
+  test.editor->handling->x_mirror = true;
+  test.choose(2);
+  test.play("move \"3D view/view\"\n key Shift+P");
+  CHECK(anchors_of(test.editor->document()).pins == std::set<std::string>{"Fore.L", "Fore.R"});
+  test.play("click \"Edit/IK/Pole\"");
+  const auto poles = [&] { return anchors_of(test.editor->document()).poles; };
+  REQUIRE(poles().size() == 2);
+  CHECK(glm::distance(poles().at("Fore.R"), poles().at("Fore.L") * glm::dvec3(-1, 1, 1)) < 1e-9);
+
+  // The pole is taken along, and the other side's with it, as are the limbs.
+  begin_tool(*test.editor, begin_dragging_pole(*test.editor));
+  test.play("key Z\n key 4\n key 0\n key Return");
+  CHECK(glm::distance(poles().at("Fore.R"), poles().at("Fore.L") * glm::dvec3(-1, 1, 1)) < 1e-9);
+  const auto posed = posed_from_rest(rig, test.pose());
+  const glm::dvec3 left = posed[2] * rig.bones[2].head, right = posed[4] * rig.bones[4].head;
+  CHECK(left.z > 8.5);
+  CHECK(glm::distance(right, left * glm::dvec3(-1, 1, 1)) < 1e-6);
+  for (const int fore : {2, 4}) CHECK(glm::distance(posed[fore] * rig.bones[fore].tail, rig.bones[fore].tail) < 0.05);
+
+  test.play("key Ctrl+Alt+I");
+  CHECK(anchors_of(test.editor->document()) == Anchors{});
+  test.play("key Shift+I");
+  CHECK(anchors_of(test.editor->document()).pins.size() == 2);
+  CHECK(poles().size() == 2);
+  test.editor->handling->x_mirror = false;
+  test.play("key Shift+P");
+  CHECK(anchors_of(test.editor->document()).pins == std::set<std::string>{"Fore.R"});
 }
