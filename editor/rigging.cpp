@@ -2,6 +2,7 @@
 #include "editor/rigging.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 #include "core/project/bone_names.h"
@@ -30,11 +31,11 @@ std::vector<int> heirs(const Armature& before, const std::vector<int>& from) {
   return to;
 }
 
-enum class Names { Stay, Follow };
+using Follow = std::function<void(Document&, const Armature& before, const Armature& after)>;
 
 //   from   #bones of `next`: which one it was, -1 for a new one
-//   names  whether what goes by names goes by those of `next`, whose bones are then the same ones in the same order
-void commit_followed(Editor& editor, const std::string& label, Armature next, const std::vector<int>& from, const std::vector<int>& chosen, Names names = Names::Stay) {
+//   follow  takes along what goes by names
+void commit_followed(Editor& editor, const std::string& label, Armature next, const std::vector<int>& from, const std::vector<int>& chosen, const Follow& follow = {}) {
   drop_shown_rig(editor);
   const std::shared_ptr<const Armature> before = editor.document().armature;
   if (before && next == *before) return;
@@ -49,7 +50,7 @@ void commit_followed(Editor& editor, const std::string& label, Armature next, co
     weights_lost = !weights;
     document.weights = weights ? std::make_shared<const SkinWeights>(*weights) : nullptr;
   }
-  if (names == Names::Follow) follow_names(document, *before, next);
+  if (follow) follow(document, *before, next);
   document.armature = std::make_shared<const Armature>(std::move(next));
   commit(editor, label, std::move(document));
   if (weights_lost) editor.messages.info(label, lost);
@@ -98,7 +99,17 @@ void commit_names(Editor& editor, const std::string& label, Armature next, const
   for (std::size_t bone = 0; bone < from.size(); ++bone)
     if (const auto found = editor.posing.copied.find(before->bones[bone].name); found != editor.posing.copied.end()) copied[next.bones[bone].name] = found->second;
   editor.posing.copied = std::move(copied);
-  commit_followed(editor, label, std::move(next), from, chosen, Names::Follow);
+  commit_followed(editor, label, std::move(next), from, chosen, follow_names);
+}
+
+void mirror_bones(Editor& editor, const std::vector<int>& bones, const std::string& label) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  Armature next = mirrored_bones(*before, bones);
+  std::vector<int> from(next.bones.size()), chosen;
+  for (int bone = 0; bone < std::ssize(from); ++bone) from[bone] = before->find(next.bones[bone].name).value_or(bone);
+  for (const int bone : bones) chosen.push_back(next.find(before->bones[bone].name).value_or(bone));
+  editor.handling->part = Handling::Part::Whole;
+  commit_followed(editor, label, std::move(next), from, chosen, [&](Document& document, const Armature& was, const Armature& is) { follow_mirrored(document, was, is, bones); });
 }
 
 std::vector<int> with_other_sides(const Editor& editor, const std::vector<int>& bones) {

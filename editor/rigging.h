@@ -26,6 +26,9 @@ void commit_rig(Editor& editor, const std::string& label, Armature next, const s
 // The same for bones that only change their names; all that goes by names follows.
 void rename_bone(Editor& editor, int bone, const std::string& name);
 void commit_names(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen);
+// To the other side of the rig. A bone that takes the free name of that side takes its weights, and mirrored its keys and poses along;
+// the two of a pair change places, and what belongs to each side stays there.
+void mirror_bones(Editor& editor, const std::vector<int>& bones, const std::string& label);
 // With X-mirror on, the bones on the other side too, before the others.
 std::vector<int> with_other_sides(const Editor& editor, const std::vector<int>& bones);
 // The rig with bones that hang on another one, on nothing where that is -1. With X-mirror on, those of the other side hang on

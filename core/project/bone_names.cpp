@@ -2,8 +2,10 @@
 #include "core/project/bone_names.h"
 
 #include <optional>
+#include <type_traits>
 
 #include "core/base/error.h"
+#include "core/rig/mirror.h"
 
 namespace limber {
 
@@ -107,6 +109,49 @@ void follow_names(Document& document, const Armature& before, const Armature& af
   for (const std::string& pin : document.anchors->pins)
     if (const auto name = names.now(pin)) anchors.pins.insert(*name);
   anchors.poles = names.follow(document.anchors->poles);
+  take(document.anchors, std::move(anchors));
+}
+
+void follow_mirrored(Document& document, const Armature& before, const Armature& after, const std::vector<int>& bones) {
+  const MirrorPlane plane = mirror_plane(before);
+  std::map<std::string, std::string> gone_over;  // names before and after
+  for (const int bone : bones) {
+    const std::string& name = before.bones[bone].name;
+    if (!mirrored_name(name) || (after.bones[bone].name != name && before.find(after.bones[bone].name))) continue;
+    gone_over[name] = after.bones[bone].name;
+    if (!document.pose) continue;
+    Pose pose = *document.pose;
+    pose.rotation[bone] = plane.rotation(pose.rotation[bone]);
+    document.pose = std::make_shared<const Pose>(std::move(pose));
+  }
+  const auto carry = [&](auto& by_bone, const auto& in_the_mirror) {
+    std::remove_reference_t<decltype(by_bone)> next;
+    for (const auto& [bone, value] : by_bone) {
+      const auto now = gone_over.find(bone);
+      next[now == gone_over.end() ? bone : now->second] = now == gone_over.end() ? value : in_the_mirror(value);
+    }
+    by_bone = std::move(next);
+  };
+  const auto turned = [&](const glm::dquat& rotation) { return plane.rotation(rotation); };
+  for (auto& part : document.clips) {
+    Clip clip = *part;
+    carry(clip.keys.bones, [&](std::map<int, glm::dquat> track) {
+      for (auto& [frame, rotation] : track) rotation = plane.rotation(rotation);
+      return track;
+    });
+    carry(clip.map.sources, [](const RetargetMap::Source& source) { return RetargetMap::Source{source.joint, {}}; });
+    take(part, std::move(clip));
+  }
+  for (auto& part : document.poses) {
+    NamedPose pose = *part;
+    carry(pose.rotation, turned);
+    take(part, std::move(pose));
+  }
+  if (!document.anchors) return;
+  Anchors anchors = *document.anchors;
+  for (const auto& [name, now] : gone_over)
+    if (anchors.pins.erase(name)) anchors.pins.insert(now);
+  carry(anchors.poles, [&](const glm::dvec3& place) { return plane.place(place); });
   take(document.anchors, std::move(anchors));
 }
 

@@ -12,4 +12,8 @@ namespace limber {
 //   before, after  the same bones in the same order. What the document has under a new name of another, removed bone goes.
 void follow_names(Document& document, const Armature& before, const Armature& after);
 
+// After `bones` were mirrored (mirrored_bones), each in its place in the list: those that went to the other side alone do what
+// they did in the mirror, under the name that they have now: in pose, keys and library, with their pins and poles.
+void follow_mirrored(Document& document, const Armature& before, const Armature& after, const std::vector<int>& bones);
+
 }  // namespace limber

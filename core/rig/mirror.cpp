@@ -94,11 +94,12 @@ glm::dquat MirrorPlane::rotation(const glm::dquat& q) const {
 MirrorPlane mirror_plane(const Armature& armature) {
   const std::vector<int> pairs = mirror_pairs(armature);
   MirrorPlane plane;
-  glm::dvec3 across(0), middle(0), all(0);
-  int count = 0;
+  glm::dvec3 across(0), middle(0), all(0), sideless(0);
+  int count = 0, without_side = 0;
   for (std::size_t b = 0; b < pairs.size(); ++b) {
     const Bone& bone = armature.bones[b];
     all += (bone.head + bone.tail) / (2.0 * static_cast<double>(pairs.size()));
+    if (!mirrored_name(bone.name)) sideless += (bone.head + bone.tail) / 2.0, ++without_side;
     if (pairs[b] <= static_cast<int>(b)) continue;
     // Which of two sides is named first does not matter: all pairs are made to point one way.
     const Bone& other = armature.bones[pairs[b]];
@@ -108,7 +109,7 @@ MirrorPlane mirror_plane(const Armature& armature) {
     ++count;
   }
   if (count > 0 && glm::length(across) > 1e-9) plane.normal = glm::normalize(across);
-  plane.point = count > 0 ? middle / double(count) : all;
+  plane.point = count > 0 ? middle / double(count) : without_side > 0 ? sideless / double(without_side) : all;
   return plane;
 }
 

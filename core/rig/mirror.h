@@ -29,7 +29,7 @@ struct MirrorPlane {
 // Head, tail, own axes and limits in the mirror; name and parent as they are.
 Bone mirror_image(const Bone& bone, const MirrorPlane& plane);
 
-// Halfway between the pairs; where there are none, the sagittal plane through the bones.
+// Halfway between the pairs; where there are none, the sagittal plane through the bones that have no side, else through all.
 MirrorPlane mirror_plane(const Armature& armature);
 
 // Every bone moves as the one on the other side did.

@@ -300,7 +300,7 @@ std::vector<Operator> rig_operators() {
       {"rig.connect", "Connect to parent", icon::kLinkViews, "Bone", "The chosen bones hang on the active one and move to its tail.", [](Editor& e) { hang(e, Join::Connected); }, needs_two},
       edit_operator("rig.clear_parent", "Clear parent", "", "The chosen bones hang on nothing.", "Clear parent of", unparented),
       edit_operator("rig.flip_direction", "Flip direction", "", "Head and tail of the chosen bones change places; a chain runs the other way.", "Flip direction of", with_flipped_direction),
-      edit_operator("rig.mirror", "Mirror", icon::kMirror, "The chosen bones go to the other side.", "Mirror", mirrored_bones, Sides::Chosen),
+      {"rig.mirror", "Mirror", icon::kMirror, "Bone", "The chosen bones go to the other side, with their weights and keys.", [](Editor& e) { mirror_bones(e, bones_chosen_last(e), naming_chosen(e, "Mirror")); }, needs_rig_bone},
       {"rig.symmetrize", "Symmetrize", icon::kMirror, "Bone", "The other side of the chosen bones becomes their mirror image; what is missing there is added.", symmetrize, needs_rig_bone},
       {"rig.recalculate_roll", "Recalculate roll", "", "Bone", "The chosen bones' own z axes look forward.",
        [](Editor& e) { edit(e, "Recalculate roll of", [](const Armature& rig, const std::vector<int>& bones) { return with_z_towards(rig, bones, {0, -1, 0}); }, Sides::Mirrored); }, needs_rig_bone},

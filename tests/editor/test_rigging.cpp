@@ -258,6 +258,72 @@ TEST_CASE("rigging: with X-mirror both sides extrude") {
   CHECK(test.rig().bones.size() == 3);
 }
 
+TEST_CASE("rigging: a bone mirrored to the other side keeps its weights and pose, and does in the mirror what it did") {
+  RiggingEditor test;
+  give_two_arms(test);
+  test.play("key Ctrl+1\n wait-idle");
+  test.choose(test.rig().find("Arm.R").value());
+  test.play("move \"3D view/view\"\n key X");
+  Document next = test.editor->document();
+  const int arm = next.armature->find("Arm.L").value();
+  const glm::dquat raised = glm::angleAxis(0.4, glm::normalize(glm::dvec3(1, 2, 3))), in_the_mirror = glm::angleAxis(-0.4, glm::normalize(glm::dvec3(-1, 2, 3)));
+  Pose pose = rest_pose(*next.armature);
+  pose.rotation[arm] = raised;
+  next.pose = std::make_shared<const Pose>(pose);
+  const auto in_voxels = [&](const SkinWeights& weights) {
+    std::string all;
+    for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick)
+      for (const Influence& influence : weights.chunk(brick)) all += std::to_string(influence.bone[0]) + " ";
+    return all;
+  };
+  auto weights = std::make_shared<SkinWeights>(std::vector<std::string>{"Trunk", "Arm.L"}, TissueVoxels(*next.volume));
+  next.weights = weights;
+  next.clips = {std::make_shared<const Clip>(Clip{.name = "Keys", .keys = {.bones = {{"Arm.L", {{3, raised}}}}}})};
+  next.poses = {std::make_shared<const NamedPose>(NamedPose{"Raised", {{"Arm.L", raised}}})};
+  next.anchors = std::make_shared<const Anchors>(Anchors{.pins = {"Arm.L"}, .poles = {{"Arm.L", {7, 8, 9}}}});
+  test.editor->history.commit("Weights and keys", next);
+
+  test.choose(arm);
+  test.play("move \"3D view/view\"\n key Ctrl+M");
+  const Document& document = test.editor->document();
+  REQUIRE(test.rig().bones[arm].name == "Arm.R");
+  CHECK(test.rig().bones[arm].tail.x == -next.armature->bones[arm].tail.x);
+  REQUIRE(document.weights);
+  CHECK(document.weights->bones() == std::vector<std::string>{"Trunk", "Arm.R"});
+  CHECK(in_voxels(*document.weights) == in_voxels(*weights));
+  const auto same = [](const glm::dquat& a, const glm::dquat& b) { return std::abs(glm::dot(a, b)) > 1 - 1e-12; };
+  CHECK(same(document.pose->rotation[arm], in_the_mirror));
+  CHECK(same(document.clips[0]->keys.bones.at("Arm.R").at(3), in_the_mirror));
+  CHECK(!document.clips[0]->keys.bones.contains("Arm.L"));
+  CHECK(same(document.poses[0]->rotation.at("Arm.R"), in_the_mirror));
+  CHECK(document.anchors->pins == std::set<std::string>{"Arm.R"});
+  CHECK(glm::distance(document.anchors->poles.at("Arm.R"), {-7, 8, 9}) < 1e-9);  // the trunk stands in the middle
+  CHECK(test.editor->selection.bones == std::set<int>{arm});
+
+  // And back: as before.
+  test.play("key Ctrl+M");
+  CHECK(test.rig() == *next.armature);
+  CHECK(same(test.editor->document().pose->rotation[arm], raised));
+  CHECK(*test.editor->document().anchors == *next.anchors);
+}
+
+TEST_CASE("rigging: the two bones of a pair that are mirrored change places, and what belongs to each side stays there") {
+  RiggingEditor test;
+  give_two_arms(test);
+  Document next = test.editor->document();
+  const glm::dquat raised = glm::angleAxis(0.4, glm::dvec3(0, 1, 0));
+  next.clips = {std::make_shared<const Clip>(Clip{.name = "Keys", .keys = {.bones = {{"Arm.L", {{3, raised}}}}}})};
+  next.weights = std::make_shared<const SkinWeights>(std::vector<std::string>{"Trunk", "Arm.L", "Arm.R"}, TissueVoxels(*next.volume));
+  test.editor->history.commit("Keys", next);
+  test.choose(1);
+  test.editor->selection.bones = {1, 2};
+  test.play("move \"3D view/view\"\n key Ctrl+M");
+  CHECK(test.rig().bones[test.rig().find("Arm.L").value()].tail.x > 0);
+  CHECK(test.editor->document().clips == next.clips);
+  CHECK(test.editor->document().weights->bones()[test.rig().find("Arm.L").value()] == "Arm.L");
+  CHECK(test.editor->selection.bones == std::set<int>{1, 2});
+}
+
 TEST_CASE("rigging: with X-mirror both sides change parents, and are deleted, each on its side") {
   RiggingEditor test;
   give_two_arms(test);
