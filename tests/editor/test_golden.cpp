@@ -110,7 +110,7 @@ void check_golden(const std::string& name, const Image& window) {
 
 // A sitting in which nothing moves by itself.
 struct Scene {
-  Scene() : sitting(home.folder.path(), {}, wanted_window().value_or(Window{}).size) {
+  explicit Scene(const glm::ivec2& size = kWindow) : sitting(home.folder.path(), {}, wanted_window().value_or(Window{size}).size) {
     editor().preferences.reduce_motion = true;
     editor().preferences.scale = wanted_window().value_or(Window{}).scale;
     sitting.play("wait-idle");
@@ -143,6 +143,10 @@ struct Scene {
 
 struct Arm : Scene {
   Arm() { open_arm(); }
+};
+
+struct Small : Scene {
+  Small() : Scene({840, 540}) { open_arm(); }
 };
 
 }  // namespace
@@ -179,6 +183,30 @@ TEST_CASE("golden: arm, a clip box through the elbow") {
   camera.distance *= 0.45;
   scene.editor().touch();
   check_golden("clip_box", scene.picture());
+}
+
+// So small that they cost little; the 3D view alone.
+TEST_CASE("golden: bones chosen in a box and under a circle") {
+  for (const auto& [name, key, end] : {std::tuple{"box_select", "B", "500 340"}, {"circle_select", "C", "430 330"}}) {
+    Small scene;
+    scene.play(std::string("move \"3D view/view\"\n key Alt+Z\n key Num1\n move 330 150\n key ") + key);
+    scene.sitting.test.host->events.push(ButtonChanged{MouseButton::Left, true});
+    scene.play(std::string("wait-idle\n move ") + end);
+    check_golden(name, scene.picture());
+    scene.play("key Escape");
+  }
+}
+
+TEST_CASE("golden: a limb held by a pin and a pole, at rest and out of reach") {
+  Small scene;
+  scene.play("key Ctrl+3\n move \"3D view/view\"\n key Alt+Z\n key Num3");
+  scene.editor().selection.bone = 1;
+  scene.editor().selection.bones = {1};
+  scene.play("key Shift+I");
+  check_golden("ik_pin_pole", scene.picture());
+  scene.play("key G\n key Z\n key -\n key 9\n key 0");
+  check_golden("ik_out_of_reach", scene.picture());
+  scene.play("key Escape");
 }
 
 TEST_CASE("golden: arm, four views") {
