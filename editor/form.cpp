@@ -11,7 +11,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kRow = 34, kLabel = 130;
+constexpr float kWidth = 480, kRow = 34, kLabel = 130;
 constexpr std::size_t kMostBeside = 4;
 
 bool draw_choice(Editor& editor, FormField& field, const Rect& rect) {
@@ -51,10 +51,11 @@ class Form final : public Dialog {
 
 void Form::draw(Editor& editor) {
   const Look& look = editor.look;
-  const float height = 36 + 18 + 44 + kRow * static_cast<float>(request_.fields.size()) + 52 + 28 + 18;
-  const Rect rect = begin_dialog(editor, request_.title, 480, height);
+  const float sentence = height_of_wrapped(look.fonts.regular, request_.sentence, look.px(kWidth - 36), 2) > look.px(24) ? 44 : 28;
+  const float height = 36 + 18 + sentence + kRow * static_cast<float>(request_.fields.size()) + 52 + 28 + 18;
+  const Rect rect = begin_dialog(editor, request_.title, kWidth, height);
   put_wrapped(editor, look.fonts.regular, look.theme.text2, rect.low, rect.width(), request_.sentence, 2);
-  float y = rect.low.y + look.px(44);
+  float y = rect.low.y + look.px(sentence);
   for (FormField& field : request_.fields) {
     draw_field(editor, field, {{rect.low.x, y}, {rect.high.x, y + look.px(kRow)}}, look.px(kLabel), field.kind == FormField::Kind::Text && !std::exchange(focused_, true));
     y += look.px(kRow);

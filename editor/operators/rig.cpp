@@ -314,7 +314,7 @@ std::vector<Operator> rig_operators() {
       {"rig.next_leaving", "Next bone outside tissue", "", "Bone", "Goes to the next bone that leaves the tissue.", show_next_leaving, needs_leaving},
       {"view.rig_check", "Where the rig leaves tissue", "", "View", "Marks bones and joints outside of tissue in the Rig workspace.", [](Editor& e) { e.handling->rig_check_marks = !e.handling->rig_check_marks; }, nullptr,
        [](const Editor& e) { return e.handling->rig_check_marks; }},
-      {"rig.snap", "Snap", icon::kSnap, "Bone", "Transforms snap without Ctrl, and with Ctrl they do not.", [](Editor& e) { e.handling->snapping = !e.handling->snapping; }, nullptr,
+      {"rig.snap", "Snap without Ctrl", icon::kSnap, "Bone", "Transforms snap without Ctrl, and with Ctrl they do not.", [](Editor& e) { e.handling->snapping = !e.handling->snapping; }, nullptr,
        [](const Editor& e) { return e.handling->snapping; }},
       snap_operator("snap.steps", "Snap to steps", "Of 5 mm, 5 degrees or a tenth; with Shift finer.", Snap::Steps),
       snap_operator("snap.voxel", "Snap to voxels", "A moved joint goes to the centre of the nearest voxel.", Snap::Voxel),

@@ -241,7 +241,10 @@ void draw_drag(Editor& editor, const Row& row, const Rect& rect) {
   const std::string what = bones.size() == 1 ? drag.bone : std::to_string(bones.size()) + " bones";
   draw_dragged(editor, parent < 0 ? "Clear parent of " + what : what + " onto " + row.name);
   if (editor.input.down(MouseButton::Left) || bones.empty()) return;
-  attempt(editor, "Make parent", [&](Editor& e) { hang_on(e, bones, parent); });
+  attempt(editor, "Make parent", [&](Editor& e) {
+    hang_on(e, bones, parent);
+    e.outliner.open[row.key] = true;  // they stay in sight
+  });
 }
 
 void draw_row(Editor& editor, Column& column, int index, const Row& row) {
