@@ -579,7 +579,7 @@ void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& fo
     found.how[b].confidence *= kLessSure;
   }
   // A limb alone that is cut off at its upper end may be longer or shorter than it looks, from its free end on.
-  constexpr double kLonger = 0.11;
+  constexpr double kLonger = 0.13;
   const auto upper = std::find_if(rig.bones.begin(), rig.bones.end(), [](const Bone& bone) { return bone.name == "UpperArm" || bone.name == "Thigh"; });
   if (upper != rig.bones.end() && is_doubted(static_cast<int>(upper - rig.bones.begin()))) {
     std::vector<double> from_end(rig.bones.size(), 0);
