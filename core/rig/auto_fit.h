@@ -33,7 +33,7 @@ struct JointFit {
   enum class How { Skin, BoneSurface, BoneAxis, Girth, Ball, Carried, Extents, Unseen };  // Unseen: beyond a cut
   How how = How::Carried;
   double confidence = 0;  // 0 .. 1
-  double error = 0;       // mm that it may lie off: nine of ten joints so found lay within it, on bodies whose joints are known
+  double error = 0;       // mm that it may lie off: seven joints of eight so found lay within it, on bodies whose joints are known
 };
 std::string_view to_string(JointFit::How how);  // "bone surface"
 
