@@ -164,7 +164,7 @@ struct Editor {
   std::string open_popup;  // a menu of menus.h wanted at the pointer in the next frame; "" for none
   std::string shown_popup;  // the one that is open
   bool open_pick_list = false;  // likewise
-  std::vector<Label> pick_list;  // tissues under the pointer, nearest first
+  std::vector<Pickable> pick_list;  // what lies under the pointer, nearest first
   Comparison comparison;
   std::unique_ptr<LivePose> live;
   struct {

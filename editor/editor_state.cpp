@@ -77,7 +77,9 @@ std::string editor_state(const Editor& editor) {
   const Views& views = *editor.views;
   Json json{{"schema", kSchema}, {"workspace", static_cast<int>(editor.workspace)}, {"display", static_cast<int>(views.display)},
             {"slices", static_cast<int>(views.slice_display)}, {"cross_hair", json_of(views.cross_hair)}, {"camera", json_of(views.body.camera)},
-            {"grid", views.grid}, {"axes", views.axes}, {"scale_bar", views.scale_bar}, {"letters", views.letters}, {"show_cross_hair", views.show_cross_hair}};
+            {"grid", views.grid}, {"axes", views.axes}, {"scale_bar", views.scale_bar}, {"letters", views.letters}, {"show_cross_hair", views.show_cross_hair},
+            {"bones", views.bones}, {"bone_shape", static_cast<int>(views.bone_shape)}, {"bone_names", views.bone_names}, {"bone_axes", views.bone_axes},
+            {"bones_in_front", views.bones_in_front}};
   json["arrangements"] = Json::parse(json_text(editor.arrangements));
   json["method"] = editor.resampling.method;
   for (const SliceState& slice : views.slices)
@@ -100,6 +102,11 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   take(json, "scale_bar", views.scale_bar);
   take(json, "letters", views.letters);
   take(json, "show_cross_hair", views.show_cross_hair);
+  take(json, "bones", views.bones);
+  take_choice(json, "bone_shape", 3, views.bone_shape);
+  take(json, "bone_names", views.bone_names);
+  take(json, "bone_axes", views.bone_axes);
+  take(json, "bones_in_front", views.bones_in_front);
   if (const auto camera = json.find("camera"); camera != json.end() && camera->is_object()) restore(*camera, views.body.camera);
   views.body.name.clear();
   if (json.contains("arrangements")) restore(json["arrangements"].dump(), editor.arrangements);

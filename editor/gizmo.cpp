@@ -7,6 +7,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "core/rig/joint_limits.h"
+#include "editor/bone_labels.h"
 #include "editor/dispatch.h"
 #include "editor/gizmo_painter.h"
 #include "editor/joint_handles.h"
@@ -118,18 +119,11 @@ std::optional<int> joint_at(const Editor& editor, const SeenFrom& view, const gl
   std::optional<int> found;
   double nearest = kJointHit * editor.look.scale;
   for (int bone = 0; bone < std::ssize(armature.bones); ++bone)
-    if (const auto tail = view.pixel_of(posed[bone] * armature.bones[bone].tail); tail && glm::distance(*tail, pixel) <= nearest) {
+    if (const auto tail = view.pixel_of(posed[bone] * armature.bones[bone].tail); tail && view.shows(posed[bone] * armature.bones[bone].tail) && glm::distance(*tail, pixel) <= nearest) {
       nearest = glm::distance(*tail, pixel);
       found = bone;
     }
-  if (!found) found = body_at_pointer(editor, view.place).pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low)));
-  return found;
-}
-
-void choose_bone(Editor& editor, int bone) {
-  editor.selection = {};
-  editor.selection.bone = bone;
-  editor.selection.bones = {bone};
+  return found ? found : bone_at_pointer(editor);
 }
 
 bool press_joint(Editor& editor, const SeenFrom& view) {
@@ -200,21 +194,36 @@ std::optional<BonePart> bone_part_at(const Editor& editor, const SeenFrom& view,
   return std::nullopt;
 }
 
-// In slices as lines, fainter away from them; the chosen joint in every view.
+// Where the bones lie that slices show: posed in the Pose workspace.
+struct DrawnBone {
+  int bone;
+  glm::dvec3 head, tail;
+};
+
+std::vector<DrawnBone> bones_in_slices(const Editor& editor) {
+  const bool posed = editor.workspace == Workspace::Pose;
+  const std::shared_ptr<const Armature> rig = posed ? editor.document().armature : shown_rig(editor);
+  std::vector<DrawnBone> drawn;
+  if ((!posed && editor.workspace != Workspace::Rig) || !rig || !editor.views->bones) return drawn;
+  const std::vector<RigidTransform> moved = posed ? posed_from_rest(*rig, shown_pose(editor)) : std::vector<RigidTransform>(rig->bones.size());
+  for (int bone = 0; bone < std::ssize(rig->bones); ++bone) drawn.push_back({bone, moved[bone] * rig->bones[bone].head, moved[bone] * rig->bones[bone].tail});
+  return drawn;
+}
+
+// In slices as lines, fainter away from them; in the rig the chosen joint in every view.
 void draw_rig(Editor& editor, const SeenFrom& view) {
-  const std::shared_ptr<const Armature> rig = shown_rig(editor);
-  if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return;
   const GizmoPainter painter(editor, view);
   const Theme& theme = editor.look.theme;
   if (view.place.id != ViewId::Body)
-    for (int bone = 0; bone < std::ssize(rig->bones); ++bone) {
-      const Bone& b = rig->bones[bone];
-      const bool chosen = editor.selection.bones.contains(bone);
-      const float alpha = view.shows(b.head) || view.shows(b.tail) ? 0.9f : 0.25f;
+    for (const DrawnBone& bone : bones_in_slices(editor)) {
+      const bool chosen = editor.selection.bones.contains(bone.bone);
+      const float alpha = view.shows(bone.head) || view.shows(bone.tail) ? 0.9f : 0.25f;
       const Colour colour = with_alpha(chosen ? theme.select : theme.view_text, alpha);
-      painter.line(b.head, b.tail, colour, 2);
-      for (const glm::dvec3& end : {b.head, b.tail}) painter.dot(end, colour, with_alpha(0xFF1A1614, alpha), 4);
+      painter.line(bone.head, bone.tail, colour, 2);
+      for (const glm::dvec3& end : {bone.head, bone.tail}) painter.dot(end, colour, with_alpha(0xFF1A1614, alpha), 4);
     }
+  const std::shared_ptr<const Armature> rig = shown_rig(editor);
+  if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return;
   const auto bone = editor.selection.bone;
   if (editor.handling->part == Handling::Part::Whole || !bone || *bone >= std::ssize(rig->bones)) return;
   const glm::dvec3& place = place_of(*rig, {*bone, editor.handling->part == Handling::Part::Tail});
@@ -325,12 +334,13 @@ std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view) {
     if (!view.shows(place)) return std::nullopt;
     return Gizmo{editor.tool, place, axes_of(editor.handling->space, *armature, rest_pose(*armature), *bone, view)};
   }
-  if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body) return std::nullopt;
-  if (editor.tool != Tool::Rotate && editor.tool != Tool::Move) return std::nullopt;
+  if (editor.workspace != Workspace::Pose || (editor.tool != Tool::Rotate && editor.tool != Tool::Move)) return std::nullopt;
   const Pose pose = shown_pose(editor);
   const Bone& b = armature->bones[*bone];
   const bool at_head = editor.tool == Tool::Rotate || b.parent < 0;
-  return Gizmo{editor.tool, posed_from_rest(*armature, pose)[*bone] * (at_head ? b.head : b.tail), axes_of(editor.handling->space, *armature, pose, *bone, view)};
+  const glm::dvec3 place = posed_from_rest(*armature, pose)[*bone] * (at_head ? b.head : b.tail);
+  if (!view.shows(place)) return std::nullopt;
+  return Gizmo{editor.tool, place, axes_of(editor.handling->space, *armature, pose, *bone, view)};
 }
 
 std::optional<GizmoPart> part_at(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel) {
@@ -349,7 +359,7 @@ bool press_gizmo(Editor& editor) {
     return true;
   }
   if (press_joint_handle(editor, view)) return true;
-  if (editor.tool == Tool::Reach && editor.workspace == Workspace::Pose && place->id == ViewId::Body && editor.document().armature) return press_joint(editor, view);
+  if (editor.tool == Tool::Reach && editor.workspace == Workspace::Pose && editor.document().armature) return press_joint(editor, view);
   const auto gizmo = gizmo_in(editor, view);
   const auto part = gizmo ? part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer)) : std::nullopt;
   // The ball of the rings hides no bone here.
@@ -365,10 +375,41 @@ bool press_gizmo(Editor& editor) {
   return true;
 }
 
+void choose_bone(Editor& editor, int bone) {
+  editor.selection = {};
+  editor.selection.bone = bone;
+  editor.selection.bones = {bone};
+}
+
 std::optional<int> bone_at_pointer(const Editor& editor) {
-  const Rect* place = editor.layout.place_of(ViewId::Body);
-  if (!editor.document().armature || editor.views->hover.view != ViewId::Body || !place) return std::nullopt;
-  return body_at_pointer(editor, {ViewId::Body, *place}).pick_bone(glm::ivec2(editor.input.pointer - place->low));
+  const ViewPlace* place = hovered_view(editor);
+  if (!editor.document().armature || !place) return std::nullopt;
+  if (place->id == ViewId::Body) return body_at_pointer(editor, *place).pick_bone(glm::ivec2(editor.input.pointer - place->rect.low));
+  // In a slice those that lie in it; in the rig its joints alone are taken hold of.
+  if (editor.workspace != Workspace::Pose) return std::nullopt;
+  const auto below = bones_below(editor);
+  const auto nearest = std::min_element(below.begin(), below.end());
+  return nearest == below.end() ? std::nullopt : std::optional(nearest->second);
+}
+
+std::vector<std::pair<double, int>> bones_below(const Editor& editor) {
+  const ViewPlace* place = hovered_view(editor);
+  std::vector<std::pair<double, int>> found;
+  if (!place || !editor.views->scene.armature) return found;
+  const SeenFrom view(editor, *place);
+  const glm::dvec2 pixel(editor.input.pointer);
+  if (place->id == ViewId::Body) {
+    for (const render::BoneHit& hit : body_at_pointer(editor, *place).pick_bones(glm::ivec2(pixel - glm::dvec2(place->rect.low)))) found.push_back({hit.depth, hit.bone});
+    return found;
+  }
+  for (const DrawnBone& bone : bones_in_slices(editor)) {
+    const auto head = view.pixel_of(bone.head), tail = view.pixel_of(bone.tail);
+    double share = 0;
+    if (!head || !tail || distance_to_segment(pixel, *head, *tail, share) > kHit * editor.look.scale) continue;
+    const glm::dvec3 at = glm::mix(bone.head, bone.tail, share);
+    if (view.shows(at)) found.push_back({std::abs(glm::dot(at - view.slice.centre, view.towards_eye)), bone.bone});
+  }
+  return found;
 }
 
 bool pick_bone_part(Editor& editor) {
@@ -383,6 +424,7 @@ bool pick_bone_part(Editor& editor) {
 void draw_gizmo(Editor& editor, const ViewPlace& place) {
   const SeenFrom view(editor, place);
   draw_rig(editor, view);
+  draw_bone_labels(editor, view);
   draw_rig_check(editor, view);
   draw_marks(editor, view);
   draw_limits(editor, view);

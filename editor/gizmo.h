@@ -6,6 +6,8 @@
 #pragma once
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "editor/editor.h"
 #include "editor/seen_from.h"
@@ -31,11 +33,17 @@ std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view);
 // What of it lies under the pixel.
 std::optional<GizmoPart> part_at(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel);
 
+// That bone alone.
+void choose_bone(Editor& editor, int bone);
+
 // In the Rig workspace: chooses the joint or bone under the pointer, in any view; false where there is none.
 bool pick_bone_part(Editor& editor);
 
-// The bone under the pointer in the 3D view.
+// The bone under the pointer in the 3D view, in the Pose workspace in any.
 std::optional<int> bone_at_pointer(const Editor& editor);
+
+// The bones under the pointer, in any view: how far they lie before the 3D view's eye, or from the slice, mm.
+std::vector<std::pair<double, int>> bones_below(const Editor& editor);
 
 // Begins a tool when the pointer is over a part, or over a joint that the reach tool drags; false when it is over none.
 bool press_gizmo(Editor& editor);

@@ -75,7 +75,7 @@ std::vector<Menu> menus() {
         "view.ortho", "view.frame_selected", "view.frame_all", "> Navigate", "view.walk", "view.centre_on_pick", "view.orbit_left", "view.orbit_right", "view.orbit_up",
         "view.orbit_down", "view.zoom_in", "view.zoom_out", "<", "-", "> Display", "view.solid", "view.xray_display", "view.tissue", "<", "> Clipping", "view.clip_box", "view.clip_plane", "view.reset_clipping",
         "<", "> Tissues", "view.hide", "view.isolate_selected", "view.reveal", "<", "> Slices", "slice.show_labels", "slice.show_outlines", "slice.next", "slice.previous", "<", "> Overlays",
-        "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.bones", "view.rig_check", "view.cross_hair", "<", "-", "view.find", "view.sidebar", "view.tool_strip", "> Below the views", "view.timeline", "view.results", "view.console", "<", "view.full_screen"}},
+        "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.bones", "view.rig_check", "view.cross_hair", "<", "> Bones", "view.bones_octahedron", "view.bones_stick", "view.bones_cylinder", "-", "view.bone_names", "view.bone_axes", "view.bones_in_front", "<", "-", "view.find", "view.sidebar", "view.tool_strip", "> Below the views", "view.timeline", "view.results", "view.console", "<", "view.full_screen"}},
       {"Motion",
        {"> Import", "file.import_motion", "<", "> Retarget", "motion.retarget", "motion.map", "motion.map_by_names", "motion.load_map", "motion.save_map", "-", "motion.travel_locked", "motion.travel_in_place",
         "motion.travel_free", "motion.mirror", "-", "motion.reference_found", "motion.reference_rest", "motion.reference_first", "<", "> Rest poses", "motion.rest_file", "motion.rest_t", "motion.rest_a", "motion.rest_anatomical", "-",
@@ -102,7 +102,7 @@ Menu pointer_menu(const std::string& name, ViewId view) {
   if (name == "Tissue")
     return {name, {"view.hide", "view.isolate_selected", "view.reveal", "view.frame_selected", "-", "edit.rename", "prepare.merge"}};
   if (name == "Volume") return {name, {"view.reveal", "-", "prepare.regrid", "prepare.orient", "prepare.crop", "prepare.pad", "prepare.specks", "prepare.statistics", "-", "file.export_volume", "file.export_tissues"}};
-  if (name == "Armature") return {name, {"view.bones", "-", "skin.heat", "pose.flex", "pose.clear", "-", "file.import_rig", "file.export_rig"}};
+  if (name == "Armature") return {name, {"view.bones", "view.bone_names", "view.bone_axes", "view.bones_in_front", "-", "skin.heat", "pose.flex", "pose.clear", "-", "file.import_rig", "file.export_rig"}};
   if (name == "Result") return {name, {"result.toggle", "edit.rename", "result.copy_report", "-", "result.delete", "result.delete_stale"}};
   if (view == ViewId::Body)
     return {"3D view", {"view.hide", "view.isolate_selected", "view.reveal", "-", "view.frame_selected", "view.frame_all", "view.centre_on_pick", "-", "view.clip_box", "view.clip_plane", "view.xray"}};

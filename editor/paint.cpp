@@ -97,6 +97,12 @@ float width_of_key_caps(const Editor& editor, const std::vector<std::string>& ca
   return caps.empty() ? 0 : width - look.px(4);
 }
 
+void put_bone_icon(const Look& look, const Rect& in, Colour colour) {
+  const glm::vec2 middle = in.centre();
+  const float wide = look.px(4), high = look.px(6);
+  ImGui::GetWindowDrawList()->AddQuadFilled({middle.x, middle.y - high}, {middle.x + wide, middle.y - high / 3}, {middle.x, middle.y + high}, {middle.x - wide, middle.y - high / 3}, colour);
+}
+
 float put_key_caps(Editor& editor, float x, float y, const std::vector<std::string>& caps) {
   const Look& look = editor.look;
   for (const std::string& cap : caps) {

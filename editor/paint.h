@@ -29,6 +29,8 @@ float put_wrapped(Editor& editor, ImFont* font, Colour colour, const glm::vec2& 
 float height_of_wrapped(ImFont* font, const std::string& text, float width, int most_lines = 0);
 // An icon in the middle of the rectangle.
 void put_icon(ImFont* font, Colour colour, const Rect& in, const char* icon);
+// A bone's quad in the middle of the rectangle.
+void put_bone_icon(const Look& look, const Rect& in, Colour colour);
 // Caps beside one another; returns the right end. `y` is the middle.
 float put_key_caps(Editor& editor, float x, float y, const std::vector<std::string>& caps);
 float width_of_key_caps(const Editor& editor, const std::vector<std::string>& caps);

@@ -73,7 +73,8 @@ void update_scene(Views& views, const Document& document, const Selection& selec
   if (visibility && visibility->clip_plane.enabled) scene.clip.plane = {visibility->clip_plane.point, visibility->clip_plane.normal};
   scene.outlined = selection.tissue;
   scene.armature = !views.bones ? nullptr : views.preview_armature ? views.preview_armature : document.armature;
-  scene.bones_in_front = views.display == render::Display::XRay;
+  scene.bone_shape = views.bone_shape;
+  scene.bones_in_front = views.bones_in_front || views.display == render::Display::XRay;
   scene.bones.assign(scene.armature ? scene.armature->bones.size() : 0, {});
   for (const int bone : selection.bones)
     if (bone < std::ssize(scene.bones)) scene.bones[bone].selected = true;

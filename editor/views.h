@@ -47,6 +47,14 @@ struct Selection {
   std::set<int> bones;
 };
 
+// One of the things that lie under the pointer.
+struct Pickable {
+  std::optional<int> bone;  // none: the tissue
+  Label tissue = 0;
+
+  bool operator==(const Pickable&) const = default;
+};
+
 struct BoneWeight {
   std::string bone;
   double value;  // of 1
@@ -74,6 +82,8 @@ struct Views {
   render::Display display = render::Display::Solid;
   render::SliceDisplay slice_display = render::SliceDisplay::Labels;
   bool grid = true, axes = true, scale_bar = true, letters = true, bones = true;
+  render::BoneShape bone_shape = render::BoneShape::Octahedron;
+  bool bone_names = false, bone_axes = false, bones_in_front = false;
   ViewId active = ViewId::Body;
   Hover hover;
 

@@ -2,12 +2,13 @@
 #include "render/armature_pass.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include <epoxy/gl.h>
+
+#include "render/bone_solid.h"
 
 namespace limber::render {
 
@@ -54,8 +55,6 @@ void main() {
 }
 )";
 
-constexpr double kHalfWidth = 0.085, kWidestAt = 0.12;  // of the bone's length
-
 const glm::vec3 kFill = glm::vec3(0xC4, 0xCA, 0xD4) / 255.0f, kEdge = glm::vec3(0x14, 0x16, 0x1A) / 255.0f;
 const glm::vec3 kSelected = glm::vec3(0xFF, 0x9F, 0x2E) / 255.0f, kActive = glm::vec3(0xFF, 0xD0, 0x8A) / 255.0f;
 constexpr float kBehindEdge = 0.35f;  // strength of edges on the far side
@@ -69,7 +68,7 @@ struct Corner {
 };
 
 struct Projected {
-  std::array<Corner, 6> corners;  // head, tail, four about the widest place
+  std::vector<Corner> corners;  // head, tail, then the solid's
   BoneLook look;
   double depth = 0;  // of the middle
 
@@ -81,24 +80,30 @@ struct Projected {
 std::vector<Projected> projected_bones(const Scene& scene, const Camera& camera, const glm::ivec2& size) {
   std::vector<Projected> result;
   const glm::dmat4 view = view_from_world(camera);
+  const BoneSolid* solid = solid_of(scene.bone_shape);
   for (size_t b = 0; b < scene.armature->bones.size(); ++b) {
     const Bone& bone = scene.armature->bones[b];
     const RigidTransform posed = b < scene.posed_from_rest.size() ? scene.posed_from_rest[b] : RigidTransform{};
-    const glm::dmat3 axes = rest_axes(bone);
-    const double length = glm::length(bone.tail - bone.head);
-    const glm::dvec3 widest = bone.head + (bone.tail - bone.head) * kWidestAt;
-    const glm::dvec3 x = axes[0] * length * kHalfWidth, z = axes[2] * length * kHalfWidth;
-    const std::array<glm::dvec3, 6> points = {bone.head, bone.tail, widest + x, widest + z, widest - x, widest - z};
     Projected out;
     if (b < scene.bones.size()) out.look = scene.bones[b];
-    for (int c = 0; c < 6; ++c) {
-      Corner& corner = out.corners[static_cast<size_t>(c)];
-      const glm::dvec3 world = posed * points[static_cast<size_t>(c)];
+    const auto add = [&](const glm::dvec3& point) {
+      Corner& corner = out.corners.emplace_back();
+      const glm::dvec3 world = posed * point;
       corner.view = glm::dvec3(view * glm::dvec4(world, 1));
       corner.depth = static_cast<float>(-corner.view.z);
       glm::dvec2 pixel(0);
       corner.in_front = project(camera, world, size, pixel) && glm::length(pixel) < 1e6;
       corner.pixel = pixel;
+    };
+    add(bone.head);
+    add(bone.tail);
+    if (solid) {
+      const glm::dmat3 axes = rest_axes(bone);
+      const double length = glm::length(bone.tail - bone.head);
+      for (size_t i = 2; i < solid->points.size(); ++i) {
+        const glm::dvec3& point = solid->points[i];
+        add(bone.head + (bone.tail - bone.head) * point.y + (axes[0] * point.x + axes[2] * point.z) * length);
+      }
     }
     out.depth = (out.corners[0].depth + out.corners[1].depth) / 2.0;
     result.push_back(out);
@@ -136,9 +141,6 @@ class Shapes {
   void quad(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& d) { vertices.insert(vertices.end(), {a, b, c, a, c, d}); }
 };
 
-// Corner numbers of the eight faces, counter-clockwise from outside.
-constexpr int kFaces[8][3] = {{0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 2}, {1, 3, 2}, {1, 4, 3}, {1, 5, 4}, {1, 2, 5}};
-
 struct EdgeStyle {
   glm::vec3 colour;
   float width;
@@ -149,33 +151,25 @@ EdgeStyle edge_of(const BoneLook& look) {
   return {kEdge, 1.1f};
 }
 
-void add_octahedron(Shapes& shapes, const Projected& bone, bool perspective) {
-  const auto faces_eye = [&](const int* face) {
-    const glm::dvec3 a = bone.corners[static_cast<size_t>(face[0])].view, b = bone.corners[static_cast<size_t>(face[1])].view,
-                     c = bone.corners[static_cast<size_t>(face[2])].view;
-    const glm::dvec3 normal = glm::cross(b - a, c - a);
-    return std::pair(glm::dot(normal, perspective ? -a : glm::dvec3(0, 0, 1)) > 0, glm::length(normal) > 0 ? glm::normalize(normal) : normal);
-  };
-  // Which edges a face that looks this way has, as bits of a 6 x 6 table.
-  std::array<std::array<bool, 6>, 6> in_front{};
-  for (const auto& face : kFaces) {
-    const auto [front, normal] = faces_eye(face);
-    if (!front) continue;
-    for (int i = 0; i < 3; ++i) {
-      const auto a = static_cast<size_t>(face[i]), b = static_cast<size_t>(face[(i + 1) % 3]);
-      in_front[a][b] = in_front[b][a] = true;
-    }
+void add_solid(Shapes& shapes, const Projected& bone, const BoneSolid& solid, bool perspective) {
+  std::vector<bool> front(solid.faces.size());
+  for (size_t f = 0; f < solid.faces.size(); ++f) {
+    const std::vector<int>& face = solid.faces[f];
+    const auto corner = [&](size_t i) -> const Corner& { return bone.corners[static_cast<size_t>(face[i])]; };
+    const glm::dvec3 across = glm::cross(corner(1).view - corner(0).view, corner(2).view - corner(0).view);
+    front[f] = glm::dot(across, perspective ? -corner(0).view : glm::dvec3(0, 0, 1)) > 0;
+    if (!front[f]) continue;
+    const glm::dvec3 normal = glm::length(across) > 0 ? glm::normalize(across) : across;
     const auto light = static_cast<float>(std::clamp(0.5 + 0.5 * glm::dot(normal, glm::normalize(glm::dvec3(-0.4, 0.6, 0.7))), 0.0, 1.0));
     const glm::vec4 fill = bone.look.active ? glm::vec4(kActive, 0.55f + 0.20f * light) : glm::vec4(kFill * (0.75f + 0.25f * light), 0.42f + 0.20f * light);
-    shapes.triangle(bone.corners[static_cast<size_t>(face[0])], bone.corners[static_cast<size_t>(face[1])],
-                    bone.corners[static_cast<size_t>(face[2])], fill);
+    for (size_t i = 2; i < face.size(); ++i) shapes.triangle(corner(0), corner(i - 1), corner(i), fill);
   }
-  const EdgeStyle edge = edge_of(bone.look);
-  for (size_t a = 0; a < 6; ++a)
-    for (size_t b = a + 1; b < 6; ++b) {
-      const bool opposite = (a == 0 && b == 1) || (a >= 2 && b == a + 2);
-      if (!opposite) shapes.line(bone.corners[a], bone.corners[b], edge.width, {edge.colour, in_front[a][b] ? 1.0f : kBehindEdge});
-    }
+  const EdgeStyle style = edge_of(bone.look);
+  for (const BoneSolid::Edge& edge : solid.edges) {
+    const bool one = front[static_cast<size_t>(edge.faces[0])], other = front[static_cast<size_t>(edge.faces[1])];
+    if (edge.smooth && one == other) continue;
+    shapes.line(bone.corners[static_cast<size_t>(edge.from)], bone.corners[static_cast<size_t>(edge.to)], style.width, {style.colour, one || other ? 1.0f : kBehindEdge});
+  }
 }
 
 void add_stick(Shapes& shapes, const Projected& bone) {
@@ -223,7 +217,7 @@ void ArmaturePass::draw(const Scene& scene, const Camera& camera, const glm::ive
   Shapes shapes;
   for (const size_t b : order) {
     if (!bones[b].drawable()) continue;
-    if (scene.bone_shape == BoneShape::Octahedron) add_octahedron(shapes, bones[b], camera.projection == Projection::Perspective);
+    if (const BoneSolid* solid = solid_of(scene.bone_shape)) add_solid(shapes, bones[b], *solid, camera.projection == Projection::Perspective);
     else add_stick(shapes, bones[b]);
     add_joints(shapes, bones[b], scene.bone_shape);
   }
@@ -245,25 +239,27 @@ void ArmaturePass::draw(const Scene& scene, const Camera& camera, const glm::ive
   glBindVertexArray(0);
 }
 
-std::optional<int> bone_at(const Scene& scene, const Camera& camera, const glm::ivec2& size, const glm::dvec2& pixel) {
-  if (!drawn(scene)) return std::nullopt;
+std::vector<BoneHit> bones_at(const Scene& scene, const Camera& camera, const glm::ivec2& size, const glm::dvec2& pixel) {
+  std::vector<BoneHit> hits;
+  if (!drawn(scene)) return hits;
   const std::vector<Projected> bones = projected_bones(scene, camera, size);
-  std::optional<int> best;
-  std::pair<double, double> least(1, 0);  // distance over the distance within which the bone is meant, then depth
   for (size_t b = 0; b < bones.size(); ++b) {
     if (!bones[b].drawable()) continue;
-    const glm::dvec2 head = bones[b].corners[0].pixel, tail = bones[b].corners[1].pixel, along = tail - head;
+    const Corner &from = bones[b].corners[0], &to = bones[b].corners[1];
+    const glm::dvec2 head = from.pixel, along = glm::dvec2(to.pixel) - head;
     const double squared_length = glm::dot(along, along);
     const double t = squared_length > 0 ? std::clamp(glm::dot(pixel - head, along) / squared_length, 0.0, 1.0) : 0;
-    const double distance = glm::length(pixel - head - along * t);
-    double half_width = 0;  // of the octahedron at that place
-    if (scene.bone_shape == BoneShape::Octahedron)
-      half_width = std::sqrt(squared_length) * kHalfWidth * (t < kWidestAt ? t / kWidestAt : (1 - t) / (1 - kWidestAt));
     constexpr double kNear = 5;  // pixels
-    const std::pair rank(distance / (half_width + kNear), bones[b].depth);
-    if (rank < least) least = rank, best = static_cast<int>(b);
+    const double off = glm::length(pixel - head - along * t) / (std::sqrt(squared_length) * half_width_at(scene.bone_shape, t) + kNear);
+    if (off < 1) hits.push_back({static_cast<int>(b), off, glm::mix<double>(from.depth, to.depth, t)});
   }
-  return best;
+  return hits;
+}
+
+std::optional<int> bone_at(const Scene& scene, const Camera& camera, const glm::ivec2& size, const glm::dvec2& pixel) {
+  const std::vector<BoneHit> hits = bones_at(scene, camera, size, pixel);
+  const auto best = std::min_element(hits.begin(), hits.end(), [](const BoneHit& a, const BoneHit& b) { return std::pair(a.off, a.depth) < std::pair(b.off, b.depth); });
+  return best == hits.end() ? std::nullopt : std::optional(best->bone);
 }
 
 }  // namespace limber::render

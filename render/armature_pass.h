@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bones over the body: octahedra or sticks with joints, smooth edges of even width in pixels whatever the distance. What
+// Bones over the body: octahedra, cylinders or sticks with joints, smooth edges of even width in pixels whatever the distance. What
 // lies behind the body's surface shows at 45 %, unless bones are drawn in front.
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "render/camera.h"
 #include "render/gl/object.h"
@@ -26,7 +27,9 @@ class ArmaturePass {
   gl::Buffer vertices_;
 };
 
-// The bone whose drawn shape is nearest under the pixel (from the top left corner), within a few pixels of it.
+// The bones whose drawn shapes lie within a few pixels of the pixel (from the top left corner), in their order.
+std::vector<BoneHit> bones_at(const Scene& scene, const Camera& camera, const glm::ivec2& size, const glm::dvec2& pixel);
+// Of them the one that is meant: the least beside it.
 std::optional<int> bone_at(const Scene& scene, const Camera& camera, const glm::ivec2& size, const glm::dvec2& pixel);
 
 }  // namespace limber::render

@@ -40,7 +40,14 @@ using LabelLooks = std::vector<LabelLook>;  // by label; beyond its end: invisib
 struct BoneLook {
   bool selected = false, active = false, hovered = false;
 };
-enum class BoneShape { Octahedron, Stick, None };
+enum class BoneShape { Octahedron, Stick, Cylinder, None };
+
+// A bone under a pixel.
+struct BoneHit {
+  int bone;
+  double off;    // how far beside it the pixel is, of 1 where the bone is no longer meant
+  double depth;  // of its middle line there, mm before the eye along the direction of view
+};
 
 // Half-spaces and a box that cut the volume open; a cut face shows the tissues unshaded.
 struct Clip {

@@ -418,6 +418,12 @@ std::optional<int> View3D::pick_bone(const glm::ivec2& pixel) const {
   return bone_at(my.scene, my.key.camera, my.key.size, glm::dvec2(pixel) + 0.5);
 }
 
+std::vector<BoneHit> View3D::pick_bones(const glm::ivec2& pixel) const {
+  const Impl& my = *impl_;
+  if (!my.drawn) return {};
+  return bones_at(my.scene, my.key.camera, my.key.size, glm::dvec2(pixel) + 0.5);
+}
+
 SliceFrame frame_of(SliceAxis axis) {
   switch (axis) {
     case SliceAxis::Sagittal: return {{0, 1, 0}, {0, 0, -1}, {1, 0, 0}};

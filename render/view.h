@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -66,6 +67,7 @@ class View3D {
   // From the buffers of the last picture; pixel from the top left corner.
   std::optional<Hit> pick(const glm::ivec2& pixel) const;
   std::optional<int> pick_bone(const glm::ivec2& pixel) const;
+  std::vector<BoneHit> pick_bones(const glm::ivec2& pixel) const;  // all that lie there
 
  private:
   struct Impl;

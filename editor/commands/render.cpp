@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber render VOLUME|PROJECT -o PNG [--size WxH] [--view front|back|left|right|top|bottom] [--turn DEG] [--tilt DEG] [--orthographic]
 //        [--display solid|xray|tissue] [--hide L,L] [--opacity L=A] [--clip-box X,Y,Z,X,Y,Z] [--clip-plane X,Y,Z,NX,NY,NZ]
-//        [--rig RIG] [--armature octahedron|stick|none] [--weights W] [POSE-OPTIONS] [--method lbs|dqs] [--preview]
+//        [--rig RIG] [--armature octahedron|stick|cylinder|none] [--weights W] [POSE-OPTIONS] [--method lbs|dqs] [--preview]
 //        [--slice axial|coronal|sagittal [--at MM] [--outline]] [--turntable N] [--transparent] [--light]
 // A picture without a window or a display. A project brings its own skeleton, pose and visibility.
 #include <algorithm>
@@ -280,7 +280,7 @@ void run(const Options& options) {
   scene.looks = std::make_shared<const LabelLooks>(looks_of(*document.tissues, visibility));
   scene.display = options.display;
   scene.clip = clip_of(options, visibility);
-  scene.bone_shape = options.armature == "none" ? BoneShape::None : options.armature == "stick" ? BoneShape::Stick : BoneShape::Octahedron;
+  scene.bone_shape = options.armature == "none" ? BoneShape::None : options.armature == "stick" ? BoneShape::Stick : options.armature == "cylinder" ? BoneShape::Cylinder : BoneShape::Octahedron;
   scene.bones_in_front = options.display == Display::XRay;
   scene.grid = options.grid;
   scene.dark_background = !options.light;
@@ -331,7 +331,7 @@ void add_render(CLI::App& app) {
   command->add_option("--clip-box", options->clip_box, "two corners, voxels: only what lies between is shown")->delimiter(',')->expected(6)->type_name("X,Y,Z,X,Y,Z");
   command->add_option("--clip-plane", options->clip_plane, "point and normal, mm: the normal's side is hidden")->delimiter(',')->expected(6)->type_name("X,Y,Z,NX,NY,NZ");
   command->add_option("--rig", options->body.rig, "rig to draw, and to pose by");
-  command->add_option("--armature", options->armature, "octahedron, stick or none")->check(CLI::IsMember({"octahedron", "stick", "none"}));
+  command->add_option("--armature", options->armature, "octahedron, stick, cylinder or none")->check(CLI::IsMember({"octahedron", "stick", "cylinder", "none"}));
   command->add_option("--weights", options->weights, "W.nrrd for the pose (default: heat diffusion)");
   cmd::add_pose_options(*command, options->pose);
   command->add_option("--method", options->method, "of the pose: lbs (linear) or dqs (dual quaternions)")->check(CLI::IsMember({"lbs", "dqs"}))->capture_default_str();

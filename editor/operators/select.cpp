@@ -21,12 +21,7 @@ void pick(Editor& editor) {
   if (editor.tool == Tool::CrossHair) return run(editor, "view.place_cross_hair");
   editor.handling->part = Handling::Part::Whole;
   if (pick_bone_part(editor)) return;
-  if (const auto bone = bone_at_pointer(editor)) {
-    editor.selection = {};
-    editor.selection.bone = bone;
-    editor.selection.bones = {*bone};
-    return;
-  }
+  if (const auto bone = bone_at_pointer(editor)) return choose_bone(editor, *bone);
   const Hover& hover = editor.views->hover;
   if (hover.inside) select_tissue(editor, hover.label, false);
   else editor.selection = {};
@@ -48,50 +43,62 @@ void extend(Editor& editor) {
   if (editor.views->hover.inside) select_tissue(editor, editor.views->hover.label, true);
 }
 
-// Every visible tissue along the line of sight, nearest first. In a slice only the one under the pointer.
-std::vector<Label> tissues_below(const Editor& editor) {
+// Every visible tissue along the line of sight, nearest first, with its depth before the eye. In a slice only the one under
+// the pointer, at none.
+std::vector<std::pair<double, Label>> tissues_below(const Editor& editor) {
   const Hover& hover = editor.views->hover;
-  std::vector<Label> found;
-  if (!hover.inside) return found;
+  std::vector<std::pair<double, Label>> found;
   const ViewPlace* under = hovered_view(editor);
-  const render::Scene& scene = under ? scene_at_pointer(editor, *under) : editor.views->scene;
+  if (!hover.inside || !under) return found;
+  const render::Scene& scene = scene_at_pointer(editor, *under);
   const LabelVolume& volume = *scene.volume;
-  const auto add = [&](Label label) {
-    if (label != 0 && look_of(editor.document(), label).visible && std::find(found.begin(), found.end(), label) == found.end()) found.push_back(label);
+  const auto add = [&](double depth, Label label) {
+    const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) { return other.second == label; });
+    if (label != 0 && look_of(editor.document(), label).visible && !known) found.push_back({depth, label});
   };
-  add(hover.label);
-  if (hover.view != ViewId::Body) return found;
-  const Rect* place = editor.layout.place_of(ViewId::Body);
-  const render::Ray ray = render::ray_through(editor.views->body.camera, editor.input.pointer - place->low, glm::ivec2(place->size()));
+  if (hover.view != ViewId::Body) {
+    add(0, hover.label);
+    return found;
+  }
+  const render::Camera& camera = editor.views->body.camera;
+  const auto depth_of = [&](const glm::dvec3& point) { return -(render::view_from_world(camera) * glm::dvec4(point, 1)).z; };
+  add(depth_of(hover.point), hover.label);
+  const render::Ray ray = render::ray_through(camera, editor.input.pointer - under->rect.low, glm::ivec2(under->rect.size()));
   const double step = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z}) / 2;
   const double reach = glm::length(volume.grid.spacing * glm::dvec3(volume.grid.size));
-  for (double t = 0; t < reach; t += step)
-    if (const auto voxel = voxel_shown_at(scene, hover.point + ray.direction * t)) add(volume.at_or_air(*voxel));
+  for (double t = 0; t < reach; t += step) {
+    const glm::dvec3 point = hover.point + ray.direction * t;
+    if (const auto voxel = voxel_shown_at(scene, point)) add(depth_of(point), volume.at_or_air(*voxel));
+  }
   return found;
 }
 
-// The nearest one is chosen at once; a list offers what lies behind it.
+// What is meant by a click is chosen at once; a list offers all that lies there, nearest first.
 void pick_list(Editor& editor) {
   pick(editor);
-  editor.pick_list = tissues_below(editor);
+  std::vector<std::pair<double, Pickable>> below;
+  for (const auto& [depth, label] : tissues_below(editor)) below.push_back({depth, {std::nullopt, label}});
+  for (const auto& [depth, bone] : bones_below(editor)) below.push_back({depth, {bone}});
+  std::stable_sort(below.begin(), below.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  editor.pick_list.clear();
+  for (const auto& [depth, thing] : below) editor.pick_list.push_back(thing);
   editor.open_pick_list = editor.pick_list.size() > 1;
 }
 
-void choose_bone(Editor& editor, int bone, bool extend) {
-  if (!extend) editor.selection = {};
+void add_bone(Editor& editor, int bone) {
   editor.selection.bone = bone;
   editor.selection.bones.insert(bone);
 }
 
 void go_to_parent(Editor& editor, bool extend) {
   const int parent = editor.document().armature->bones[*editor.selection.bone].parent;
-  if (parent >= 0) choose_bone(editor, parent, extend);
+  if (parent >= 0) extend ? add_bone(editor, parent) : choose_bone(editor, parent);
 }
 
 void go_to_child(Editor& editor, bool extend) {
   const std::vector<Bone>& bones = editor.document().armature->bones;
   for (int b = 0; b < std::ssize(bones); ++b)
-    if (bones[b].parent == *editor.selection.bone) return choose_bone(editor, b, extend);
+    if (bones[b].parent == *editor.selection.bone) return extend ? add_bone(editor, b) : choose_bone(editor, b);
 }
 
 // The bone and all that hangs on it.
@@ -165,9 +172,9 @@ Operator tool_operator(const char* id, const char* label, const char* icon, cons
 
 std::vector<Operator> select_operators() {
   return {
-      {"select.pick", "Select", icon::kSelect, "Select", "Chooses the tissue under the pointer.", pick, needs_volume},
+      {"select.pick", "Select", icon::kSelect, "Select", "Chooses the bone or tissue under the pointer.", pick, needs_volume},
       {"select.extend", "Extend selection", "", "Select", "Adds the tissue under the pointer to the chosen ones, or takes it out.", extend, needs_volume},
-      {"select.pick_list", "Select from list", icon::kPick, "Select", "Chooses the tissue under the pointer and lists what lies behind it.", pick_list, needs_volume},
+      {"select.pick_list", "Select from list", icon::kPick, "Select", "Chooses what is under the pointer and lists the bones and tissues behind it.", pick_list, needs_volume},
       {"select.none", "Select nothing", "", "Select", "Chooses nothing.", [](Editor& e) { e.selection = {}; }},
       {"select.all", "Select all", "", "Select", "Chooses every bone in the Rig and Pose workspaces, every tissue elsewhere or where one is chosen.", choose_all, needs_volume},
       {"select.invert", "Invert selection", "", "Select", "Chooses the bones, or tissues, that are not chosen, in place of those that are.", invert, needs_volume},

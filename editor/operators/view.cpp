@@ -29,6 +29,10 @@ Operator overlay_operator(const char* id, const char* label, const char* sentenc
           [shown](const Editor& e) { return (*e.views).*shown; }};
 }
 
+Operator shape_operator(const char* id, const char* label, const char* sentence, render::BoneShape shape) {
+  return {id, label, "", "View", sentence, [shape](Editor& e) { e.views->bone_shape = shape; }, nullptr, [shape](const Editor& e) { return e.views->bone_shape == shape; }};
+}
+
 void maximize(Editor& editor) {
   auto& maximized = editor.arrangement().maximized;
   if (maximized) return maximized.reset();
@@ -83,6 +87,12 @@ std::vector<Operator> view_operators() {
       overlay_operator("view.scale_bar", "Scale bar", "Shows a scale bar in every view.", &Views::scale_bar),
       overlay_operator("view.letters", "Orientation letters", "Shows which side of the body is where.", &Views::letters),
       overlay_operator("view.bones", "Bones", "Shows the skeleton in the views.", &Views::bones),
+      shape_operator("view.bones_octahedron", "Octahedra", "Draws bones as octahedra, wide at the head.", render::BoneShape::Octahedron),
+      shape_operator("view.bones_stick", "Sticks", "Draws bones as thin sticks between their joints.", render::BoneShape::Stick),
+      shape_operator("view.bones_cylinder", "Cylinders", "Draws bones as cylinders.", render::BoneShape::Cylinder),
+      overlay_operator("view.bone_names", "Bone names", "Shows bones' names beside them in the 3D view.", &Views::bone_names),
+      overlay_operator("view.bone_axes", "Bone axes", "Shows bones' own axes at their tails in the 3D view: y along the bone.", &Views::bone_axes),
+      overlay_operator("view.bones_in_front", "Bones in front", "Draws bones over the body that hides them.", &Views::bones_in_front),
       overlay_operator("view.cross_hair", "Cross-hair", "Shows where the slices meet.", &Views::show_cross_hair),
       {"view.find", "Search the project", icon::kSearch, "View", "Finds a tissue, a bone or a result in the outliner.", search_outliner},
       {"view.sidebar", "Sidebar", "", "View", "Opens or closes the sidebar.",

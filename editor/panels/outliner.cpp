@@ -196,13 +196,6 @@ void draw_eye(Editor& editor, const Row& row, const Rect& rect) {
   if (eye.clicked) toggle_eye(editor, row, editor.input.down(Key::Ctrl));
 }
 
-// Of a bone, in its workspace's colours.
-void draw_bone_icon(const Look& look, const Rect& rect, Colour colour) {
-  const glm::vec2 middle = rect.centre();
-  const float wide = look.px(4), high = look.px(6);
-  ImGui::GetWindowDrawList()->AddQuadFilled({middle.x, middle.y - high}, {middle.x + wide, middle.y - high / 3}, {middle.x, middle.y + high}, {middle.x - wide, middle.y - high / 3}, colour);
-}
-
 // A row that is dragged hangs its bone, or all chosen ones with it, on the bone where it is let go; on the armature's row
 // on nothing. Escape leaves them.
 std::vector<int> dragged_bones(const Editor& editor) {
@@ -264,7 +257,7 @@ void draw_row(Editor& editor, Column& column, int index, const Row& row) {
     const glm::vec2 side(look.px(7));
     fill({glm::round(icon.centre() - side), glm::round(icon.centre() + side)}, *row.swatch, look.px(3));
   } else if (row.kind == Row::Kind::Bone) {
-    draw_bone_icon(look, icon, active_bone ? look.theme.select : row.chosen ? look.theme.accent_text : look.theme.text2);
+    put_bone_icon(look, icon, active_bone ? look.theme.select : row.chosen ? look.theme.accent_text : look.theme.text2);
   } else {
     put_icon(look.fonts.regular, row.chosen ? look.theme.accent_text : look.theme.text2, icon, row.icon);
   }

@@ -35,6 +35,7 @@ void draw_tissues(Editor& editor, Column& column);
 void draw_tissue(Editor& editor, Column& column);
 void draw_bone(Editor& editor, Column& column);
 void draw_fit_check(Editor& editor, Column& column);
+void draw_display(Editor& editor, Column& column);
 void draw_clipping(Editor& editor, Column& column);
 void draw_under_cursor(Editor& editor, Column& column);
 void draw_motion(Editor& editor, Column& column);

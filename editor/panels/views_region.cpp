@@ -110,6 +110,23 @@ void draw_pointer_menu(Editor& editor) {
   ImGui::EndPopup();
 }
 
+// A row of the pick list, with a swatch's place at its left and a word at its right; true when it is clicked.
+template <class Swatch>
+bool pick_row(Editor& editor, const std::string& key, const std::string& name, const std::string& right, bool chosen, const Swatch& draw_swatch) {
+  const Look& look = editor.look;
+  const glm::vec2 corner = from_im(ImGui::GetCursorScreenPos());
+  const Rect rect{corner, corner + glm::vec2(look.px(200), look.px(24))};
+  const Pressed pressed = press_area(editor, key, rect);
+  ImGui::Dummy(im(rect.size()));
+  if (pressed.hovered || chosen) fill(rect, pressed.hovered ? look.theme.hover : look.theme.accent_soft, look.px(4));
+  const float side = look.px(14), y = std::round(rect.centre().y - side / 2);
+  draw_swatch(Rect{{rect.low.x + look.px(8), y}, {rect.low.x + look.px(8) + side, y + side}});
+  put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(30), rect.low.y}, {rect.high.x - look.px(44), rect.high.y}}, name);
+  put_text(editor, look.fonts.mono, look.theme.text2, Rect{rect.low, {rect.high.x - look.px(8), rect.high.y}}, right, Align::Right);
+  if (pressed.clicked) ImGui::CloseCurrentPopup();
+  return pressed.clicked;
+}
+
 // What lies under the pointer, nearest first.
 void draw_pick_list(Editor& editor) {
   if (editor.open_pick_list) {
@@ -118,23 +135,18 @@ void draw_pick_list(Editor& editor) {
   }
   if (!ImGui::BeginPopup("pick list", ImGuiWindowFlags_NoMove)) return;
   const Look& look = editor.look;
+  const Document& document = editor.document();
   editor.place.region = Region::Popup;
   push_path(editor, "pick");
-  for (const Label label : editor.pick_list) {
-    const Tissue* tissue = editor.document().tissues->find(label);
-    if (!tissue) continue;
-    const glm::vec2 corner = from_im(ImGui::GetCursorScreenPos());
-    const Rect rect{corner, corner + glm::vec2(look.px(200), look.px(24))};
-    const Pressed pressed = press_area(editor, tissue->name, rect);
-    ImGui::Dummy(im(rect.size()));
-    if (pressed.hovered || editor.selection.tissue == label) fill(rect, pressed.hovered ? look.theme.hover : look.theme.accent_soft, look.px(4));
-    const float side = look.px(14), y = std::round(rect.centre().y - side / 2);
-    fill({{rect.low.x + look.px(8), y}, {rect.low.x + look.px(8) + side, y + side}}, rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
-    put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(30), rect.low.y}, {rect.high.x - look.px(40), rect.high.y}}, shown_name(*tissue));
-    put_text(editor, look.fonts.mono, look.theme.text2, Rect{rect.low, {rect.high.x - look.px(8), rect.high.y}}, std::to_string(label), Align::Right);
-    if (pressed.clicked) {
-      select_tissue(editor, label, false);
-      ImGui::CloseCurrentPopup();
+  for (const Pickable& thing : editor.pick_list) {
+    if (thing.bone) {
+      if (!document.armature || *thing.bone >= std::ssize(document.armature->bones)) continue;
+      const std::string& name = document.armature->bones[*thing.bone].name;
+      const bool chosen = editor.selection.bones.contains(*thing.bone);
+      if (pick_row(editor, "bone " + name, name, "bone", chosen, [&](const Rect& rect) { put_bone_icon(look, rect, chosen ? look.theme.select : look.theme.text2); })) choose_bone(editor, *thing.bone);
+    } else if (const Tissue* tissue = document.tissues->find(thing.tissue)) {
+      const auto swatch = [&](const Rect& rect) { fill(rect, rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3)); };
+      if (pick_row(editor, tissue->name, shown_name(*tissue), std::to_string(thing.tissue), editor.selection.tissue == thing.tissue, swatch)) select_tissue(editor, thing.tissue, false);
     }
   }
   pop_path(editor);

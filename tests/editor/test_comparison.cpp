@@ -105,9 +105,9 @@ TEST_CASE("results: A and B are shown in turn, held against one another, and wip
     test.player.settle();
     test.host->events.push(KeyChanged{Key::Alt, false});
     test.player.settle();
-    const std::vector<Label> tissues = test.editor->pick_list;
+    const std::vector<Pickable> below = test.editor->pick_list;
     test.play("key Escape");
-    return std::count(tissues.begin(), tissues.end(), 111);
+    return std::count(below.begin(), below.end(), Pickable{std::nullopt, 111});
   };
   CHECK(listed(-4) == 1);
   CHECK(listed(4) == 0);

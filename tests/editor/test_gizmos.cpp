@@ -368,3 +368,95 @@ TEST_CASE("gizmos: with X-mirror the other side does the same") {
   CHECK(glm::distance(left, glm::dvec3(30, 0, 0)) > 5);
   CHECK(glm::distance(left * glm::dvec3(-1, 1, 1), right) < 1e-9);
 }
+
+TEST_CASE("gizmos: bones' names stand clear of the gizmo and of one another, at both scales and in both workspaces") {
+  for (const float scale : {1.0f, 2.0f})
+    for (const char* tool : {"key Ctrl+1\n click strip/tool.move", "key Ctrl+1\n click strip/tool.rotate", "key Ctrl+3\n click strip/tool.rotate"}) {
+      INFO("scale ", scale, ", ", std::string(tool));
+      GizmoEditor test(scale);
+      // A fan of bones about the gizmo, more than there is place for.
+      Document fan = test.editor->document();
+      auto rig = std::make_shared<Armature>(*fan.armature);
+      for (int i = 0; i < 12; ++i) {
+        const double angle = kPi * i / 6;
+        rig->bones.push_back({"Spoke " + std::to_string(i), 0, {0, 0, 0}, {40 * std::cos(angle), 0, 40 * std::sin(angle)}});
+      }
+      fan.armature = rig;
+      test.editor->history.reset(fan, "Open fan");
+      test.editor->views->bone_names = true;
+      test.play(std::string(tool) + "\n wait-idle");
+      test.editor->selection.bone = 1;
+      test.editor->selection.bones = {1};
+      test.play("wait-idle");
+      const glm::vec2 centre(test.view().pixel_of(test.gizmo().centre).value());
+      const double reach = test.gizmo().tool == Tool::Rotate ? 108 : 92;
+      std::vector<Rect> names;
+      for (const Widget& widget : test.editor->widgets.widgets()) {
+        const auto found = widget.name.find("bone name ");
+        if (found == std::string::npos) continue;
+        INFO(widget.name);
+        CHECK(glm::distance(glm::clamp(centre, widget.rect.low, widget.rect.high), centre) >= reach * scale);
+        for (const Rect& other : names) CHECK_FALSE(widget.rect.overlaps(other));
+        CHECK(test.editor->layout.place_of(ViewId::Body)->contains(widget.rect));
+        CHECK(widget.rect.height() >= 15 * scale);
+        names.push_back(widget.rect);
+      }
+      CHECK(names.size() >= 4);
+      CHECK(test.editor->widgets.find("bone name Fore"));
+    }
+}
+
+TEST_CASE("gizmos: what lies under the pointer is listed nearest first, bones among tissues") {
+  LimbEditor test;
+  test.play("key Ctrl+1\n key Num1\n wait-idle");
+  // Through the muscle above the ball of bone, in which the upper bone runs.
+  const glm::dvec2 pixel = body_seen(*test.editor)->pixel_of({0, 0, 20}).value();
+  test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + "\n wait-idle");
+  run(*test.editor, "select.pick_list");
+  test.player.settle();
+  const std::vector<Pickable> expected = {{std::nullopt, 143}, {std::nullopt, 17}, {0}};
+  CHECK(test.editor->pick_list == expected);
+  CHECK(test.editor->selection.bone == 0);
+  test.play("click pick/Muscle");
+  CHECK(test.editor->selection.tissue == Label{17});
+  run(*test.editor, "select.pick_list");
+  test.player.settle();
+  test.play("click \"pick/bone Upper\"");
+  CHECK(test.editor->selection.bone == 0);
+  CHECK_FALSE(test.editor->selection.tissue);
+}
+
+TEST_CASE("gizmos: in the Pose workspace slices show the posed bones and their rings, and a ring turns the bone there") {
+  LimbEditor test;
+  test.play("key Ctrl+3\n click view.four\n click strip/tool.rotate\n wait-idle");
+  Pose bent = rest_pose(*test.editor->document().armature);
+  bent.rotation[0] = glm::angleAxis(0.5, glm::dvec3(1, 0, 0));
+  commit_pose(*test.editor, "Bend", bent);
+  test.editor->posing.keep_limits = false;
+  test.editor->views->cross_hair = {0, 0, 0};
+  for (SliceState& slice : test.editor->views->slices) slice.camera.centre = {0, 0, 0};
+  test.play("wait-idle");
+  const ViewPlace sagittal{ViewId::Sagittal, *test.editor->layout.place_of(ViewId::Sagittal)};
+  const SeenFrom view(*test.editor, sagittal);
+  const auto posed = posed_from_rest(*test.editor->document().armature, bent);
+  const auto point_at = [&](const glm::dvec2& pixel) { test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + "\n wait-idle"); };
+  // Chosen where the pose shows it, not where it rests.
+  point_at(view.pixel_of(posed[1] * glm::dvec3(0, 0, -20)).value());
+  CHECK(bone_at_pointer(*test.editor) == 1);
+  point_at(view.pixel_of(glm::dvec3(0, 0, -30)).value());
+  CHECK_FALSE(bone_at_pointer(*test.editor));
+  test.editor->selection.bone = 1;
+  test.editor->selection.bones = {1};
+  const auto gizmo = gizmo_in(*test.editor, view);
+  REQUIRE(gizmo);
+  CHECK(glm::distance(gizmo->centre, posed[1] * glm::dvec3(0, 0, 0)) < 1e-9);
+  // A quarter of the ring that faces the slice.
+  const Ring ring = ring_of(view, test.editor->look.scale, gizmo->centre, gizmo->axes[0], 86);
+  point_at(view.pixel_of(ring.at(0.3)).value());
+  test.host->events.push(ButtonChanged{MouseButton::Left, true});
+  test.player.settle();
+  for (int i = 1; i <= 9; ++i) point_at(view.pixel_of(ring.at(0.3 + i * kPi / 18)).value());
+  test.host->events.push(ButtonChanged{MouseButton::Left, false});
+  test.player.settle();
+  CHECK(glm::degrees(swing_twist(pose_of(test.editor->document()).rotation[1], {1, 0, 0}).twist) == doctest::Approx(90).epsilon(0.002));
+}

@@ -169,6 +169,22 @@ TEST_CASE("golden: arm, X-ray with bones, one chosen") {
   check_golden("arm_xray", scene.picture());
 }
 
+TEST_CASE("golden: arm, bones as cylinders in front, with names and axes") {
+  Arm scene;
+  scene.play("click View/Bones/Cylinders\n click \"View/Bones/Bone names\"\n click \"View/Bones/Bone axes\"\n click \"View/Bones/Bones in front\"\n click tool.rotate");
+  scene.editor().selection.bone = 1;
+  scene.editor().selection.bones = {1};
+  check_golden("bones_cylinders", scene.picture());
+}
+
+TEST_CASE("golden: arm, bones as sticks in the sidebar's display") {
+  Arm scene;
+  scene.editor().open_sections["Outliner"] = false;
+  scene.editor().open_sections["Tissues"] = false;
+  scene.play("key Alt+Z\n click View/Bones/Sticks\n click Display/fold");
+  check_golden("bones_sticks", scene.picture());
+}
+
 TEST_CASE("golden: arm, a clip box through the elbow") {
   Arm scene;
   scene.play("move \"3D view/view\"\n key Num1\n key Alt+B");

@@ -42,7 +42,7 @@ std::vector<Proof> proofs_of_tissues() {
       {"select.extend", "click \"3D view/view\" Shift", [](Stage& s, const Seen&) { return s.editor().selection.tissues == std::set<Label>{17, 143}; }, Shows::Nothing, "click Muscle/17/name\n wait-idle",
        [](Stage& s) { s.editor().views->bones = false; }},  // a bone under the pointer would come first
       {"select.all", "move \"3D view/view\"\n key A", becomes("selected", "4"), Shows::Nothing, "click Muscle/17/name", [](Stage& s) { s.editor().views->bones = true; }},
-      {"select.pick_list", "click \"3D view/view\" Alt", becomes("widget:pick/Muscle"), Shows::Nothing, ready},
+      {"select.pick_list", "click \"3D view/view\" Alt", [](Stage& s, const Seen&) { return s.is("widget:pick/Muscle") && s.is("widget:pick/bone Upper"); }, Shows::Nothing, ready},
 
       {"view.hide", "move \"3D view/view\"\n key H", edits("Hide Skin", "hidden", "1"), Shows::InBody, "click Skin/143/name"},
       {"view.reveal", "move \"3D view/view\"\n key Alt+H", becomes("hidden", "0"), Shows::InBody},

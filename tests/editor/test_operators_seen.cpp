@@ -59,6 +59,13 @@ std::vector<Proof> proofs_of_views() {
       {"view.axes", "click \"View/Overlays/Axes\"", [](Stage& s, const Seen&) { return s.is("widget:axis S", "absent"); }},
       {"view.scale_bar", "click \"View/Overlays/Scale bar\"", goes(&Views::scale_bar)},
       {"view.letters", "click \"View/Overlays/Orientation letters\"", goes(&Views::letters)},
+      {"view.bones_cylinder", "click sidebar/Display/Bones/list\n click Bones/Cylinders", [](Stage& s, const Seen&) { return views(s).bone_shape == render::BoneShape::Cylinder; }, Shows::InBody, "click Display/fold",
+       [](Stage& s) { s.editor().views->bones = true; s.play("key Ctrl+1\n wait-idle"); }},
+      {"view.bones_stick", "click View/Bones/Sticks", [](Stage& s, const Seen&) { return views(s).bone_shape == render::BoneShape::Stick; }, Shows::InBody},
+      {"view.bones_octahedron", "click View/Bones/Octahedra", [](Stage& s, const Seen&) { return views(s).bone_shape == render::BoneShape::Octahedron; }, Shows::InBody},
+      {"view.bones_in_front", "click \"sidebar/Display/In front of the body\"", [](Stage& s, const Seen&) { return views(s).bones_in_front; }, Shows::InBody},
+      {"view.bone_names", "click sidebar/Display/Names", becomes("widget:bone name Fore")},
+      {"view.bone_axes", "click sidebar/Display/Axes", [](Stage& s, const Seen&) { return views(s).bone_axes && s.is("text:X"); }},
       {"view.cross_hair", "click View/Overlays/Cross-hair", goes(&Views::show_cross_hair)},
 
       {"view.find", "key F3\n type \"search the project\"\n key Return", [](Stage& s, const Seen&) { return s.editor().outliner.searching; }},

@@ -444,6 +444,59 @@ TEST_CASE("view: bones are picked where they are drawn, and a body in front dims
   CHECK_FALSE(view.pick_bone({-1, 300}));
 }
 
+TEST_CASE("view: a cylinder is as wide at the head as at the tail, an octahedron is not, and either is picked at its rim") {
+  Studio studio;
+  auto armature = std::make_shared<Armature>();
+  armature->bones.push_back({.name = "Bone", .head = {0, 0, 0}, .tail = {0, 0, 100}});
+  Scene scene{.grid = false, .transparent_background = true};
+  scene.armature = armature;
+  const Camera camera = framing(looking_from(StandardView::Front, {}), {-20, -20, -10}, {20, 20, 110}, 1);
+  View3D view(studio.renderer);
+  glm::dvec2 head, tail;
+  REQUIRE(project(camera, {0, 0, 0}, kSize, head));
+  REQUIRE(project(camera, {0, 0, 100}, kSize, tail));
+  const double length = glm::distance(head, tail);
+  // Pixels that are covered across the bone there.
+  const auto width = [&](const Image& image, double t) {
+    const int y = static_cast<int>(std::lround(glm::mix(head.y, tail.y, t)));
+    int count = 0;
+    for (int x = 0; x < kSize.x; ++x) count += image.rgba[(static_cast<size_t>(y) * kSize.x + x) * 4 + 3] > 0;
+    return count;
+  };
+  scene.bone_shape = BoneShape::Cylinder;
+  const Image cylinder = draw(view, scene, camera, kSize);
+  CHECK(std::abs(width(cylinder, 0.2) - width(cylinder, 0.8)) <= 1);
+  CHECK(width(cylinder, 0.5) == doctest::Approx(0.1 * length).epsilon(0.15));
+  const glm::dvec2 rim = glm::mix(head, tail, 0.5) + glm::dvec2(0.05 * length + 3, 0);
+  CHECK(view.pick_bone(glm::ivec2(rim)) == 0);
+  CHECK_FALSE(view.pick_bone(glm::ivec2(rim + glm::dvec2(6, 0))));
+  scene.bone_shape = BoneShape::Octahedron;
+  const Image octahedron = draw(view, scene, camera, kSize);
+  CHECK(width(octahedron, 0.2) > 3 * width(octahedron, 0.85));
+}
+
+TEST_CASE("view: all bones under a pixel are found, each with its depth") {
+  Studio studio;
+  auto armature = std::make_shared<Armature>();
+  armature->bones.push_back({.name = "Far", .head = {0, 40, 0}, .tail = {0, 40, 100}});
+  armature->bones.push_back({.name = "Near", .head = {0, -40, 0}, .tail = {0, -40, 100}});
+  armature->bones.push_back({.name = "Beside", .head = {60, 0, 0}, .tail = {60, 0, 100}});
+  Scene scene{.grid = false};
+  scene.armature = armature;
+  Camera camera = looking_from(StandardView::Front, {});
+  camera.projection = Projection::Orthographic;
+  camera = framing(camera, {-80, -80, -10}, {80, 80, 110}, 1);
+  View3D view(studio.renderer);
+  draw(view, scene, camera, kSize);
+  glm::dvec2 pixel;
+  REQUIRE(project(camera, {0, 0, 50}, kSize, pixel));
+  const auto hits = view.pick_bones(glm::ivec2(pixel));
+  REQUIRE(hits.size() == 2);
+  CHECK(hits[0].bone == 0);
+  CHECK(hits[1].bone == 1);
+  CHECK(hits[0].depth - hits[1].depth == doctest::Approx(80));
+}
+
 TEST_CASE("view: a posed bone is drawn and picked where the pose puts it") {
   Studio studio;
   auto armature = std::make_shared<Armature>();

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How bones are drawn, where bones are worked on.
+#include <array>
+
+#include "editor/fields.h"
+#include "editor/panels/panels.h"
+#include "editor/widgets.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::array<const char*, 3> kShapes = {"view.bones_octahedron", "view.bones_stick", "view.bones_cylinder"};  // as in BoneShape
+
+void draw_toggle(Editor& editor, const char* id, const Rect& rect, const std::string& label) {
+  const Operator* op = find_operator(editor, id);
+  bool on = op->checked(editor);
+  if (checkbox(editor, label, rect, label, on)) run(editor, *op);
+}
+
+}  // namespace
+
+void draw_display(Editor& editor, Column& column) {
+  if (!editor.document().armature || (editor.workspace != Workspace::Rig && editor.workspace != Workspace::Pose)) return;
+  if (column.begin_section("Display", "", false)) {
+    column.space(6);
+    std::vector<std::string> shapes;
+    for (const char* id : kShapes) shapes.push_back(find_operator(editor, id)->label);
+    int shape = static_cast<int>(editor.views->bone_shape);
+    const Rect field = column.property("Bones");
+    {
+      const PathScope scope(editor, "Bones");
+      if (choice_field(editor, field, shapes, shape)) run(editor, kShapes[shape]);
+    }
+    draw_toggle(editor, "view.bone_names", column.property(""), "Names");
+    draw_toggle(editor, "view.bone_axes", column.property(""), "Axes");
+    draw_toggle(editor, "view.bones_in_front", column.property(""), "In front of the body");
+    column.space(6);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor
