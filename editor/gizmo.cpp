@@ -6,6 +6,7 @@
 
 #include <glm/gtc/constants.hpp>
 
+#include "core/rig/anatomical_zero.h"
 #include "core/rig/joint_limits.h"
 #include "editor/bone_labels.h"
 #include "editor/dispatch.h"
@@ -307,7 +308,13 @@ void draw_limits(Editor& editor, const SeenFrom& view) {
     fan.from = glm::normalize(across);
     painter.sector(fan, limits.minimum, limits.maximum - limits.minimum, area);
     painter.arc(fan, limits.minimum, limits.maximum, line, 2);
-    for (const double end : {limits.minimum, limits.maximum}) painter.line(fan.centre, fan.at(end), line, 1.4f);
+    const double zero = hinge_angle_at_rest(*armature, *chosen, limits.axis);
+    Ring rim = fan;
+    rim.radius *= 1.25;
+    for (const double end : {limits.minimum, limits.maximum}) {
+      painter.line(fan.centre, fan.at(end), line, 1.4f);
+      painter.word(rim.at(end), std::to_string(std::lround(glm::degrees(end + zero))) + "\u00b0", line);
+    }
   }
   if (limits.type == JointLimits::Type::Ball) {
     const glm::dvec3 axis = carried.rotation * twist_axis(bone);

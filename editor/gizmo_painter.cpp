@@ -154,6 +154,14 @@ Rect place_of_read_out(const Look& look, const Rect& view, const glm::vec2& poin
   return {low, low + size};
 }
 
+void GizmoPainter::word(const glm::dvec3& at, const std::string& text, Colour colour) const {
+  const auto pixel = view_.pixel_of(at);
+  if (!pixel) return;
+  const glm::vec2 half = glm::vec2(text_size(editor_.look.fonts.small, text).x / 2 + editor_.look.px(3), editor_.look.px(8)), middle = glm::round(glm::vec2(*pixel));
+  fill({middle - half, middle + half}, with_alpha(editor_.look.theme.view_plate, 0.7f), editor_.look.px(3));
+  put_text(editor_, editor_.look.fonts.small, colour, Rect{middle - half, middle + half}, text, Align::Centre);
+}
+
 void GizmoPainter::read_out(const glm::dvec3& at, const std::string& number, const std::string& axis, const std::string& below, Colour below_colour) const {
   const auto centre = view_.pixel_of(at);
   if (!centre) return;

@@ -46,6 +46,7 @@ class GizmoPainter {
   void square(const glm::dvec3& middle, const glm::dvec3& half_a, const glm::dvec3& half_b, Colour colour) const;  // halves in mm
   void diamond(const glm::dvec3& at, Colour colour, float size) const;
   void arrow(const glm::dvec3& from, const glm::dvec3& direction, Colour colour, float begin, float end, float width, bool box) const;
+  void word(const glm::dvec3& at, const std::string& text, Colour colour) const;  // about the point
   // A bold line and a quiet one.
   void read_out(const glm::dvec3& at, const std::string& number, const std::string& axis, const std::string& below, Colour below_colour) const;
 

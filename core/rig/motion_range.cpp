@@ -2,11 +2,12 @@
 #include "core/rig/motion_range.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iterator>
 
 #include "core/base/error.h"
-#include "core/rig/joint_names.h"
+#include "core/rig/anatomical_zero.h"
 
 namespace limber {
 
@@ -22,6 +23,8 @@ struct Range {
   double cone;
   glm::dvec3 towards{0};  // where flexion leads a hinge
 };
+
+constexpr double kBentBack = 15 * 3.14159265358979 / 180;  // so far against its axis no limb is bent that bends one way only
 
 constexpr glm::dvec3 kFront(0, -1, 0), kBack(0, 1, 0), kDown(0, 0, -1);
 
@@ -51,16 +54,6 @@ std::optional<int> range_of(const JointRole& role) {
   for (std::size_t i = 0; i < std::size(kRanges); ++i)
     if (kRanges[i].part == part && (kRanges[i].index < 0 || kRanges[i].index == role.index)) return static_cast<int>(i);
   return std::nullopt;
-}
-
-std::vector<std::optional<JointRole>> roles_of(const Armature& armature) {
-  std::vector<std::string> names;
-  std::vector<int> parents;
-  for (const Bone& bone : armature.bones) {
-    names.push_back(bone.name);
-    parents.push_back(bone.parent);
-  }
-  return joint_roles(names, parents);
 }
 
 // How many bones make the joint together.
@@ -114,24 +107,30 @@ JointLimits usual_limits(const Armature& armature, int bone, int joint) {
   if (range.hinge) {
     limits.type = JointLimits::Type::Hinge;
     limits.axis = hinge_axis(armature, bone, range.towards);
-    limits.minimum = glm::radians(range.low);
-    limits.maximum = glm::radians(range.high);
+    double at_rest = hinge_angle_at_rest(armature, bone, limits.axis);
+    if (range.low == 0 && at_rest < -kBentBack) limits.axis = -limits.axis, at_rest = -at_rest;
+    limits.minimum = std::min(0.0, glm::radians(range.low) - at_rest);
+    limits.maximum = std::max(0.0, glm::radians(range.high) - at_rest);
     return limits;
   }
   const double share = 1.0 / sharers(armature, range);
   limits.type = JointLimits::Type::Ball;
-  limits.cone = glm::radians(range.cone * (range.part == BodyPart::UpperArm && has_collar_bone(armature, bone) ? 2.0 / 3 : share));
+  const double widest = glm::radians(range.cone * (range.part == BodyPart::UpperArm && has_collar_bone(armature, bone) ? 2.0 / 3 : share));
+  const double at_rest = glm::length(ball_swing_at_rest(armature, bone, range.part));
+  limits.cone = std::max(widest - at_rest, at_rest);
   limits.twist_minimum = glm::radians(range.low * share);
   limits.twist_maximum = glm::radians(range.high * share);
   return limits;
 }
 
-std::string limits_text(const JointLimits& limits) {
+std::string limits_text(const Armature& armature, int bone) {
+  const JointLimits& limits = armature.bones[bone].limits;
+  const double at_rest = limits.type == JointLimits::Type::Hinge ? hinge_angle_at_rest(armature, bone, limits.axis) : 0;
   char text[96];
   switch (limits.type) {
     case JointLimits::Type::Free: return "free";
     case JointLimits::Type::Fixed: return "fixed";
-    case JointLimits::Type::Hinge: std::snprintf(text, sizeof text, "hinge, %.0f to %.0f degrees", glm::degrees(limits.minimum), glm::degrees(limits.maximum)); break;
+    case JointLimits::Type::Hinge: std::snprintf(text, sizeof text, "hinge, %ld to %ld degrees", std::lround(glm::degrees(limits.minimum + at_rest)), std::lround(glm::degrees(limits.maximum + at_rest))); break;
     case JointLimits::Type::Ball:
       std::snprintf(text, sizeof text, "ball, cone of %.0f, twist %.0f to %.0f degrees", glm::degrees(limits.cone), glm::degrees(limits.twist_minimum), glm::degrees(limits.twist_maximum));
       break;

@@ -182,7 +182,7 @@ void ask_motion_range(Editor& editor) {
     int changed = 0;
     const Armature next = with_usual_limits(*e.document().armature, bones, fields[0].chosen - 1, changed);
     if (changed == 0) throw Error("this bone's name means no joint known", next.bones[bones.back()].name, "choose the joint");
-    if (bones.size() == 1) return next.bones[bones[0]].name + ": " + limits_text(next.bones[bones[0]].limits) + ".";
+    if (bones.size() == 1) return next.bones[bones[0]].name + ": " + limits_text(next, bones[0]) + ".";
     return std::to_string(changed) + " of " + std::to_string(bones.size()) + " bones.";
   };
   const auto act = [](Editor& e, const std::vector<FormField>& fields) {

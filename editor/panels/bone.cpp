@@ -2,6 +2,7 @@
 // The active bone: name, parent, where its ends lie, length and roll; what the joint at its head allows.
 #include <cmath>
 
+#include "core/rig/anatomical_zero.h"
 #include "editor/fields.h"
 #include "editor/panels/panels.h"
 #include "editor/rigging.h"
@@ -70,19 +71,20 @@ Armature with_limits(const Armature& rig, int bone, const JointLimits& limits) {
   return next;
 }
 
-// Two angles side by side.
-void draw_range(Editor& editor, Column& column, const Bone& bone, int index, const std::string& label, double JointLimits::*low, double JointLimits::*high, double farthest) {
+// Two angles side by side, shown by `at_rest` larger than they are kept. Rest is always within.
+void draw_range(Editor& editor, Column& column, const Bone& bone, int index, const std::string& label, double JointLimits::*low, double JointLimits::*high, double at_rest) {
+  const double zero = glm::degrees(at_rest);
   const Rect rect = column.property(label);
   const float middle = std::round(rect.centre().x), gap = editor.look.px(2);
   const auto number = [&](const Rect& field, const std::string& name, double JointLimits::*angle, double from, double to) {
-    draw_number(editor, field, name, "Limits of " + bone.name, glm::degrees(bone.limits.*angle), from, to, "%.0f", "\u00b0", index, [&](const Armature& rig, double degrees) {
+    draw_number(editor, field, name, "Limits of " + bone.name, glm::degrees(bone.limits.*angle) + zero, from + zero, to + zero, "%.0f", "\u00b0", index, [&](const Armature& rig, double degrees) {
       JointLimits limits = rig.bones[index].limits;
-      limits.*angle = glm::radians(degrees);
+      limits.*angle = glm::radians(degrees - zero);
       return with_limits(rig, index, limits);
     });
   };
-  number({rect.low, {middle - gap, rect.high.y}}, label + " from", low, -farthest, std::min(0.0, glm::degrees(bone.limits.*high)));
-  number({{middle + gap, rect.low.y}, rect.high}, label + " to", high, std::max(0.0, glm::degrees(bone.limits.*low)), farthest);
+  number({rect.low, {middle - gap, rect.high.y}}, label + " from", low, -180, std::min(0.0, glm::degrees(bone.limits.*high)));
+  number({{middle + gap, rect.low.y}, rect.high}, label + " to", high, std::max(0.0, glm::degrees(bone.limits.*low)), 180);
 }
 
 void draw_joint(Editor& editor, Column& column, const Bone& bone, int index) {
@@ -112,7 +114,7 @@ void draw_joint(Editor& editor, Column& column, const Bone& bone, int index) {
         limits.axis = own_axis(bone, axis);
         commit_rig(editor, "Hinge of " + bone.name, mirrored_too(editor, with_limits(*rig, index, limits)), {index});
       }
-      draw_range(editor, column, bone, index, "Angle", &JointLimits::minimum, &JointLimits::maximum, 180);
+      draw_range(editor, column, bone, index, "Angle", &JointLimits::minimum, &JointLimits::maximum, hinge_angle_at_rest(*rig, index, bone.limits.axis));
     }
     if (bone.limits.type == JointLimits::Type::Ball) {
       draw_number(editor, column.property("Cone"), "Cone", "Limits of " + bone.name, glm::degrees(bone.limits.cone), 0, 180, "%.0f", "\u00b0", index, [&](const Armature& before, double degrees) {
@@ -120,7 +122,7 @@ void draw_joint(Editor& editor, Column& column, const Bone& bone, int index) {
         limits.cone = glm::radians(degrees);
         return with_limits(before, index, limits);
       });
-      draw_range(editor, column, bone, index, "Twist", &JointLimits::twist_minimum, &JointLimits::twist_maximum, 180);
+      draw_range(editor, column, bone, index, "Twist", &JointLimits::twist_minimum, &JointLimits::twist_maximum, 0);
     }
     operator_button(editor, "rig.motion_range", column.property("Usual range"), "By joint...");
     column.space(6);

@@ -5,7 +5,8 @@
 #include <cstdio>
 #include <functional>
 
-#include "core/rig/joint_limits.h"
+#include "core/rig/anatomical_zero.h"
+#include "core/rig/joint_reading.h"
 #include "editor/fields.h"
 #include "editor/posing.h"
 #include "editor/timeline.h"
@@ -14,8 +15,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFar = 1e5;          // mm: as far as a body can be put
-constexpr double kBeyond = 1e-4;      // radians beyond a limit that count
+constexpr double kFar = 1e5;  // mm: as far as a body can be put
 
 // A number of the pose; the body follows while it changes, and the edit is one.
 void draw_number(Editor& editor, const Rect& rect, const std::string& name, const std::string& label, double shown, double farthest, const char* format, const char* unit,
@@ -61,11 +61,12 @@ std::string text_of(const char* format, double radians) {
   return text;
 }
 
-std::string words_of(const JointLimits& limits) {
+// Angles of a hinge from the anatomical position.
+std::string words_of(const JointLimits& limits, double at_rest) {
   switch (limits.type) {
     case JointLimits::Type::Free: return "none";
     case JointLimits::Type::Fixed: return "fixed";
-    case JointLimits::Type::Hinge: return text_of("%.0f", limits.minimum) + text_of(" to %.0f\u00b0", limits.maximum);
+    case JointLimits::Type::Hinge: return std::to_string(std::lround(glm::degrees(limits.minimum + at_rest))) + text_of(" to %.0f\u00b0", limits.maximum + at_rest);
     case JointLimits::Type::Ball: return text_of("cone %.0f\u00b0, twist ", limits.cone) + text_of("%.0f", limits.twist_minimum) + text_of(" to %.0f\u00b0", limits.twist_maximum);
   }
   return "";
@@ -84,10 +85,12 @@ void draw_posed_bone(Editor& editor, Column& column) {
     column.space(6);
     const Pose pose = shown_pose(editor);
     const std::string label = "Rotate " + bone.name;
+    const glm::dvec3 at_rest = turn_at_rest(*rig, index);
+    const double zero = glm::dot(at_rest, bone.limits.axis);  // of a hinge
     if (bone.limits.type == JointLimits::Type::Hinge) {
       const glm::dvec3 axis = bone.limits.axis;
-      draw_number(editor, column.property("Angle"), "Angle", label, glm::degrees(swing_twist(pose.rotation[index], axis).twist), 180, "%.1f", "\u00b0",
-                  [&](Pose& next, double degrees) { next.rotation[index] = glm::angleAxis(glm::radians(degrees), axis); });
+      draw_number(editor, column.property("Angle"), "Angle", label, glm::degrees(swing_twist(pose.rotation[index], axis).twist + zero), 360, "%.1f", "\u00b0",
+                  [&](Pose& next, double degrees) { next.rotation[index] = glm::angleAxis(glm::radians(degrees) - zero, axis); });
     } else {
       draw_three(editor, column, "Turn, \u00b0", label, own_angles(bone, pose.rotation[index]), 180, [&](Pose& next, int axis, double degrees) {
         // The others as they were before: beyond 90 degrees about y the three are no longer read as they were given.
@@ -97,10 +100,10 @@ void draw_posed_bone(Editor& editor, Column& column) {
       });
     }
     if (bone.parent < 0) draw_three(editor, column, "Place, mm", "Move body", pose.root_translation, kFar, [](Pose& next, int axis, double place) { next.root_translation[axis] = place; });
-    const double beyond = limit_excess(bone, pose.rotation[index]);
+    const std::string beyond = excess_text(bone, pose.rotation[index], at_rest);
     Rect limits = column.property("Limits");
-    limits.low.x = std::round(limits.high.x - std::max(limits.width(), look.px(180)));
-    put_text(editor, look.fonts.regular, beyond > kBeyond ? look.theme.warn : look.theme.text2, limits, beyond > kBeyond ? text_of("beyond by %.1f\u00b0", beyond) : words_of(bone.limits), Align::Right);
+    limits.low.x = std::round(limits.high.x - std::max(limits.width(), look.px(200)));
+    put_text(editor, look.fonts.regular, beyond.empty() ? look.theme.text2 : look.theme.warn, limits, beyond.empty() ? words_of(bone.limits, zero) : beyond, Align::Right);
     column.space(6);
   }
   column.end_section();

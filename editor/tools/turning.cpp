@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/rig/anatomical_zero.h"
 #include "core/rig/joint_reading.h"
 #include "editor/gizmo_painter.h"
 #include "editor/posing.h"
@@ -17,6 +18,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kSnapDegrees = 5, kSnapFine = 1;  // with Ctrl, with Ctrl and Shift
 constexpr double kTrackballPerPixel = 0.01;        // radians, at scale 1
 constexpr double kNearLimit = 5;                   // degrees, from where an end of a joint's range is warned of
+constexpr double kHeld = 0.1;                      // degrees that a limit takes from a turn before it is said
 constexpr double kLimitArc = 96;                   // pixels at scale 1
 
 class Turning final : public TransformTool {
@@ -24,7 +26,7 @@ class Turning final : public TransformTool {
   Turning(Editor& editor, const Grip& grip)
       : TransformTool(editor, grip), armature_(editor.document().armature), before_(pose_of(editor.document())), bones_(topmost(*armature_, chosen_bones(editor))),
         active_(editor.selection.bone.value_or(bones_.front())), trackball_(grip.trackball), scale_(editor.look.scale),
-        drag_(view_, scale_, pivot_of_active(), grip.held && !grip.trackball) {
+        drag_(view_, scale_, pivot_of_active(), grip.held && !grip.trackball), at_rest_(turn_at_rest(*armature_, active_)) {
     if (const int parent = armature_->bones[active_].parent; parent >= 0) above_ = posed_from_rest(*armature_, before_)[parent].rotation;
     drag_.about(axis(), start_, pointer_);
   }
@@ -37,6 +39,7 @@ class Turning final : public TransformTool {
   std::vector<KeyHint> hints(const Editor&) const override {
     auto hints = shared_hints();
     hints.insert(hints.begin() + 1, {{"R"}, "Trackball"});
+    if (held_) hints.insert(hints.begin(), {{}, held_text()});
     return hints;
   }
 
@@ -103,7 +106,31 @@ class Turning final : public TransformTool {
       const glm::dquat above = parent < 0 ? glm::dquat(1, 0, 0, 0) : posed[parent].rotation;
       next.rotation[bone] = glm::normalize(glm::conjugate(above) * world * above * before_.rotation[bone]);
     }
-    return limited(editor, mirrored_too(editor, before_, std::move(next)), bones_);
+    const Pose asked = next;
+    next = limited(editor, mirrored_too(editor, before_, std::move(next)), bones_);
+    held_.reset();
+    for (int bone : bones_) {
+      if (held_ != active_ && is_held(bone, asked, next)) held_ = bone;
+    }
+    return next;
+  }
+
+  // What a hinge leaves of a turn about another axis is no news, unless it leaves nothing.
+  bool is_held(int index, const Pose& asked, const Pose& kept) const {
+    const auto apart = [&](const glm::dquat& a, const glm::dquat& b) { return glm::degrees(2 * std::acos(std::min(1.0, std::abs(glm::dot(a, b))))) > kHeld; };
+    if (!apart(asked.rotation[index], kept.rotation[index])) return false;
+    const JointLimits& limits = armature_->bones[index].limits;
+    if (limits.type != JointLimits::Type::Hinge || !apart(kept.rotation[index], before_.rotation[index])) return true;
+    const double angle = swing_twist(kept.rotation[index], limits.axis).twist;
+    return std::min(std::abs(angle - limits.minimum), std::abs(angle - limits.maximum)) < 1e-6;
+  }
+
+  // Which limit keeps a bone from turning as it is asked to.
+  std::string held_text() const {
+    const Bone& bone = armature_->bones[*held_];
+    const auto reading = *held_ == active_ ? this->reading(before_) : std::nullopt;
+    if (*held_ == active_ && !reading && bone.limits.type == JointLimits::Type::Hinge) return bone.name + " turns about its hinge only";
+    return "Held by the limit of " + bone.name + (reading && reading->kind != JointReading::Kind::Fixed ? " (" + range_text(*reading) + ")" : "");
   }
 
   std::vector<FormField> parameters() const override {
@@ -125,12 +152,14 @@ class Turning final : public TransformTool {
   void show(Editor& editor) override { show_pose(editor, pose(editor)); }
   void keep(Editor& editor) override {
     const std::string what = bones_.size() == 1 ? armature_->bones[bones_[0]].name : std::to_string(bones_.size()) + " bones";
-    commit_pose(editor, "Rotate " + what, pose(editor));
+    Pose next = pose(editor);
+    if (held_ && number_.typed()) editor.messages.info(held_text());
+    commit_pose(editor, "Rotate " + what, std::move(next));
   }
 
   // Of the active joint, before the turn and as it is shown.
   std::optional<JointReading> reading(const Pose& pose) const {
-    return read_joint(armature_->bones[active_], pose.rotation[active_], glm::conjugate(above_) * axis());
+    return read_joint(armature_->bones[active_], pose.rotation[active_], glm::conjugate(above_) * axis(), at_rest_);
   }
 
   // What the turn asks for, in the joint's own angle.
@@ -147,9 +176,7 @@ class Turning final : public TransformTool {
   std::string limit_text(const Editor& editor) const {
     const auto now = reading(shown_pose(editor));
     if (!now) return armature_->bones[active_].limits.type == JointLimits::Type::Free ? "No limits" : "Across the hinge";
-    if (now->kind == JointReading::Kind::Fixed) return "Fixed joint";
-    const double end = glm::degrees(now->angle >= 0 ? now->maximum : now->minimum);
-    return std::string(name_of(now->kind)) + text_of_number(" %.1f\u00b0", glm::degrees(now->angle)) + text_of_number(" of %.0f\u00b0", end);
+    return text_of(*now);
   }
 
   void draw_limit(Editor& editor, const GizmoPainter& painter) const {
@@ -167,6 +194,8 @@ class Turning final : public TransformTool {
   bool trackball_;
   float scale_;
   AngleDrag drag_;
+  const glm::dvec3 at_rest_;      // of the active joint, from the anatomical position
+  std::optional<int> held_;       // the bone that a limit holds; the active one before others
   glm::dquat above_{1, 0, 0, 0};  // the active bone's parent
   glm::dvec2 rolled_{0};          // radians
   double shown_ = 0, turned_ = 0;  // degrees

@@ -311,3 +311,27 @@ TEST_CASE("posing: with X-mirror pins and poles come, move and go on both sides"
   test.play("key Shift+P");
   CHECK(anchors_of(test.editor->document()).pins == std::set<std::string>{"Fore.R"});
 }
+
+TEST_CASE("posing: angles of a joint that rests bent count from straight, a typed turn that its limit holds says so, and limits are told apart") {
+  PosingEditor test({1280, 900});
+  Document bent = test.editor->document();
+  auto rig = std::make_shared<Armature>(*bent.armature);
+  rig->bones[1].tail = glm::angleAxis(1.0, glm::dvec3(1, 0, 0)) * glm::dvec3(0, 0, -36);
+  rig->bones[1].limits.minimum = -1;
+  rig->bones[1].limits.maximum = glm::radians(150.0) - 1;
+  bent.armature = rig;
+  test.editor->history.reset(bent, "Open bent limb");
+  test.choose(1);
+  test.play("wait-idle\n expect \"text:57.3\"\n expect \"text:0 to 150\u00b0\"");
+  test.play("double-click Bone/Angle\n key Ctrl+A\n type \"0\"\n key Return\n wait-idle");
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(glm::degrees(-1.0)));
+  // Straight it goes no further back, and the status line says why.
+  test.play("move \"3D view/view\"\n key R\n key X\n key -\n key 6\n key 0\n wait-idle\n expect \"text:Held by the limit of Fore (0\u00b0 to 150\u00b0)\"\n expect \"text:Flexion 0.0\u00b0 of 150\u00b0\"");
+  const std::size_t toasts = test.editor->messages.log.size();
+  test.play("key Return\n wait-idle");
+  CHECK(test.editor->messages.log.size() == toasts + 1);
+  CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(glm::degrees(-1.0)));
+  test.play("key R\n key X\n key 5\n key 4\n wait-idle\n expect \"text:Flexion 54.0\u00b0 of 150\u00b0\"\n key Escape");
+  test.editor->posing.keep_limits = false;
+  test.play("move \"3D view/view\"\n key R\n key X\n key -\n key 2\n key 0\n key Return\n wait-idle\n expect \"text:beyond 0\u00b0 by 20.0\u00b0\"");
+}

@@ -75,14 +75,14 @@ TEST_CASE("ranges of motion: bones of one spine share its range, and a collar bo
   rig.bones.push_back({"Spine", 0, {0, 0, 100}, {0, 0, 200}, 0, {}});
   rig.bones.push_back({"Spine1", 1, {0, 0, 200}, {0, 0, 300}, 0, {}});
   rig.bones.push_back({"Neck", 2, {0, 0, 300}, {0, 0, 400}, 0, {}});
-  rig.bones.push_back({"LeftArm", 2, {100, 0, 300}, {400, 0, 300}, 0, {}});
+  rig.bones.push_back({"LeftArm", 2, {100, 0, 300}, {100, 0, 0}, 0, {}});
   const auto joints = usual_joints_of(rig);
   REQUIRE(joints[1] == joint("Spine"));
   CHECK(degrees(usual_limits(rig, 1, *joints[1]).cone) == doctest::Approx(40));
   CHECK(degrees(usual_limits(rig, 1, *joints[1]).twist_maximum) == doctest::Approx(22.5));
   CHECK(degrees(usual_limits(rig, 4, joint("Shoulder")).cone) == doctest::Approx(180));
   rig.bones[4].name = "LeftShoulder";
-  rig.bones.push_back({"LeftArm", 4, {400, 0, 300}, {700, 0, 300}, 0, {}});
-  rig.bones.push_back({"LeftForeArm", 5, {700, 0, 300}, {900, 0, 300}, 0, {}});
+  rig.bones.push_back({"LeftArm", 4, {100, 0, 300}, {100, 0, 0}, 0, {}});
+  rig.bones.push_back({"LeftForeArm", 5, {100, 0, 0}, {100, 0, -200}, 0, {}});
   CHECK(degrees(usual_limits(rig, 5, joint("Shoulder")).cone) == doctest::Approx(120));
 }
