@@ -62,8 +62,7 @@ class Names {
     taken_.push_back({inside_.low, inside_.low + glm::vec2(px(300), px(48))});
     if (editor.views->axes) taken_.push_back({{inside_.high.x - px(100), inside_.low.y}, {inside_.high.x, inside_.low.y + px(104)}});
     if (editor.views->scale_bar) taken_.push_back({inside_.high - glm::vec2(px(170), px(52)), inside_.high});
-    if (editor.modal && centre)
-      for (const float x : {px(128), -px(310)}) taken_.push_back({gizmo_->centre + glm::vec2(x, -px(66)), gizmo_->centre + glm::vec2(x + px(182), -px(20))});
+    if (editor.modal && centre) taken_.push_back(place_of_read_out(editor.look, inside_, gizmo_->centre));
   }
 
   void put(const SeenBone& bone, const std::string& name) {

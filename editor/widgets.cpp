@@ -15,7 +15,8 @@ constexpr ImGuiWindowFlags kRegionFlags = ImGuiWindowFlags_NoDecoration | ImGuiW
 
 std::string path_of(const Editor& editor, const std::string& name) {
   std::string path;
-  for (const std::string& step : editor.place.steps) path += step + "/";
+  for (const std::string& step : editor.place.steps)
+    if (!step.empty()) path += step + "/";
   return path + name;
 }
 

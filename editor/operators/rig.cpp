@@ -149,6 +149,10 @@ void subdivide(Editor& editor) {
 }
 
 void symmetrize(Editor& editor) {
+  const std::vector<Bone>& all = editor.document().armature->bones;
+  const std::vector<int> chosen = bones_chosen_last(editor);
+  if (std::none_of(chosen.begin(), chosen.end(), [&](int bone) { return mirrored_name(all[bone].name).has_value(); }))
+    throw Error("a bone without a side has no other side", all[chosen.back()].name, "give it a name with a side first, as Arm.L or LeftArm");
   act_adjustably(editor, {choice_of("From", "The side whose mirror image the other one becomes.", {"Chosen", "Not chosen"})}, [](Editor& e, const std::vector<FormField>& fields) {
     edit(e, "Symmetrize", [&](const Armature& rig, const std::vector<int>& bones) {
       std::vector<int> from = bones;
@@ -160,16 +164,14 @@ void symmetrize(Editor& editor) {
   });
 }
 
-// The chosen bones with the limits of that joint, or where it is -1 of what their names mean.
-Armature with_usual_limits(const Armature& rig, const std::vector<int>& bones, int joint, int& changed) {
+// The chosen bones with the limits of that joint, or where it is -1 of what their names mean; `left` are the names of those
+// that mean nothing.
+Armature with_usual_limits(const Armature& rig, const std::vector<int>& bones, int joint, std::vector<std::string>& left) {
   const auto by_name = usual_joints_of(rig);
   Armature next = rig;
-  changed = 0;
   for (const int bone : bones)
-    if (const auto known = joint < 0 ? by_name[bone] : std::optional(joint)) {
-      next.bones[bone].limits = usual_limits(rig, bone, *known);
-      ++changed;
-    }
+    if (const auto known = joint < 0 ? by_name[bone] : std::optional(joint)) next.bones[bone].limits = usual_limits(rig, bone, *known);
+    else left.push_back(rig.bones[bone].name);
   return next;
 }
 
@@ -179,16 +181,18 @@ void ask_motion_range(Editor& editor) {
   const auto outcome = [](const Editor& e, const std::vector<FormField>& fields) {
     if (const std::string why = needs_rig_bone(e); !why.empty()) throw Error("no bone is chosen", "the rig", why);
     const std::vector<int> bones = bones_chosen_last(e);
-    int changed = 0;
-    const Armature next = with_usual_limits(*e.document().armature, bones, fields[0].chosen - 1, changed);
-    if (changed == 0) throw Error("this bone's name means no joint known", next.bones[bones.back()].name, "choose the joint");
+    std::vector<std::string> left;
+    const Armature next = with_usual_limits(*e.document().armature, bones, fields[0].chosen - 1, left);
+    if (left.size() == bones.size()) throw Error("this bone's name means no joint known", next.bones[bones.back()].name, "choose the joint");
     if (bones.size() == 1) return next.bones[bones[0]].name + ": " + limits_text(next, bones[0]) + ".";
-    return std::to_string(changed) + " of " + std::to_string(bones.size()) + " bones.";
+    std::string words = std::to_string(bones.size() - left.size()) + " of " + std::to_string(bones.size()) + " bones";
+    for (std::size_t i = 0; i < left.size(); ++i) words += (i == 0 ? "; names that mean no joint: " : ", ") + left[i];
+    return words + ".";
   };
   const auto act = [](Editor& e, const std::vector<FormField>& fields) {
     const std::vector<int> bones = bones_chosen_last(e);
-    int changed = 0;
-    commit_rig(e, naming_chosen(e, "Range of motion of"), mirrored_too(e, with_usual_limits(*e.document().armature, bones, fields[0].chosen - 1, changed)), bones);
+    std::vector<std::string> left;
+    commit_rig(e, naming_chosen(e, "Range of motion of"), mirrored_too(e, with_usual_limits(*e.document().armature, bones, fields[0].chosen - 1, left)), bones);
   };
   editor.open_dialog(make_form({"Range of motion", "Gives the joints at the heads of the chosen bones the range that is usual for an adult.", "Set limits",
                                 {choice_of("Joint", "Ranges of the American Academy of Orthopaedic Surgeons.", joints)}, outcome, act}));

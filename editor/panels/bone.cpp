@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The active bone: name, parent, where its ends lie, length and roll; what the joint at its head allows.
+#include <algorithm>
 #include <cmath>
 
 #include "core/rig/anatomical_zero.h"
@@ -12,9 +13,12 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFar = 1e5;  // mm: as far as an end can be put
+constexpr double kFar = 1e5;       // mm: as far as an end can be put
+constexpr double kShortest = 0.1;  // mm: of a bone
 
-// A number of the bone; the rig follows while it changes and is committed once, at the end.
+bool too_short(const Bone& bone) { return glm::distance(bone.head, bone.tail) < kShortest; }
+
+// A number of the bone; the rig follows while it changes and is committed once, at the end. A bone of no length is refused.
 template <class Change>
 void draw_number(Editor& editor, const Rect& rect, const std::string& name, const std::string& label, double shown, double low, double high, const char* format, const char* unit, int bone, const Change& change) {
   auto& edited = editor.edited_number;
@@ -24,12 +28,71 @@ void draw_number(Editor& editor, const Rect& rect, const std::string& name, cons
   const auto with = [&](double number) { return mirrored_too(editor, change(*rig, number)); };
   if (number_field(editor, name, rect, value, low, high, format, unit, false, committed)) {
     edited = {name, value};
-    show_rig(editor, with(value));
+    if (Armature next = with(value); !too_short(next.bones[bone])) show_rig(editor, std::move(next));
   }
   if (!committed || edited.name != name) return;
   const double number = edited.value;
   edited = {};
-  commit_rig(editor, label, with(number), {bone});
+  Armature next = with(number);
+  if (!too_short(next.bones[bone])) return commit_rig(editor, label, std::move(next), {bone});
+  drop_shown_rig(editor);
+  editor.messages.warn(rig->bones[bone].name + " stays as it was", "A bone is at least 0.1 mm long");
+}
+
+void draw_name(Editor& editor, const Rect& rect, int index) {
+  const Look& look = editor.look;
+  const std::string& name = editor.document().armature->bones[index].name;
+  const std::string renamed = "bone panel " + name;
+  if (is_renaming(editor, renamed)) {
+    std::string accepted = name;
+    if (rename_field(editor, rect, accepted)) attempt(editor, "Rename bone", [&](Editor& e) { rename_bone(e, index, accepted); });
+    return;
+  }
+  const Pressed pressed = press_area(editor, "Name", rect);
+  fill(rect, pressed.hovered ? look.theme.hover : look.theme.field, look.px(4));
+  outline(rect, look.theme.line2, look.px(4), look.line());
+  put_text(editor, look.fonts.regular, look.theme.text, Rect{{rect.low.x + look.px(8), rect.low.y}, {rect.high.x - look.px(8), rect.high.y}}, name);
+  if (pressed.clicked) begin_renaming(editor, renamed, name);
+}
+
+// Any bone that does not hang on this one, or none.
+void draw_parent(Editor& editor, const Rect& rect, int index) {
+  const std::shared_ptr<const Armature> rig = editor.document().armature;
+  std::vector<int> parents = {-1};
+  std::vector<bool> below(rig->bones.size(), false);
+  below[index] = true;
+  for (int b = 0; b < std::ssize(rig->bones); ++b) {
+    below[b] = below[b] || (rig->bones[b].parent >= 0 && below[rig->bones[b].parent]);
+    if (!below[b]) parents.push_back(b);
+  }
+  std::vector<std::string> names;
+  for (const int parent : parents) names.push_back(parent < 0 ? "None" : rig->bones[parent].name);
+  int chosen = static_cast<int>(std::find(parents.begin(), parents.end(), rig->bones[index].parent) - parents.begin());
+  const PathScope scope(editor, "Parent");
+  if (choice_field(editor, rect, names, chosen)) attempt(editor, "Make parent", [&](Editor& e) { hang_on(e, {index}, parents[chosen]); });
+}
+
+// A bone is connected where its head lies on the parent's tail: set free, its head is drawn back a little, so that either
+// end moves alone.
+void draw_connected(Editor& editor, const Rect& rect, int index) {
+  constexpr double kBack = 0.05, kMostBack = 5;  // of the length; mm
+  const std::shared_ptr<const Armature> rig = editor.document().armature;
+  const Bone& bone = rig->bones[index];
+  if (bone.parent < 0) return;
+  bool connected = is_connected(*rig, index);
+  if (!checkbox(editor, "Connected", rect, "Connected", connected)) return;
+  attempt(editor, connected ? "Connect" : "Disconnect", [&](Editor& e) {
+    if (connected) {
+      Armature next = hung(e, {index}, bone.parent, Join::Connected);
+      const int still = next.find(bone.name).value();
+      return commit_rig(e, "Connect " + bone.name, std::move(next), {still});
+    }
+    Armature next = *rig;
+    const glm::dvec3 along = bone.tail - bone.head;
+    const double length = glm::length(along);
+    if (length > 0) next.bones[index].head += along * (std::min(kBack * length, kMostBack) / length);
+    commit_rig(e, "Disconnect " + bone.name, mirrored_too(e, std::move(next)), {index});
+  });
 }
 
 void draw_end(Editor& editor, Column& column, const Bone& bone, const BoneEnd& end) {
@@ -141,14 +204,15 @@ void draw_bone(Editor& editor, Column& column) {
   const Look& look = editor.look;
   if (column.begin_section("Bone", bone.name)) {
     column.space(6);
-    const Rect parent = column.property("Parent");
-    put_text(editor, look.fonts.regular, look.theme.text, parent, bone.parent < 0 ? "None" : rig->bones[bone.parent].name + (is_connected(*rig, index) ? ", connected" : ""));
+    draw_name(editor, column.property("Name"), index);
+    draw_parent(editor, column.property("Parent"), index);
+    draw_connected(editor, column.property(""), index);
     draw_end(editor, column, bone, {index, false});
     draw_end(editor, column, bone, {index, true});
     Rect rect = column.property("Length \u00b7 roll");
     rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(156)));
     const float middle = std::round(rect.low.x + 0.56f * rect.width());
-    draw_number(editor, {rect.low, {middle - look.px(2), rect.high.y}}, "Length", "Length of " + bone.name, glm::distance(bone.head, bone.tail), 0.01, kFar, "%.1f", "mm", index, [&](const Armature& before, double number) {
+    draw_number(editor, {rect.low, {middle - look.px(2), rect.high.y}}, "Length", "Length of " + bone.name, glm::distance(bone.head, bone.tail), 0, kFar, "%.1f", "mm", index, [&](const Armature& before, double number) {
       const glm::dvec3 along = before.bones[index].tail - before.bones[index].head;
       const double length = glm::length(along);
       return with_moved_ends(before, {{index, true}}, [&](const glm::dvec3&) { return before.bones[index].head + (length > 0 ? along / length : glm::dvec3(0, 0, 1)) * number; });

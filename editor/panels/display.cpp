@@ -3,6 +3,7 @@
 #include <array>
 
 #include "editor/fields.h"
+#include "editor/panels/operator_box.h"
 #include "editor/panels/panels.h"
 #include "editor/widgets.h"
 
@@ -11,12 +12,6 @@ namespace limber::editor {
 namespace {
 
 constexpr std::array<const char*, 3> kShapes = {"view.bones_octahedron", "view.bones_stick", "view.bones_cylinder"};  // as in BoneShape
-
-void draw_toggle(Editor& editor, const char* id, const Rect& rect, const std::string& label) {
-  const Operator* op = find_operator(editor, id);
-  bool on = op->checked(editor);
-  if (checkbox(editor, label, rect, label, on)) run(editor, *op);
-}
 
 }  // namespace
 
@@ -32,9 +27,9 @@ void draw_display(Editor& editor, Column& column) {
       const PathScope scope(editor, "Bones");
       if (choice_field(editor, field, shapes, shape)) run(editor, kShapes[shape]);
     }
-    draw_toggle(editor, "view.bone_names", column.property(""), "Names");
-    draw_toggle(editor, "view.bone_axes", column.property(""), "Axes");
-    draw_toggle(editor, "view.bones_in_front", column.property(""), "In front of the body");
+    operator_box(editor, "view.bone_names", column.property(""), "Names");
+    operator_box(editor, "view.bone_axes", column.property(""), "Axes");
+    operator_box(editor, "view.bones_in_front", column.property(""), "In front");
     column.space(6);
   }
   column.end_section();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What the pose does to the volume: change of every tissue, overlap, joint limits.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +17,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kMostTissues = 6;
+constexpr std::size_t kMostTissues = 6;  // that are shown at first
+constexpr char kAll[] = "Volume, live: all tissues";
 constexpr double kBeyond = 1e-6;  // radians
 
 Rect padded(const Editor& editor, const Rect& row) {
@@ -57,13 +59,24 @@ void put_metrics(Editor& editor, Column& column, const PoseMetrics& metrics, boo
   const Look& look = editor.look;
   const Colour second = look.theme.text2;
   put_cells(editor, column.row(24), {"Tissue", "cm\u00b3", "change"}, {second, second, second}, look.fonts.small, look.fonts.small, 0);
-  for (std::size_t i = 0; i < std::min(metrics.tissues.size(), kMostTissues); ++i) {
-    const PoseMetrics::Row& tissue = metrics.tissues[i];
+  // The worst first.
+  std::vector<PoseMetrics::Row> tissues = metrics.tissues;
+  std::stable_sort(tissues.begin(), tissues.end(), [](const auto& a, const auto& b) { return std::abs(a.change_percent().value_or(0)) > std::abs(b.change_percent().value_or(0)); });
+  bool& all = editor.open_sections[kAll];
+  for (std::size_t i = 0; i < (all ? tissues.size() : std::min(tissues.size(), kMostTissues)); ++i) {
+    const PoseMetrics::Row& tissue = tissues[i];
     Rect row;
     if (!column.list_row(row, static_cast<int>(i), false)) continue;
     const float side = look.px(14), x = row.low.x + look.px(10), y = std::round(row.centre().y - side / 2);
     fill({{x, y}, {x + side, y + side}}, rgb(tissue.colour.r, tissue.colour.g, tissue.colour.b), look.px(3));
     put_change(editor, row, tissue, look.fonts.regular, known, 22);
+  }
+  if (tissues.size() > kMostTissues) {
+    const Rect row = padded(editor, column.row(24));
+    const Pressed pressed = press_area(editor, "All tissues", row);
+    const std::string words = all ? "Only the " + std::to_string(kMostTissues) + " that change most" : "All " + std::to_string(tissues.size()) + " tissues";
+    put_text(editor, look.fonts.regular, pressed.hovered ? look.theme.text : look.theme.accent_text, Rect{{row.low.x + look.px(22), row.low.y}, row.high}, words);
+    if (pressed.clicked) all = !all, editor.touch();
   }
   put_change(editor, column.row(26), metrics.total, look.fonts.semibold, known, 0);
   put_line(editor, column, "Overlap", grouped(metrics.overlap_voxels) + " voxels", !known ? look.theme.text3 : metrics.overlap_voxels ? look.theme.warn : look.theme.ok);

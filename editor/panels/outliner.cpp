@@ -23,6 +23,8 @@ namespace {
 constexpr const char kList[] = "outliner";
 constexpr int kManyBones = 24;     // more are folded below their first generation
 constexpr int kDeepest = 8;        // that still moves to the right
+constexpr float kRow = 24;         // pixels at scale 1
+constexpr float kBoneSection = 204, kFewestRows = 4;  // what stays free below for the bone's numbers, and what is shown all the same
 
 struct Row {
   enum class Kind { Volume, Tissues, Tissue, Armature, Bone, Results, Result } kind;
@@ -318,6 +320,38 @@ void draw_search(Editor& editor, Column& column) {
   }
 }
 
+// Unfolds what a bone lies in.
+void unfold_to(Editor& editor, int bone) {
+  const auto& bones = editor.document().armature->bones;
+  editor.outliner.open["armature"] = true;
+  for (int above = bones[bone].parent; above >= 0; above = bones[above].parent) editor.outliner.open["bone " + bones[above].name] = true;
+}
+
+// The bone that was chosen or made since the last frame: it comes into sight.
+std::optional<int> newly_chosen(const Editor& editor) {
+  const auto bone = editor.selection.bone;
+  const std::shared_ptr<const Armature> rig = editor.document().armature;
+  const bool known = bone && rig && *bone < std::ssize(rig->bones);
+  const int now = known ? static_cast<int>(ImGui::GetID(rig->bones[*bone].name.c_str())) : 0;
+  int& last = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("chosen bone"), 0);
+  return std::exchange(last, now) != now && known ? bone : std::nullopt;
+}
+
+// As high as its rows, but in the rig only so high that the bone's numbers have room below it.
+float height_of_list(const Editor& editor, const Column& column, float whole) {
+  const Look& look = editor.look;
+  if (editor.workspace != Workspace::Rig || !editor.document().armature) return whole;
+  const float top = column.head().high.y + ImGui::GetScrollY() - editor.layout.sidebar.low.y + (editor.outliner.searching ? look.px(32) : 0);
+  const float room = std::floor((editor.layout.sidebar.height() - top) / look.scale - kBoneSection);
+  return std::min(whole, std::max(kRow * kFewestRows, room));
+}
+
+// The row in the middle of the list, unless it is seen already.
+void scroll_to_row(const Look& look, int row, float height) {
+  const float top = look.px(kRow) * static_cast<float>(row), scroll = ImGui::GetScrollY();
+  if (top < scroll || top + look.px(kRow) > scroll + height) ImGui::SetScrollY(std::max(0.0f, top - (height - look.px(kRow)) / 2));
+}
+
 }  // namespace
 
 void draw_outliner(Editor& editor, Column& column) {
@@ -332,11 +366,23 @@ void draw_outliner(Editor& editor, Column& column) {
   if (ImGui::IsItemHovered()) operator_tooltip(editor, search, place);
   if (open) {
     draw_search(editor, column);
+    const auto revealed = newly_chosen(editor);
+    if (revealed) unfold_to(editor, *revealed);
     const std::vector<Row> rows = Tree(editor).rows;
     take_key(editor, rows);
     auto& drag = editor.handling->row_drag;
     if (editor.input.down(Key::Escape)) drag = {};
-    for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[i]);
+    const float whole = kRow * static_cast<float>(rows.size()), height = height_of_list(editor, column, whole);
+    if (height >= whole) {
+      for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[i]);
+    } else {
+      const Rect place = column.row(height);
+      Column list(editor, "", place);
+      const auto is_revealed = [&](const Row& row) { return row.kind == Row::Kind::Bone && row.index == *revealed; };
+      if (revealed)
+        if (const auto row = std::find_if(rows.begin(), rows.end(), is_revealed); row != rows.end()) scroll_to_row(look, static_cast<int>(row - rows.begin()), place.height());
+      for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, list, i, rows[i]);
+    }
     if (!editor.input.down(MouseButton::Left)) drag = {};
     if (rows.empty() && editor.outliner.search.empty()) {
       const Rect row = column.row(30);

@@ -8,6 +8,7 @@
 #include "core/rig/anatomical_zero.h"
 #include "core/rig/joint_reading.h"
 #include "editor/fields.h"
+#include "editor/panels/operator_box.h"
 #include "editor/posing.h"
 #include "editor/timeline.h"
 
@@ -55,6 +56,39 @@ void draw_three(Editor& editor, Column& column, const std::string& title, const 
   }
 }
 
+// The other three parts make up what is left of 1; nothing where they are all zero.
+glm::dquat with_part(const glm::dquat& rotation, int part, double value) {
+  glm::dvec4 q(rotation.w, rotation.x, rotation.y, rotation.z);
+  q[part] = 0;
+  const double others = glm::length(q);
+  if (others < 1e-9) return rotation;
+  q *= std::sqrt(std::max(0.0, 1 - value * value)) / others;
+  q[part] = value;
+  return glm::normalize(glm::dquat(q[0], q[1], q[2], q[3]));
+}
+
+// w, x, y, z.
+void draw_quaternion(Editor& editor, Column& column, const std::string& label, int bone, const glm::dquat& rotation) {
+  const Look& look = editor.look;
+  Rect rect = column.property("Quaternion");
+  rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
+  const glm::dquat shown = rotation.w < 0 ? -rotation : rotation;
+  const double parts[] = {shown.w, shown.x, shown.y, shown.z};
+  const float width = (rect.width() - 3 * look.px(2)) / 4;
+  for (int part = 0; part < 4; ++part) {
+    const float x = std::round(rect.low.x + static_cast<float>(part) * (width + look.px(2)));
+    draw_number(editor, {{x, rect.low.y}, {std::round(x + width), rect.high.y}}, std::string("Quaternion ") + "WXYZ"[part], label, parts[part], 1, "%.2f", "",
+                [&](Pose& next, double value) { next.rotation[bone] = with_part(next.rotation[bone].w < 0 ? -next.rotation[bone] : next.rotation[bone], part, value); });
+  }
+}
+
+void draw_ik(Editor& editor, Column& column) {
+  const Rect rect = column.property("IK");
+  const float middle = std::round(rect.low.x + 0.58f * rect.width());
+  operator_box(editor, "pose.pin", {rect.low, {middle - editor.look.px(4), rect.high.y}}, "Pin joint");
+  operator_box(editor, "pose.pole", {{middle, rect.low.y}, rect.high}, "Pole");
+}
+
 std::string text_of(const char* format, double radians) {
   char text[48];
   std::snprintf(text, sizeof text, format, glm::degrees(radians));
@@ -99,7 +133,9 @@ void draw_posed_bone(Editor& editor, Column& column) {
         next.rotation[index] = turned_by_own_angles(bone, angles);
       });
     }
+    draw_quaternion(editor, column, label, index, pose.rotation[index]);
     if (bone.parent < 0) draw_three(editor, column, "Place, mm", "Move body", pose.root_translation, kFar, [](Pose& next, int axis, double place) { next.root_translation[axis] = place; });
+    draw_ik(editor, column);
     const std::string beyond = excess_text(bone, pose.rotation[index], at_rest);
     Rect limits = column.property("Limits");
     limits.low.x = std::round(limits.high.x - std::max(limits.width(), look.px(200)));

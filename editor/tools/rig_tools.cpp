@@ -168,7 +168,10 @@ class RigTool final : public TransformTool {
     Armature next = mirrored_too(editor, changed(editor));
     // A bone drawn out by nothing is none.
     const bool nothing = std::any_of(change_.chosen.begin(), change_.chosen.end(), [&](int bone) { return next.bones[bone].head == next.bones[bone].tail; });
-    if (nothing) return drop_shown_rig(editor);
+    if (nothing) {
+      if (change_.kind == RigChange::Kind::Scale) editor.messages.warn("Nothing was scaled", "A bone keeps some length: type a factor above 0");
+      return drop_shown_rig(editor);
+    }
     commit_rig(editor, change_.label, std::move(next), change_.chosen);
   }
 

@@ -379,7 +379,7 @@ TEST_CASE("gizmos: bones' names stand clear of the gizmo and of one another, at 
       auto rig = std::make_shared<Armature>(*fan.armature);
       for (int i = 0; i < 12; ++i) {
         const double angle = kPi * i / 6;
-        rig->bones.push_back({"Spoke " + std::to_string(i), 0, {0, 0, 0}, {40 * std::cos(angle), 0, 40 * std::sin(angle)}});
+        rig->bones.push_back({"Spoke " + std::to_string(i), 0, {0, 0, 0}, {90 * std::cos(angle), 0, 90 * std::sin(angle)}});
       }
       fan.armature = rig;
       test.editor->history.reset(fan, "Open fan");
@@ -395,13 +395,13 @@ TEST_CASE("gizmos: bones' names stand clear of the gizmo and of one another, at 
         const auto found = widget.name.find("bone name ");
         if (found == std::string::npos) continue;
         INFO(widget.name);
-        CHECK(glm::distance(glm::clamp(centre, widget.rect.low, widget.rect.high), centre) >= reach * scale);
+        CHECK(glm::distance(glm::clamp(centre, widget.rect.low, widget.rect.high), centre) >= reach * test.editor->look.scale);
         for (const Rect& other : names) CHECK_FALSE(widget.rect.overlaps(other));
         CHECK(test.editor->layout.place_of(ViewId::Body)->contains(widget.rect));
-        CHECK(widget.rect.height() >= 15 * scale);
+        CHECK(widget.rect.height() >= 15 * test.editor->look.scale);
         names.push_back(widget.rect);
       }
-      CHECK(names.size() >= 4);
+      CHECK(names.size() >= 3);
       CHECK(test.editor->widgets.find("bone name Fore"));
     }
 }
@@ -410,7 +410,7 @@ TEST_CASE("gizmos: what lies under the pointer is listed nearest first, bones am
   LimbEditor test;
   test.play("key Ctrl+1\n key Num1\n wait-idle");
   // Through the muscle above the ball of bone, in which the upper bone runs.
-  const glm::dvec2 pixel = body_seen(*test.editor)->pixel_of({0, 0, 20}).value();
+  const glm::dvec2 pixel = body_seen(*test.editor)->pixel_of({-2.5, 0, 20}).value();
   test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + "\n wait-idle");
   run(*test.editor, "select.pick_list");
   test.player.settle();

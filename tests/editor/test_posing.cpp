@@ -335,3 +335,19 @@ TEST_CASE("posing: angles of a joint that rests bent count from straight, a type
   test.editor->posing.keep_limits = false;
   test.play("move \"3D view/view\"\n key R\n key X\n key -\n key 2\n key 0\n key Return\n wait-idle\n expect \"text:beyond 0\u00b0 by 20.0\u00b0\"");
 }
+
+TEST_CASE("posing: the sidebar shows a bone's quaternion, whose parts are typed, and pins and poles as boxes") {
+  PosingEditor test({1280, 900});
+  test.choose(0);
+  test.play("wait-idle\n double-click \"Bone/Quaternion X\"\n key Ctrl+A\n type \"0.6\"\n key Return\n wait-idle");
+  const glm::dquat turned = test.pose().rotation[0];
+  CHECK(turned.x == doctest::Approx(0.6));
+  CHECK(turned.w == doctest::Approx(0.8));
+  test.choose(1);
+  test.play("wait-idle\n click \"Bone/Pin joint\"\n wait-idle");
+  CHECK(anchors_of(test.editor->document()).pins.contains("Fore"));
+  test.play("click Bone/Pole\n wait-idle");
+  CHECK(anchors_of(test.editor->document()).poles.contains("Fore"));
+  test.play("click \"Bone/Pin joint\"\n wait-idle");
+  CHECK_FALSE(anchors_of(test.editor->document()).pins.contains("Fore"));
+}

@@ -452,3 +452,73 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
     CHECK(test.rig() == *limber::test::small_limb().armature);
   }
 }
+
+TEST_CASE("rigging: name, parent and connection are changed in the sidebar") {
+  RiggingEditor test({1280, 720});
+  test.play("click Bone/Name\n key Ctrl+A\n type \"Lower\"\n key Return\n wait-idle");
+  CHECK(test.rig().bones[1].name == "Lower");
+  test.play("click Bone/Connected\n wait-idle\n expect edit \"Disconnect Lower\"");
+  CHECK_FALSE(is_connected(test.rig(), 1));
+  CHECK(test.rig().bones[1].head.z == doctest::Approx(-1.8));
+  test.play("click Bone/Connected\n wait-idle\n expect edit \"Connect Lower\"");
+  CHECK(is_connected(test.rig(), 1));
+  test.play("click Bone/Parent/list\n click Parent/None\n wait-idle");
+  CHECK(test.rig().bones[1].parent == -1);
+  test.play("click Bone/Parent/list\n click Parent/Upper\n wait-idle\n expect edit \"Parent Lower to Upper\"");
+  CHECK(test.rig().bones[1].parent == 0);
+}
+
+TEST_CASE("rigging: a bone of no length is refused with a line, typed in the sidebar or scaled") {
+  RiggingEditor test({1280, 720});
+  const Armature before = test.rig();
+  for (const char* deed : {"double-click Bone/Length\n key Ctrl+A\n type \"0\"\n key Return", "move \"3D view/view\"\n key S\n key 0\n key Return"}) {
+    INFO(std::string(deed));
+    const std::size_t lines = test.editor->messages.log.size();
+    test.play(deed);
+    test.play("wait-idle");
+    CHECK(test.rig() == before);
+    CHECK(test.editor->messages.log.size() == lines + 1);
+    CHECK_FALSE(test.editor->views->preview_armature);
+  }
+}
+
+TEST_CASE("rigging: undo of a deletion chooses the bones again, and what is symmetrized without a side says why not") {
+  RiggingEditor test({1280, 720});
+  test.play("move \"3D view/view\"\n key X\n wait-idle");
+  REQUIRE(test.rig().bones.size() == 1);
+  test.play("key Ctrl+Z\n wait-idle");
+  CHECK(test.editor->selection.bone == 1);
+  CHECK(test.editor->selection.bones == std::set<int>{1});
+  const Armature before = test.rig();
+  test.play("move \"3D view/view\"\n key Shift+M\n wait-idle");
+  CHECK(test.rig() == before);
+  REQUIRE(test.editor->messages.errors.size() == 1);
+  CHECK(test.editor->messages.errors[0].where == "Fore");
+}
+
+TEST_CASE("rigging: however many bones there are, choosing one shows it in the outliner and its numbers below, without scrolling") {
+  for (const double scale : {1.0, 2.0}) {
+    RiggingEditor test(scale > 1 ? glm::ivec2(2560, 1440) : glm::ivec2(1280, 720), scale);
+    Document chain = test.editor->document();
+    auto rig = std::make_shared<Armature>();
+    for (int b = 0; b < 40; ++b) rig->bones.push_back({"B" + std::to_string(b), b % 10 ? b - 1 : -1, {b, 0, 0}, {b, 0, 5}});
+    chain.armature = rig;
+    test.editor->history.reset(chain, "Open chains");
+    test.play("click Steps/fold\n wait-idle");
+    for (const int bone : {39, 0, 25}) {
+      INFO("bone ", bone, ", scale ", scale);
+      test.choose(bone);
+      test.play("wait-idle");
+      const Rect& sidebar = test.editor->layout.sidebar;
+      const Widget* row = test.editor->widgets.find("Outliner/bone B" + std::to_string(bone) + "/name");
+      REQUIRE(row);
+      CHECK(row->rect.height() >= 20 * scale);
+      for (const char* field : {"Bone/Name", "Bone/Head X", "Bone/Tail Z", "Bone/Length", "Bone/Roll"}) {
+        const Widget* widget = test.editor->widgets.find(field);
+        REQUIRE(widget);
+        CHECK(sidebar.contains(widget->rect));
+        CHECK(widget->rect.height() >= 21 * scale);
+      }
+    }
+  }
+}
