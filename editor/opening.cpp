@@ -10,6 +10,7 @@
 #include "core/pose/pose_io.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bvh.h"
+#include "core/rig/fit_check.h"
 #include "core/rig/motion_edit.h"
 #include "core/rig/up_axis.h"
 #include "core/skin/weights_io.h"
@@ -18,6 +19,7 @@
 #include "core/volume/volume_io.h"
 #include "editor/project.h"
 #include "editor/retargeting.h"
+#include "editor/rig_fitting.h"
 #include "editor/thumbnails.h"
 #include "editor/timeline.h"
 
@@ -71,6 +73,7 @@ using Change = std::function<void(Document&)>;
 struct Import {
   Change change;
   std::vector<std::string> warnings;
+  double inside = 1;  // of a rig: the share of its bones' length that is in tissue
 };
 
 Import read_tissues(const Path& path, const Document& now) {
@@ -82,28 +85,35 @@ Import read_tissues(const Path& path, const Document& now) {
   return {[merged](Document& d) { d.tissues = merged; }};
 }
 
-// Bones that lie in no tissue belong to another body or to other units.
-void require_fit(const Armature& rig, const LabelVolume& volume, const Path& path) {
-  const AffineTransform voxel = voxel_from_world(volume.grid);
-  std::int64_t inside = 0;
-  for (const Bone& bone : rig.bones)
-    for (const double t : {0.0, 0.5, 1.0}) {
-      const glm::dvec3 v = voxel * glm::mix(bone.head, bone.tail, t);
-      inside += glm::all(glm::greaterThanEqual(v, glm::dvec3(-0.5))) && glm::all(glm::lessThan(v, glm::dvec3(volume.grid.size) - 0.5));
-    }
-  if (inside == 0) refuse("the rig lies outside the volume", path, "choose the rig of this volume, or check its units (mm) and axes (LPS)");
+// A rig of which less is in tissue belongs to another body or to other units.
+constexpr double kMisplaced = 0.5;
+
+// A BVH file's joints stand upright whichever of its axes points up.
+ArmatureFile read_upright(const Path& path) {
+  if (extension_of(path) != ".bvh") return read_armature_file(path);
+  Motion motion = read_bvh(path);
+  Motion rest = motion;
+  rest.frame_count = 0;
+  rest.values.clear();
+  UpGuess up = up_axis_of(rest);
+  if (up.by == UpGuess::By::Nothing) up = up_axis_of(motion);
+  if (up.axis == UpAxis::Z) rest = y_up_from_z_up(rest);
+  ArmatureFile file{armature_of(rest), "BVH", motion.warnings};
+  if (up.axis == UpAxis::Z) file.warnings.push_back("Its z axis points up (" + reason_of(up) + "): turned upright.");
+  return file;
 }
 
 Import read_rig(const Path& path, const Document& now) {
-  ArmatureFile file = read_armature_file(path);
-  if (now.volume) require_fit(file.armature, *now.volume, path);
+  ArmatureFile file = read_upright(path);
+  const bool tissue = now.volume && std::any_of(now.volume->voxels.begin(), now.volume->voxels.end(), [](Label label) { return label != 0; });
+  const double inside = tissue ? check_rig(*now.volume, file.armature).whole : 1;
   auto rig = shared(std::move(file.armature));
   return {[rig](Document& d) {
             d.armature = rig;
             d.weights.reset();
             d.pose = pose_at_frame(d);
           },
-          file.warnings};
+          file.warnings, inside};
 }
 
 Import read_weights_file(const Path& path, const Document& now) {
@@ -260,6 +270,7 @@ void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
         frame_all(e, false);
       }
       if (then) then(e);
+      if (import->inside < kMisplaced) offer_fit(e, path.filename().string(), import->inside);
     };
   });
   editor.step_of_job[job] = step_of(kind);

@@ -10,12 +10,19 @@
 #include "core/rig/edit_armature.h"
 #include "core/rig/fit_joint.h"
 #include "core/rig/templates.h"
+#include "core/rig/tissue_placing.h"
 #include "editor/form.h"
 #include "editor/handling.h"
+#include "editor/icons.h"
+#include "editor/panels/question.h"
+#include "editor/project.h"
+#include "editor/task.h"
 
 namespace limber::editor {
 
 namespace {
+
+constexpr double kMostlyInside = 0.5;
 
 std::string percent(double share) { return std::to_string(static_cast<int>(std::lround(100 * share))) + " %"; }
 
@@ -49,7 +56,7 @@ void start_auto_fit(Editor& editor, const std::string& which) {
   auto fitted = std::make_shared<AutoFit>();
   const int id = editor.jobs.start("Auto-fit skeleton", [from, which, fitted](Progress& progress) -> Edit {
     const Armature rig = which == "rig" ? *from.armature : rig_template(which.empty() ? suggest_template(*from.volume, progress) : which);
-    *fitted = auto_fit(*from.volume, *from.tissues, rig, progress);
+    *fitted = fitted_or_placed(*from.volume, *from.tissues, rig, progress);
     auto laid = std::make_shared<const Armature>(fitted->armature);
     return [from, laid](const Document& now) {
       if (now.volume != from.volume) throw Error("the volume was changed meanwhile", "fitting a skeleton", "start it again");
@@ -62,6 +69,25 @@ void start_auto_fit(Editor& editor, const std::string& which) {
     show_fit(e, *fitted);
   };
   editor.touch();
+}
+
+void offer_fit(Editor& editor, const std::string& file, double inside) {
+  const auto place = [](Editor& e) {
+    const Document from = e.document();
+    start_task(e, "Place the rig in the tissue", [from](Progress&) -> Finish {
+      auto rig = std::make_shared<const Armature>(placed_in_tissue(*from.volume, *from.armature));
+      return [from, rig](Editor& ed) {
+        if (ed.document().volume != from.volume || ed.document().armature != from.armature) throw Error("the rig or the volume was changed meanwhile", "placing the rig", "start it again");
+        commit(ed, "Place rig", with_rig(ed.document(), rig));
+        frame_all(ed, true);
+      };
+    });
+  };
+  ask(editor, {.title = "This rig does not lie in the body",
+               .lines = {percent(inside) + " of the length of its bones is in tissue. " + file + " may be of another body, or in other units.",
+                         "Fitting finds its joints in the volume, as far as its bones' names tell what they are."},
+               .icon = icon::kWarning,
+               .answers = {{"Leave it", {}}, {"Only place and scale", place}, {"Fit it", [](Editor& e) { start_auto_fit(e, "rig"); }, true}}});
 }
 
 void start_joint_fit(Editor& editor) {
@@ -109,7 +135,9 @@ void show_fit(Editor& editor, const AutoFit& fitted) {
     editor.messages.log.push_back({Severity::Info, line});
   }
   for (const std::string& warning : fitted.warnings) editor.messages.warn("Look at the fit", warning);
-  editor.messages.ok("Skeleton fitted", std::to_string(sure) + " of " + std::to_string(fitted.joints.size()) + " joints with confidence, " + percent(fitted.check.whole) + " of bone length in tissue", "view.console");
+  const std::string result = std::to_string(sure) + " of " + std::to_string(fitted.joints.size()) + " joints with confidence, " + percent(fitted.check.whole) + " of bone length in tissue";
+  if (sure > 0 && fitted.check.whole >= kMostlyInside) editor.messages.ok("Skeleton fitted", result, "view.console");
+  else editor.messages.warn(sure > 0 ? "Skeleton fitted, but it leaves the body" : "Skeleton placed, but no joint is sure", result);
 }
 
 void ask_auto_fit(Editor& editor) {

@@ -20,6 +20,9 @@ void ask_template(Editor& editor);
 // Lays a template ("arm"), the one that suits best (""), or the rig that is there already ("rig").
 void start_auto_fit(Editor& editor, const std::string& which);
 
+// After a rig came in of whose bones only that share of the length is in tissue: asks whether it shall be fitted.
+void offer_fit(Editor& editor, const std::string& file, double inside);
+
 // Moves the axis of the active bone's hinge so that its bones do not enter each other within its range, as a job and one edit.
 void start_joint_fit(Editor& editor);
 

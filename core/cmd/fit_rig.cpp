@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber fit-rig VOLUME --template NAME|RIG|auto [--tissues T] [--bones L,L] -o RIG [--report R.json]
-#include "core/rig/auto_fit.h"
+#include "core/rig/tissue_placing.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -79,7 +79,7 @@ void run(const Options& options) {
   if (!options.bones.empty()) tissues = with_bones(std::move(tissues), options.bones);
   const Armature rig = wanted_rig(options.rig, file, progress);
 
-  const AutoFit fitted = auto_fit(file.volume, tissues, rig, progress);
+  const AutoFit fitted = fitted_or_placed(file.volume, tissues, rig, progress);
   write_armature(fitted.armature, options.output);
   if (!options.report.empty()) write_file_atomically(options.report, report_of(fitted).dump(1) + "\n");
   print(fitted);

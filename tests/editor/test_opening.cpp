@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/pose/pose_io.h"
 #include "core/rig/armature_io.h"
+#include "core/rig/fit_check.h"
 #include "core/rig/motion_edit.h"
 #include "core/rig/up_axis.h"
 #include "core/skin/weights_io.h"
@@ -84,10 +85,7 @@ TEST_CASE("opening: a volume and what belongs to it come in together, dropped in
 TEST_CASE("opening: what does not fit the open volume is refused in one message and changes nothing") {
   const TubeFiles files;
   Sitting sitting(files.folder.path(), {files / "scans/ball.nrrd"});
-  Armature far = files.tube.rig;
-  for (Bone& bone : far.bones) bone.head += glm::dvec3(5000), bone.tail += glm::dvec3(5000);
-  write_armature(far, files / "far.json");
-  for (const auto& [file, kind] : {std::pair{"far.json", FileKind::Rig}, {"weights.nrrd", FileKind::Weights}, {"pose.json", FileKind::Pose}, {"tissues.json", FileKind::Tissues}}) {
+  for (const auto& [file, kind] : {std::pair{"weights.nrrd", FileKind::Weights}, {"pose.json", FileKind::Pose}, {"tissues.json", FileKind::Tissues}}) {
     INFO(std::string(file));
     const Document before = sitting.editor().document();
     import_file(sitting.editor(), kind, files / file);
@@ -96,6 +94,27 @@ TEST_CASE("opening: what does not fit the open volume is refused in one message 
     CHECK(sitting.editor().document() == before);
     sitting.play("key Escape");
   }
+}
+
+TEST_CASE("opening: a rig that does not lie in the body comes in with the offer to fit or to place it") {
+  const TubeFiles files;
+  Armature far = files.tube.rig;
+  for (Bone& bone : far.bones) bone.head = 0.001 * bone.head + glm::dvec3(5), bone.tail = 0.001 * bone.tail + glm::dvec3(5);
+  write_armature(far, files / "far.json");
+  Sitting sitting(files.folder.path(), {files / "tube.nrrd"});
+  const auto inside = [&] { return check_rig(*sitting.editor().document().volume, *sitting.editor().document().armature).whole; };
+  import_file(sitting.editor(), FileKind::Rig, files / "rig.json");
+  sitting.play("wait-job\n wait-idle\n expect dialog no");
+  CHECK(inside() > 0.9);
+  for (const char* answer : {"Leave it", "Only place and scale", "Fit it"}) {
+    INFO(answer);
+    far.bones[0].head.x += 1e-3;
+    write_armature(far, files / "far.json");
+    import_file(sitting.editor(), FileKind::Rig, files / "far.json");
+    sitting.play("wait-job\n wait-idle\n expect dialog yes\n click \"" + std::string(answer) + "\"\n wait-job\n wait-idle\n expect dialog no\n expect error none");
+    CHECK((inside() > 0.6) == (std::string(answer) != "Leave it"));
+  }
+  sitting.play("expect toast \"Skeleton placed, but no joint is sure\"\n key Ctrl+Z\n expect edit \"Import far.json\"");
 }
 
 TEST_CASE("opening: a damaged file is one error message, and the open project stays as it is") {
