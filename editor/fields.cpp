@@ -33,8 +33,10 @@ bool checkbox(Editor& editor, const std::string& name, const Rect& rect, const s
   return pressed.clicked;
 }
 
-bool number_field(Editor& editor, const std::string& name, const Rect& rect, double& value, double low, double high, const char* format,
-                  const char* unit, bool filled, bool& committed) {
+namespace {
+
+bool any_number_field(Editor& editor, const std::string& name, const Rect& rect, double& value, double low, double high, const char* format, const char* unit, bool filled, bool& committed,
+                      ImGuiSliderFlags flags) {
   const Look& look = editor.look;
   committed = false;
   // The text stands at the right with its unit; ImGui's own field appears while a number is typed, without its label.
@@ -45,14 +47,18 @@ bool number_field(Editor& editor, const std::string& name, const Rect& rect, dou
   ImGui::PushStyleColor(ImGuiCol_Text, with_alpha(look.theme.text, ImGui::TempInputIsActive(ImGui::GetID(id.c_str())) ? 1 : 0));
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(look.px(7), std::round((rect.height() - look.fonts.mono->FontSize) / 2)));
   const double speed = std::clamp((high - low) / std::max(1.0f, rect.width()), 1e-6, kFastest);
-  const bool changed = ImGui::DragScalar(id.c_str(), ImGuiDataType_Double, &value, static_cast<float>(speed), &low, &high, format, ImGuiSliderFlags_AlwaysClamp);
+  const bool changed = ImGui::DragScalar(id.c_str(), ImGuiDataType_Double, &value, static_cast<float>(speed), &low, &high, format, flags);
   const bool typing = ImGui::TempInputIsActive(ImGui::GetItemID());
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   ImGui::PopFont();
   committed = ImGui::IsItemDeactivatedAfterEdit();
   register_widget(editor, name, rect);
-  if (typing) return changed;
+  if (typing) {
+    // All of it is chosen by a double click, also where typing had begun.
+    if (ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetItemID()); state && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) state->SelectAll();
+    return changed;
+  }
 
   if (filled) {
     const float share = static_cast<float>(std::clamp((value - low) / (high - low), 0.0, 1.0));
@@ -68,6 +74,20 @@ bool number_field(Editor& editor, const std::string& name, const Rect& rect, dou
   }
   put_text(editor, look.fonts.mono, look.theme.text, Rect{rect.low, {right, rect.high.y}}, text, Align::Right);
   return changed;
+}
+
+}  // namespace
+
+bool number_field(Editor& editor, const std::string& name, const Rect& rect, double& value, double low, double high, const char* format,
+                  const char* unit, bool filled, bool& committed) {
+  return any_number_field(editor, name, rect, value, low, high, format, unit, filled, committed, ImGuiSliderFlags_AlwaysClamp);
+}
+
+bool judged_number_field(Editor& editor, const std::string& name, const Rect& rect, double& value, double low, double high, const char* format,
+                         const char* unit, bool focus) {
+  if (focus) ImGui::SetKeyboardFocusHere();
+  bool committed = false;
+  return any_number_field(editor, name, rect, value, low, high, format, unit, false, committed, ImGuiSliderFlags_None);
 }
 
 bool choice_field(Editor& editor, const Rect& rect, const std::vector<std::string>& choices, int& chosen) {

@@ -15,6 +15,9 @@ bool checkbox(Editor& editor, const std::string& name, const Rect& rect, const s
 // `committed` when the drag or typing ended.
 bool number_field(Editor& editor, const std::string& name, const Rect& rect, double& value, double low, double high, const char* format,
                   const char* unit, bool filled, bool& committed);
+// The same where a typed number is taken as it is, to be judged by the caller; `focus`: it waits for typing.
+bool judged_number_field(Editor& editor, const std::string& name, const Rect& rect, double& value, double low, double high, const char* format,
+                         const char* unit, bool focus);
 // One of a list, which opens below; its names stand in the caller's path. True when another was chosen.
 bool choice_field(Editor& editor, const Rect& rect, const std::vector<std::string>& choices, int& chosen);
 // True when Return or leaving the field accepted a changed text.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/form.h"
 
+#include <algorithm>
+#include <cstdio>
+
 #include "core/base/error.h"
 #include "editor/adjust.h"
 #include "editor/dialog.h"
@@ -11,8 +14,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kWidth = 480, kRow = 34, kLabel = 130;
+constexpr float kWidth = 480, kRow = 34, kLabel = 130, kProblem = 18, kPicture = 240;
 constexpr std::size_t kMostBeside = 4;
+constexpr int kMostLines = 5;  // of what comes out
 
 bool draw_choice(Editor& editor, FormField& field, const Rect& rect) {
   const Look& look = editor.look;
@@ -46,25 +50,54 @@ class Form final : public Dialog {
  private:
   FormRequest request_;
   bool accept_ = false;
-  bool focused_ = false;  // its text field has been given the keyboard
+  bool focused_ = false;  // the first field that is typed into has been given the keyboard
+  std::string words_;     // of the last picture: what it is laid out for
 };
+
+// What is wrong with a number; empty where nothing is.
+std::string problem_of(const FormField& field) {
+  if (field.kind != FormField::Kind::Number || (field.value >= field.low && field.value <= field.high)) return "";
+  char low[48], high[48];
+  std::snprintf(low, sizeof low, field.format, field.low);
+  std::snprintf(high, sizeof high, field.format, field.high);
+  return std::string("From ") + low + " to " + high + (*field.unit ? std::string(" ") + field.unit : "") + ".";
+}
+
+// Without what is wrong with it; at scale 1.
+float height_of(const Look& look, const FormField& field) {
+  if (field.kind != FormField::Kind::Fact) return kRow;
+  return std::max(kRow, 16 + height_of_wrapped(look.fonts.regular, field.text, look.px(kWidth - 36 - kLabel - 8)) / look.scale);
+}
 
 void Form::draw(Editor& editor) {
   const Look& look = editor.look;
   const float sentence = height_of_wrapped(look.fonts.regular, request_.sentence, look.px(kWidth - 36), 2) > look.px(24) ? 44 : 28;
-  const float height = 36 + 18 + sentence + kRow * static_cast<float>(request_.fields.size()) + 52 + 28 + 18;
-  const Rect rect = begin_dialog(editor, request_.title, kWidth, height);
+  float fields = 0;
+  for (const FormField& field : request_.fields) fields += height_of(look, field) + (problem_of(field).empty() ? 0 : kProblem);
+  const float said = std::max(52.0f, 20 + height_of_wrapped(look.fonts.small, words_, look.px(kWidth - 36 - 24), kMostLines) / look.scale);
+  Rect rect = begin_dialog(editor, request_.title, kWidth + (request_.picture ? kPicture + 18 : 0), 36 + 18 + sentence + fields + said + 28 + 18);
+  if (request_.picture) {
+    const float left = rect.high.x - look.px(kPicture);
+    request_.picture(editor, {{left, rect.low.y}, rect.high}, request_.fields);
+    rect.high.x = left - look.px(18);
+  }
   put_wrapped(editor, look.fonts.regular, look.theme.text2, rect.low, rect.width(), request_.sentence, 2);
   float y = rect.low.y + look.px(sentence);
   for (FormField& field : request_.fields) {
-    draw_field(editor, field, {{rect.low.x, y}, {rect.high.x, y + look.px(kRow)}}, look.px(kLabel), field.kind == FormField::Kind::Text && !std::exchange(focused_, true));
-    y += look.px(kRow);
+    const bool typed_into = field.kind == FormField::Kind::Text || field.kind == FormField::Kind::Number;
+    const float end = y + look.px(height_of(look, field));
+    draw_field(editor, field, {{rect.low.x, y}, {rect.high.x, end}}, look.px(kLabel), typed_into && !std::exchange(focused_, true), OutOfRange::Stays);
+    y = end;
+    if (const std::string wrong = problem_of(field); !wrong.empty()) {
+      put_text(editor, look.fonts.small, look.theme.warn, Rect{{rect.low.x + look.px(kLabel + 8), y - look.px(3)}, {rect.high.x, y + look.px(kProblem - 3)}}, wrong);
+      y += look.px(kProblem);
+    }
   }
 
   std::string outcome, problem;
-  bool ready = true;
+  bool ready = std::all_of(request_.fields.begin(), request_.fields.end(), [](const FormField& field) { return problem_of(field).empty(); });
   try {
-    if (request_.outcome) outcome = request_.outcome(editor, request_.fields);
+    if (request_.outcome && ready) outcome = request_.outcome(editor, request_.fields);
   } catch (const Error& error) {
     problem = error.what();
     ready = false;
@@ -73,12 +106,16 @@ void Form::draw(Editor& editor) {
     ready = false;
   }
   const std::string& words = problem.empty() ? outcome : problem;
+  if (words != words_) {
+    words_ = words;
+    editor.touch();
+  }
   float x = rect.low.x;
   if (!problem.empty()) {
     put_icon(look.fonts.regular, look.theme.warn, Rect{{x, y + look.px(8)}, {x + look.px(18), y + look.px(26)}}, icon::kWarning);
     x += look.px(24);
   }
-  put_wrapped(editor, look.fonts.small, problem.empty() ? look.theme.text2 : look.theme.warn, {x, y + look.px(10)}, rect.high.x - x, words, 3);
+  put_wrapped(editor, look.fonts.small, problem.empty() ? look.theme.text2 : look.theme.warn, {x, y + look.px(10)}, rect.high.x - x, words, kMostLines);
 
   const ButtonLook action{"", request_.action, ButtonStyle::Primary, ready};
   const float width = std::max(look.px(96), width_of_button(editor, action)), low = rect.high.y - look.px(28), cancel = look.px(80);
@@ -95,15 +132,21 @@ void Form::draw(Editor& editor) {
 
 }  // namespace
 
-bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_width, bool focus) {
+bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_width, bool focus, OutOfRange numbers) {
   const Look& look = editor.look;
   const PathScope path(editor, field.label);
   put_text(editor, look.fonts.regular, look.theme.text2, Rect{row.low, {row.low.x + label_width, row.high.y}}, field.label);
   const Rect rect{{row.low.x + label_width + look.px(8), row.low.y + look.px(4)}, {row.high.x, row.high.y - look.px(4)}};
   if (field.kind == FormField::Kind::Choice) return draw_choice(editor, field, rect);
   if (field.kind == FormField::Kind::Text) return text_field(editor, "text", rect, field.text, "", focus);
+  if (field.kind == FormField::Kind::Fact) {
+    const int lines = std::max(1, static_cast<int>((row.height() - look.px(12)) / look.fonts.regular->FontSize));
+    put_wrapped(editor, look.fonts.regular, look.theme.text, {rect.low.x, row.low.y + look.px(8)}, rect.width(), field.text, lines);
+    return false;
+  }
   bool committed = false;
-  number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, false, committed);
+  if (numbers == OutOfRange::Clamped) number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, false, committed);
+  else committed = judged_number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, focus);
   if (ImGui::IsItemHovered()) tooltip(editor, rect, field.label, field.sentence + "\nDrag it, or type after a double click.");
   return committed;
 }
@@ -127,6 +170,13 @@ FormField choice_of(std::string label, std::string sentence, std::vector<std::st
 
 FormField text_of(std::string label, std::string sentence, std::string text) {
   FormField field{std::move(label), std::move(sentence), FormField::Kind::Text};
+  field.text = std::move(text);
+  return field;
+}
+
+FormField fact_of(std::string label, std::string text) {
+  FormField field{std::move(label), ""};
+  field.kind = FormField::Kind::Fact;
   field.text = std::move(text);
   return field;
 }

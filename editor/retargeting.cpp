@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <set>
 
 #include "core/base/error.h"
@@ -11,6 +12,7 @@
 #include "core/rig/same_skeleton.h"
 #include "core/rig/up_axis.h"
 #include "editor/form.h"
+#include "editor/motion_picture.h"
 #include "editor/project.h"
 #include "editor/task.h"
 
@@ -33,6 +35,29 @@ std::string facts_of(const Motion& motion) {
   std::snprintf(text, sizeof text, "%d joints, %d frames, %.2f s at %.5g frames in a second.", static_cast<int>(motion.joints.size()), motion.frame_count,
                 motion.frame_count * motion.frame_time, 1 / motion.frame_time);
   return text;
+}
+
+// "ZXY; differs in 3 joints: Hips (XYZ), ..."
+std::string orders_of(const Motion& motion) {
+  constexpr std::size_t kNamed = 4;
+  std::map<std::string, std::vector<std::string>> joints;
+  for (const BvhJoint& joint : motion.joints) {
+    std::string order;
+    for (BvhChannel channel : joint.channels)
+      if (channel >= BvhChannel::Xrotation) order += static_cast<char>('X' + static_cast<int>(channel) - static_cast<int>(BvhChannel::Xrotation));
+    if (!order.empty()) joints[order].push_back(joint.name);
+  }
+  if (joints.empty()) return "No joint turns.";
+  const auto most = std::max_element(joints.begin(), joints.end(), [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  std::string others;
+  std::size_t count = 0;
+  for (const auto& [order, names] : joints) {
+    if (order == most->first) continue;
+    for (const std::string& name : names)
+      if (count++ < kNamed) others += (others.empty() ? "" : ", ") + name + " " + order;
+  }
+  if (count == 0) return most->first + " in every joint, as the file says.";
+  return most->first + "; differs in " + std::to_string(count) + (count == 1 ? " joint: " : " joints: ") + others + (count > kNamed ? ", ..." : ".");
 }
 
 std::string match_of(std::shared_ptr<const Motion> motion, const std::shared_ptr<const Armature>& armature) {
@@ -73,15 +98,18 @@ void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
     for (const std::string& warning : incoming->motion->warnings) words += "\n" + warning;
     return words;
   };
+  auto picture = std::make_shared<MotionPicture>(incoming->motion);
+  const auto draw_picture = [picture](Editor& e, const Rect& rect, const std::vector<FormField>& fields) { picture->draw(e, rect, fields[1].chosen == 1, fields[3].value); };
   editor.open_dialog(make_form({"Import " + incoming->name + ".bvh",
                                 "A new clip of this motion, carried over to the rig.",
                                 "Import",
                                 {choice_of("Scale", "How far the body travels: as far as its legs carry it, or in the file's own unit.", {"Fit to the rig", "1 = 1 mm", "1 = 1 cm", "1 = 1 m", "1 = 1 inch"}),
                                  choice_of("Up", "The axis that points up in the file.", {"Y", "Z"}, static_cast<int>(incoming->up.axis)),
                                  number_of("First frame", "Where it begins in the timeline.", 0, -100'000, 100'000, "%.0f"),
-                                 number_of("Frame rate", "Frames in a second. The file's own unless it is known to be wrong.", rate, 1, 1000, "%.6g", "fps")},
+                                 number_of("Frame rate", "Frames in a second. The file's own unless it is known to be wrong.", rate, 1, 1000, "%.6g", "fps"),
+                                 fact_of("Rotations", orders_of(*incoming->motion))},
                                 outcome,
-                                [incoming](Editor& e, const std::vector<FormField>& fields) { take_in(e, *incoming, fields); }}));
+                                [incoming](Editor& e, const std::vector<FormField>& fields) { take_in(e, *incoming, fields); }, draw_picture}));
 }
 
 }  // namespace
