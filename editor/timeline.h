@@ -25,6 +25,8 @@ namespace limber::editor {
 
 enum class AtEnd { Stop, Loop, PingPong };
 
+struct OnionOutlines;
+
 struct Timeline {
   // The frame that is shown in place of the document's, while it is scrubbed or plays.
   std::optional<int> frame;
@@ -44,6 +46,7 @@ struct Timeline {
   struct {  // ghosts on either side, so many frames apart
     bool on = false;
     int count = 3, step = 10;
+    std::shared_ptr<OnionOutlines> outlines;  // editor/onion_skin.h; null before there are any
   } onion;
   bool seconds = false;  // the ruler's numbers
   std::set<int> chosen;  // frames of keys

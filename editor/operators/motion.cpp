@@ -219,7 +219,7 @@ std::vector<Operator> motion_operators() {
        [](const Editor& e) { return !needs_rig(e).empty() ? needs_rig(e) : needs_keys(e); }},
       {"motion.auto_key", "Auto-key", icon::kDot, "Motion", "Every change of the pose becomes a key at its frame.", [](Editor& e) { e.timeline->auto_key = !e.timeline->auto_key; }, nullptr,
        [](const Editor& e) { return e.timeline->auto_key; }},
-      {"motion.onion_skin", "Onion skin", icon::kOnionSkin, "Motion", "Shows the skeleton at frames before and after this one.", [](Editor& e) { e.timeline->onion.on = !e.timeline->onion.on; }, nullptr,
+      {"motion.onion_skin", "Onion skin", icon::kOnionSkin, "Motion", "Shows the outline of the body at frames before and after this one.", [](Editor& e) { e.timeline->onion.on = !e.timeline->onion.on; }, nullptr,
        [](const Editor& e) { return e.timeline->onion.on; }},
       {"motion.onion_frames", "Onion frames...", "", "Motion", "How many ghosts there are, and how far apart.", ask_onion_frames},
       {"motion.marker", "Add marker", icon::kMarker, "Motion", "Puts a named mark at this frame.", add_marker, needs_clip},

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/onion_skin.h"
 #include "editor/posing.h"
+#include "editor/seen_from.h"
 #include "editor/timeline.h"
 #include "editor/tools/timeline_tools.h"
 #include "tests/editor/small_clip.h"
@@ -271,6 +273,36 @@ TEST_CASE("timeline: another clip chosen from the list is shown at a frame it ha
   test.play("key Ctrl+Z");
   CHECK(shown_clip(*test.editor)->name == "bending");
   CHECK(test.bend() == doctest::Approx(50));
+}
+
+TEST_CASE("onion skin: the body's outline is drawn at the frames before and after, kept while the view stands still") {
+  Document document = bending_limb();
+  // All of the body follows the lower bone.
+  document.weights = std::make_shared<const SkinWeights>(std::vector<std::string>{"Fore", "Upper"}, TissueVoxels(*document.volume));
+  BendingEditor test(document);
+  auto& onion = test.editor->timeline->onion;
+  go_to_frame(*test.editor, 40);
+  onion.count = 1;
+  onion.step = 20;
+  test.play("move \"3D view/view\"\n key Shift+O\n wait-job\n wait-idle");
+  REQUIRE(onion.outlines);
+  REQUIRE(onion.outlines->lines.size() == 2);
+  const auto middle_of = [&](int frame) {
+    glm::vec2 low(1e9f), high(-1e9f);
+    for (const auto& line : onion.outlines->lines.at(frame))
+      for (const glm::vec2& p : line) low = glm::min(low, p), high = glm::max(high, p);
+    return (low + high) / 2.0f;
+  };
+  // A ball about the joint stays where it is, whatever its turn.
+  const auto joint = body_seen(*test.editor)->pixel_of(glm::dvec3(0));
+  for (const int frame : {20, 60}) CHECK(glm::distance(middle_of(frame), glm::vec2(*joint)) < 0.1f * test.editor->layout.window.size().y);
+  const auto* kept = onion.outlines->lines.at(20).data();
+  test.play("key Left\n key Right\n wait-idle");
+  CHECK(onion.outlines->lines.at(20).data() == kept);
+  CHECK(onion.outlines->lines.size() > 2);
+  test.play("key Num3\n wait-idle");
+  CHECK(onion.outlines->lines.size() == 2);
+  test.play("key Shift+O\n wait-idle");
 }
 
 }  // namespace limber::test
