@@ -2,6 +2,7 @@
 #include "editor/live_pose.h"
 
 #include <algorithm>
+#include <chrono>
 #include <new>
 #include <utility>
 
@@ -13,6 +14,7 @@ namespace limber::editor {
 
 namespace {
 
+constexpr std::int64_t kMostVertices = 40'000;  // of a surface: its silhouette stays within 1 % of the volume's, its picture takes a third of the time
 constexpr double kRest = 0.3;  // s that a pose rests before a finer map is worth its time
 
 bool same_motion(const RigidTransform& a, const RigidTransform& b) { return a.rotation == b.rotation && a.translation == b.translation; }
@@ -46,7 +48,7 @@ ReadyBody make_ready(const PosedBody& body, int divisor) {
 }  // namespace
 
 bool PoseWish::operator==(const PoseWish& other) const {
-  return body == other.body && blend == other.blend && std::equal(motions.begin(), motions.end(), other.motions.begin(), other.motions.end(), same_motion);
+  return body == other.body && blend == other.blend && surface == other.surface && std::equal(motions.begin(), motions.end(), other.motions.begin(), other.motions.end(), same_motion);
 }
 
 MapMaker::MapMaker(int divisor, std::function<void()> wake) : divisor_(divisor), wake_(std::move(wake)), thread_([this] { work(); }) {}
@@ -84,7 +86,7 @@ void MapMaker::work() {
   for (std::unique_lock lock(mutex_);;) {
     asked_.wait(lock, [this] { return waiting_ || ended_; });
     if (ended_) return;
-    Made made{*std::exchange(waiting_, std::nullopt), nullptr, ""};
+    Made made{*std::exchange(waiting_, std::nullopt), nullptr, nullptr, ""};
     working_ = true;
     lock.unlock();
     try {
@@ -93,6 +95,7 @@ void MapMaker::work() {
         ready = make_ready(made.wish.body, divisor_);
       }
       made.map = ready.preview->update(made.wish.motions, made.wish.blend);
+      if (made.wish.surface && divisor_ == 1) made.surface = std::make_shared<const PosedSurface>(posed_surface(made.wish.surface, made.wish.motions, made.wish.blend));
     } catch (const Error& error) {
       made.trouble = error.what();
     } catch (const std::bad_alloc&) {
@@ -107,20 +110,43 @@ void MapMaker::work() {
   }
 }
 
-LivePose::LivePose(const std::function<void()>& wake) : swift_(1, wake), thorough_(2, wake) {}
+LivePose::LivePose(const std::function<void()>& wake) : swift_(1, wake), thorough_(2, wake), wake_(wake) {}
 
 Blend preview_blend(const Editor& editor) { return editor.resampling.method == "lbs" ? Blend::Linear : Blend::DualQuaternion; }
 
 void LivePose::follow(Editor& editor) {
   if (auto made = swift_.take()) coarse_ = std::move(*made), editor.touch();
   if (auto made = thorough_.take()) fine_ = std::move(*made), editor.touch();
+  if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) surface_ = making_.get(), editor.touch();
   const std::optional<DenseWish> dense = choose(editor);
   metrics_.follow(editor, dense, shown_ && shown_ == fine_.map);
+}
+
+// Null while it is being made, and where no picture asks for it.
+std::shared_ptr<const SkinnedSurface> LivePose::surface_of(Editor& editor, const PosedBody& body) {
+  const std::string& moving = editor.preferences.moving;
+  const render::Scene& scene = editor.views->scene;
+  if (moving == "volume" || (moving == "automatic" && !editor.views->body.picture->slow()) || !scene.looks) return nullptr;
+  LabelSet shown(65536, 0);
+  for (std::size_t label = 0; label < scene.looks->size(); ++label) shown[label] = (*scene.looks)[label].visible;
+  if (surface_.body == body && surface_.shown == shown) return surface_.surface;
+  if (!making_.valid())
+    making_ = std::async(std::launch::async, [body, shown, wake = wake_] {
+      Surface made{body, shown, nullptr};
+      try {
+        made.surface = std::make_shared<const SkinnedSurface>(skinned_surface(*body.volume, TissueVoxels(*body.volume), *body.weights, shown, kMostVertices));
+      } catch (const std::exception&) {  // then the volume is all there is to see, and its own trouble tells why
+      }
+      wake();
+      return made;
+    });
+  return nullptr;
 }
 
 // Which map is shown; returns what it stands for.
 std::optional<DenseWish> LivePose::choose(Editor& editor) {
   shown_ = nullptr;
+  shown_surface_ = nullptr;
   posed_ = false;
   trouble_.clear();
   const Document& document = editor.document();
@@ -129,7 +155,8 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
     trouble_ = "No weights yet";
     return {};
   }
-  PoseWish wish{{document.volume, document.tissues, document.weights}, {}, preview_blend(editor)};
+  PoseWish wish{{document.volume, document.tissues, document.weights}, {}, preview_blend(editor), nullptr};
+  wish.surface = surface_of(editor, wish.body);
   const Pose pose = shown_pose(editor);
   if (!motions_of_weights(*document.weights, *document.armature, pose, wish.motions)) {
     trouble_ = "The weights belong to another rig";
@@ -146,9 +173,9 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
     return {};
   }
   posed_ = true;
-  if (coarse_.wish.body.volume == document.volume) shown_ = coarse_.map;
+  if (coarse_.wish.body.volume == document.volume) shown_ = coarse_.map, shown_surface_ = coarse_.surface;
   if (coarse_.wish == wish_) trouble_ = coarse_.trouble;
-  if (fine_.wish == wish_ && fine_.map) shown_ = fine_.map;
+  if (fine_.wish == wish_ && fine_.map) shown_ = fine_.map;  // of the same pose as the surface
   else if (editor.now < since_ + kRest) editor.wake_at(since_ + kRest);
   else if (shown_) thorough_.ask(wish_);
   return DenseWish{document.volume, document.tissues, document.armature, document.weights, pose, wish_.blend};

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/pose/skinned_surface.h"
+#include "core/deform/skinned_surface.h"
 #include "editor/editor.h"
 
 namespace limber::editor {
@@ -25,6 +25,7 @@ struct OnionOutlines {
     std::shared_ptr<const Clip> clip;
     std::shared_ptr<const Armature> armature;
     std::shared_ptr<const SkinnedSurface> surface;
+    Blend blend = Blend::DualQuaternion;
 
     bool operator==(const Seen&) const = default;
   } seen;

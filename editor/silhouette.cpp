@@ -107,11 +107,11 @@ std::vector<glm::vec2> smoothed(std::vector<glm::vec2> line) {
 
 }  // namespace
 
-std::vector<std::vector<glm::vec2>> silhouette(const std::vector<glm::vec2>& points, const std::vector<glm::ivec3>& corners, const Rect& picture, float cell) {
+std::vector<std::vector<glm::vec2>> silhouette(const std::vector<glm::vec2>& points, const std::vector<glm::u32vec3>& corners, const Rect& picture, float cell) {
   Mask mask(picture, cell);
   std::vector<glm::vec2> in_cells;
   for (const glm::vec2& p : points) in_cells.push_back((p - picture.low) / cell + 1.0f);
-  for (const glm::ivec3& f : corners) {
+  for (const glm::u32vec3& f : corners) {
     const std::array<glm::vec2, 3> triangle{in_cells[f.x], in_cells[f.y], in_cells[f.z]};
     if (std::all_of(triangle.begin(), triangle.end(), [](const glm::vec2& p) { return std::isfinite(p.x + p.y); })) fill(mask, triangle);
   }

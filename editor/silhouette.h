@@ -14,6 +14,6 @@ namespace limber::editor {
 //   corners  of triangles
 //   picture  beyond which nothing counts; what is cut off by its border is closed along it
 //   cell     pixels
-std::vector<std::vector<glm::vec2>> silhouette(const std::vector<glm::vec2>& points, const std::vector<glm::ivec3>& corners, const Rect& picture, float cell);
+std::vector<std::vector<glm::vec2>> silhouette(const std::vector<glm::vec2>& points, const std::vector<glm::u32vec3>& corners, const Rect& picture, float cell);
 
 }  // namespace limber::editor

@@ -16,6 +16,7 @@
 #include "render/scene.h"
 #include "render/shade_pass.h"
 #include "render/slice_pass.h"
+#include "render/surface_pass.h"
 #include "render/view.h"
 #include "render/visible_field.h"
 #include "render/volume_pass.h"
@@ -49,6 +50,7 @@ struct Renderer::Parts {
   ComposePass compose;
   ArmaturePass armature;
   SlicePass slice;
+  SurfacePass surface;
   std::string note;
 
  private:

@@ -16,6 +16,7 @@
 
 namespace limber {
 struct PreviewMap;
+struct PosedSurface;
 }
 
 namespace limber::render {
@@ -55,9 +56,18 @@ struct Clip {
   std::optional<std::array<glm::dvec3, 2>> plane;  // point and unit normal, world; hidden is the normal's side
 };
 
+// What is drawn of a posed body while it moves.
+enum class Moving {
+  Automatic,  // its surface, where rays take too long
+  Volume,
+  Surface,
+};
+
 struct Scene {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const PreviewMap> pose;  // of this volume: its body is drawn as the map leads; null: as the volume is
+  std::shared_ptr<const PosedSurface> surface;  // of what is visible of the body in that pose; null: there is none
+  Moving moving = Moving::Automatic;
   std::shared_ptr<const LabelLooks> looks;
   Display display = Display::Solid;
   Clip clip;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <limits>
 
+#include "editor/live_pose.h"
 #include "editor/paint.h"
 #include "editor/seen_from.h"
 #include "editor/silhouette.h"
@@ -32,7 +33,7 @@ void draw_ghost(Editor& editor, const SeenFrom& view, const Armature& armature, 
 
 // ---- outlines
 
-constexpr double kFinest = 160;             // points along the longest side
+constexpr std::int64_t kMostVertices = 20'000;  // of the surface
 constexpr float kCell = 2;                  // pixels at scale 1
 constexpr std::chrono::milliseconds kTime{8};  // a picture spends on outlines that are not there yet, after the first
 constexpr std::size_t kMostKept = 1000;
@@ -43,8 +44,8 @@ void take_surface(Editor& editor, OnionOutlines& outlines) {
   outlines = {.volume = document.volume, .weights = document.weights};
   if (!document.volume || !document.weights) return;
   start_task(editor, "", [volume = document.volume, weights = document.weights](Progress&) -> Finish {
-    const glm::dvec3 extent = glm::dvec3(volume->grid.size) * volume->grid.spacing;
-    auto surface = std::make_shared<const SkinnedSurface>(skinned_surface(*volume, *weights, std::max({extent.x, extent.y, extent.z}) / kFinest));
+    const LabelSet all(65536, 1);
+    auto surface = std::make_shared<const SkinnedSurface>(skinned_surface(*volume, TissueVoxels(*volume), *weights, all, kMostVertices));
     return [volume, weights, surface](Editor& e) {
       OnionOutlines& now = *e.timeline->onion.outlines;
       if (now.volume == volume && now.weights == weights) now.surface = surface;
@@ -73,11 +74,11 @@ std::vector<std::vector<glm::vec2>> outline_of(const SeenFrom& view, const Onion
     motions.push_back(posed[*bone]);
   }
   std::vector<glm::vec2> pixels;
-  for (const glm::vec3& point : posed_points(*outlines.surface, motions)) {
+  for (const glm::vec3& point : posed_surface(outlines.surface, motions, outlines.seen.blend).V) {
     const auto pixel = view.pixel_of(glm::dvec3(point));
     pixels.push_back(pixel ? glm::vec2(*pixel) : glm::vec2(std::numeric_limits<float>::quiet_NaN()));
   }
-  return silhouette(pixels, outlines.surface->mesh.F, view.place.rect, cell);
+  return silhouette(pixels, outlines.surface->F, view.place.rect, cell);
 }
 
 void draw_lines(const std::vector<std::vector<glm::vec2>>& lines, Colour colour, float thickness) {
@@ -100,7 +101,7 @@ void draw_onion_skin(Editor& editor) {
   if (!onion.outlines) onion.outlines = std::make_shared<OnionOutlines>();
   OnionOutlines& outlines = *onion.outlines;
   take_surface(editor, outlines);
-  const OnionOutlines::Seen seen{view_of(*view), clip->clip(), clip->armature(), outlines.surface};
+  const OnionOutlines::Seen seen{view_of(*view), clip->clip(), clip->armature(), outlines.surface, preview_blend(editor)};
   if (outlines.seen != seen || outlines.lines.size() > kMostKept) {
     outlines.seen = seen;
     outlines.lines.clear();

@@ -15,7 +15,7 @@ using namespace editor;
 namespace {
 
 // A ring of triangles between two circles.
-void add_ring(const glm::vec2& middle, float inner, float outer, std::vector<glm::vec2>& points, std::vector<glm::ivec3>& corners) {
+void add_ring(const glm::vec2& middle, float inner, float outer, std::vector<glm::vec2>& points, std::vector<glm::u32vec3>& corners) {
   constexpr int kParts = 60;
   const int first = static_cast<int>(points.size());
   for (int i = 0; i < kParts; ++i) {
@@ -42,7 +42,7 @@ double area_of(const std::vector<glm::vec2>& line) {
 
 TEST_CASE("silhouette: the outline of overlapping triangles encloses what they cover, holes the other way round") {
   std::vector<glm::vec2> points;
-  std::vector<glm::ivec3> corners;
+  std::vector<glm::u32vec3> corners;
   add_ring({150, 120}, 0, 80, points, corners);
   add_ring({330, 120}, 40, 80, points, corners);
   add_ring({330, 120}, 50, 80, points, corners);

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/skinned_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/mesh/surface.h"
+#include "core/rig/surface_points.h"
+#include "core/skin/skin_at.h"
+
+namespace limber {
+
+namespace {
+
+constexpr float kSurface = 98 / 255.0f;  // the share at which rays stop
+constexpr int kLayersInside = 6;         // half voxels in which the shown tissue is looked for
+constexpr std::int64_t kGrain = 4096;
+
+// As rays see the set, moved so that it ends at one half.
+void soften(Occupancy& body) {
+  const glm::ivec3 size = body.grid.size;
+  const std::int64_t steps[] = {1, size.x, std::int64_t{size.x} * size.y};
+  std::vector<float> from;
+  for (int pass = 0; pass < 2; ++pass)
+    for (int axis = 0; axis < 3; ++axis) {
+      from = body.share;
+      parallel_for(size.z, 4, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin * steps[2]; i < end * steps[2]; ++i) {
+          const std::int64_t place = i / steps[axis] % size[axis];
+          const float before = place > 0 ? from[i - steps[axis]] : 0, after = place + 1 < size[axis] ? from[i + steps[axis]] : 0;
+          body.share[i] = 0.25f * before + 0.5f * from[i] + 0.25f * after;
+        }
+      });
+    }
+  for (float& share : body.share) share += 0.5f - kSurface;
+}
+
+// The first shown label from a little outside inward; the nearest tissue's where there is none.
+Label label_inside(const LabelVolume& volume, const LabelSet& shown, const AffineTransform& to_voxel, const glm::dvec3& place, const glm::dvec3& normal, Label otherwise) {
+  const glm::dvec3 inward = -(to_voxel.linear * normal), step = 0.5 * inward / std::max({std::abs(inward.x), std::abs(inward.y), std::abs(inward.z), 1e-9});
+  glm::dvec3 at = to_voxel * place - step;
+  for (int i = 0; i < kLayersInside; ++i, at += step)
+    if (const Label label = volume.at_or_air(glm::ivec3(glm::floor(at + 0.5))); shown[label]) return label;
+  return otherwise;
+}
+
+}  // namespace
+
+SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& shown, std::int64_t vertices) {
+  // Whole voxels first: coarser cells are taken together from these.
+  Occupancy fine = occupancy_of(volume, shown, 0);
+  soften(fine);
+  TriangleMesh mesh = surface_of(fine);
+  for (double coarser = 2; std::ssize(mesh.V) > vertices; ++coarser) {
+    const double finest = std::min({fine.grid.spacing.x, fine.grid.spacing.y, fine.grid.spacing.z});
+    mesh = surface_of(coarsened(fine, coarser * finest));
+  }
+
+  SkinnedSurface surface;
+  surface.V = mesh.V;
+  for (const glm::ivec3& face : mesh.F) surface.F.emplace_back(face);
+  surface.offsets.push_back(0);
+  if (mesh.V.empty()) return surface;
+  const std::vector<glm::dvec3> normals = vertex_normals(mesh);
+  const std::vector<SkinAt> skin = skin_at(volume, tissue, weights, mesh.V);
+  const AffineTransform to_voxel = voxel_from_world(volume.grid);
+  surface.label.resize(mesh.V.size());
+  for (std::size_t i = 0; i < mesh.V.size(); ++i) {
+    surface.label[i] = label_inside(volume, shown, to_voxel, mesh.V[i], normals[i], skin[i].label);
+    for (int k = 0; k < 4; ++k)
+      if (skin[i].influence.weight[k]) surface.influences.push_back({skin[i].influence.bone[k], skin[i].influence.weight[k] / double(kFullWeight)});
+    surface.offsets.push_back(std::ssize(surface.influences));
+  }
+  return surface;
+}
+
+PosedSurface posed_surface(const std::shared_ptr<const SkinnedSurface>& at_rest, const std::vector<RigidTransform>& posed_from_rest, Blend blend) {
+  const SkinnedSurface& rest = *at_rest;
+  const std::vector<SkinTransform> bones = skin_transforms(posed_from_rest);
+  std::vector<glm::dvec3> posed(rest.V.size());
+  parallel_for(std::ssize(rest.V), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    const std::size_t count = static_cast<std::size_t>(end - begin);
+    blend_points(blend, bones, rest.influences, std::span(rest.offsets).subspan(begin, count + 1), std::span(rest.V).subspan(begin, count), std::span(posed).subspan(begin, count));
+  });
+
+  PosedSurface surface{at_rest, {}, std::vector<glm::vec3>(posed.size(), glm::vec3(0))};
+  surface.V.assign(posed.begin(), posed.end());
+  for (const glm::u32vec3& f : rest.F) {
+    const glm::vec3 area = glm::cross(surface.V[f.y] - surface.V[f.x], surface.V[f.z] - surface.V[f.x]);
+    for (int corner = 0; corner < 3; ++corner) surface.N[f[corner]] += area;
+  }
+  for (glm::vec3& normal : surface.N) {
+    const float length = glm::length(normal);
+    normal = length > 0 ? normal / length : glm::vec3(0, 0, 1);
+  }
+  return surface;
+}
+
+}  // namespace limber
