@@ -419,6 +419,7 @@ TEST_CASE("gizmos: what lies under the pointer is listed nearest first, bones am
   CHECK(test.editor->selection.bone == 0);
   test.play("click pick/Muscle");
   CHECK(test.editor->selection.tissue == Label{17});
+  test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + "\n wait-idle");
   run(*test.editor, "select.pick_list");
   test.player.settle();
   test.play("click \"pick/bone Upper\"");

@@ -58,6 +58,7 @@ struct LiveEditor : LimbEditor {
 
 TEST_CASE("live pose: by preference the surface stands in while a bone turns, of what is visible, and the volume comes back at rest") {
   LiveEditor test;
+  test.editor->preferences.moving = "volume";
   test.turn("X", 30);
   CHECK_FALSE(test.editor->views->body.picture->shows_surface());
   CHECK(!test.scene().surface);
