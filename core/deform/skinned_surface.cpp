@@ -47,7 +47,9 @@ Label label_inside(const LabelVolume& volume, const LabelSet& shown, const Affin
 
 }  // namespace
 
-SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& shown, std::int64_t vertices) {
+SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& labels, std::int64_t vertices) {
+  LabelSet shown = labels;
+  shown[0] = 0;  // air never counts
   // Whole voxels first: coarser cells are taken together from these.
   Occupancy fine = occupancy_of(volume, shown, 0);
   soften(fine);

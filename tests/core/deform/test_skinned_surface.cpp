@@ -52,6 +52,9 @@ TEST_CASE("skinned surface: it lies on the body, is closed, and knows the tissue
   for (const Label label : inner.label) CHECK(label == kFlesh);
   CHECK(inner.V.size() < outer.V.size());
   CHECK(skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 200).V.size() <= 200);
+  ball.shown[0] = 1;  // air never counts
+  CHECK(skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 100'000).V == inner.V);
+  ball.shown[0] = 0;
   ball.shown[kFlesh] = 0;
   CHECK(skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 100).V.empty());
 }
