@@ -439,7 +439,9 @@ glm::dmat3 LivePreview::slope(std::int64_t cell) const {
 // Whether a node and the next one along an axis are both far from where the other's cell leads to.
 //   apart  from the node's rest point to the next one's, voxels
 bool LivePreview::strays(std::int64_t node, int axis, std::int64_t next, const glm::dvec3& apart) const {
-  const double stray = PreviewMap::kStray * lattice_.step;
+  // Away from gaps only folds part, and a joint may twist much in little room.
+  const bool at_gap = claimed_apart_[node] < CellPart::kFarApart || claimed_apart_[next] < CellPart::kFarApart;
+  const double stray = (at_gap ? 1 : 2) * PreviewMap::kStray * lattice_.step;
   for (const std::int64_t each : {node, next}) {
     if (claiming_[each] < 0) return false;
     const glm::dmat3 slope = this->slope(claiming_[each]);

@@ -59,7 +59,7 @@ struct PreviewMap {
   // Two nodes next to each other lie on different sheets where they are further apart than this at rest, voxels...
   // (A joint twisted by a right angle moves as much as 3 steps without a fold.)
   double jump() const { return 5.0 * step; }
-  // ... or where each is further from where the other's cell leads to than this, steps.
+  // ... or where each is further from where the other's cell leads to than this, steps (twice as far where no gap is near).
   static constexpr double kStray = 1.5;
   // What is carried on beyond the nodes of a sheet is no steeper, voxels for a step.
   double steepest() const { return 1.5 * step; }
