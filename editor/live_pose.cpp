@@ -117,7 +117,11 @@ Blend preview_blend(const Editor& editor) { return editor.resampling.method == "
 void LivePose::follow(Editor& editor) {
   if (auto made = swift_.take()) coarse_ = std::move(*made), editor.touch();
   if (auto made = thorough_.take()) fine_ = std::move(*made), editor.touch();
-  if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) surface_ = making_.get(), editor.touch();
+  if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    surface_ = making_.get();
+    if (!surface_.trouble.empty()) editor.messages.warn("The volume is shown while it moves: its surface could not be made", surface_.trouble);
+    editor.touch();
+  }
   const std::optional<DenseWish> dense = choose(editor);
   metrics_.follow(editor, dense, shown_ && shown_ == fine_.map);
 }
@@ -132,10 +136,13 @@ std::shared_ptr<const SkinnedSurface> LivePose::surface_of(Editor& editor, const
   if (surface_.body == body && surface_.shown == shown) return surface_.surface;
   if (!making_.valid())
     making_ = std::async(std::launch::async, [body, shown, wake = wake_] {
-      Surface made{body, shown, nullptr};
+      Surface made{body, shown, nullptr, ""};
       try {
         made.surface = std::make_shared<const SkinnedSurface>(skinned_surface(*body.volume, TissueVoxels(*body.volume), *body.weights, shown, kMostVertices));
-      } catch (const std::exception&) {  // then the volume is all there is to see, and its own trouble tells why
+      } catch (const std::bad_alloc&) {
+        made.trouble = "there is not enough memory";
+      } catch (const std::exception& error) {
+        made.trouble = error.what();
       }
       wake();
       return made;

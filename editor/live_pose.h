@@ -109,6 +109,7 @@ class LivePose {
     PosedBody body;
     LabelSet shown;
     std::shared_ptr<const SkinnedSurface> surface;
+    std::string trouble;  // in place of the surface
   };
   Surface surface_;
   std::future<Surface> making_;

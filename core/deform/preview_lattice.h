@@ -8,7 +8,8 @@
 // Some cells have images of their own for a part of what lies in them:
 //   stiff  where tissue follows one bone wholly, but corners of the cell follow another bone too: that tissue alone
 //   side   where tissue around the cell hangs together only by a way that leads far around, and moves apart, as a hand
-//          beside a thigh or two fingers do: each side follows its own bones, and the cell has no image as a whole
+//          beside a thigh or two fingers do: each side follows its own bones, and the cell has no image as a whole. So it
+//          is where there is one side only, but the cell's vertices follow what lies beyond a gap next to the cell.
 //          [the virtual nodes of Molino, Bao & Fedkiw 2004, A virtual node algorithm for changing mesh topology]
 //
 // Coordinates. Cell c covers the voxels c step .. c step + step - 1. In *cell coordinates* its middle is the whole number

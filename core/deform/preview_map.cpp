@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -92,51 +94,60 @@ std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
   return sum / total;
 }
 
-// Fills PreviewMap::nodes and its cubes from what cells have claimed.
+// Fills the stale rows of PreviewMap::nodes and its cubes from what cells have claimed.
 class LivePreview::Finish {
  public:
-  Finish(PreviewMap& map, const LivePreview& preview) : map_(map), preview_(preview), claimed_(preview.claimed_), strides_{1, map.size.x, map.size.x * map.size.y}, jumps_(map.nodes.size()) {
-    for (int i = 0; i < 8; ++i) offsets_[i] = map.index(kCorners[i]);
-    const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / map.extent;
+  Finish(Made& made, const LivePreview& preview)
+      : map_(*made.map), jumps_(made.jumps), stale_(made.stale), preview_(preview), claimed_(preview.claimed_), strides_{1, map_.size.x, map_.size.x * map_.size.y} {
+    for (int i = 0; i < 8; ++i) offsets_[i] = map_.index(kCorners[i]);
+    const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / map_.extent;
     for (int axis = 0; axis < 3; ++axis) {
-      jump_[axis] = static_cast<int>(std::min(map.jump() * fractions[axis], double(PreviewMap::kFullFraction)));
-      steepest_[axis] = static_cast<int>(std::min(map.steepest() * fractions[axis], double(PreviewMap::kFullFraction)));
-      steps_[axis] = static_cast<float>(1 / (fractions[axis] * map.step));
+      jump_[axis] = static_cast<int>(std::min(map_.jump() * fractions[axis], double(PreviewMap::kFullFraction)));
+      steepest_[axis] = static_cast<int>(std::min(map_.steepest() * fractions[axis], double(PreviewMap::kFullFraction)));
+      steps_[axis] = static_cast<float>(1 / (fractions[axis] * map_.step));
     }
   }
 
   void layer(int z) {
-    const std::int64_t begin = map_.index({0, 0, z}), end = begin + strides_[2];
-    std::copy(claimed_.begin() + begin, claimed_.begin() + end, map_.nodes.begin() + begin);
-    for (std::int64_t i = begin; i < end; ++i) map_.apart[i] = std::min(preview_.claimed_apart_[i], kMostApart);
-    if (z == 0 || z + 1 == map_.size.z) return;
-    for (int y = 1; y + 1 < map_.size.y; ++y)
-      for (std::int64_t at = map_.index({1, y, z}), last = at + map_.size.x - 2; at < last; ++at)
+    for (int y = 0; y < map_.size.y; ++y) {
+      const auto [first, last] = stale(y, z);
+      const std::int64_t row = map_.index({0, y, z});
+      std::copy(claimed_.begin() + row + first, claimed_.begin() + row + last, map_.nodes.begin() + row + first);
+      for (std::int64_t at = row + first; at < row + last; ++at) map_.apart[at] = std::min(preview_.claimed_apart_[at], kMostApart);
+      if (y == 0 || z == 0 || y + 1 == map_.size.y || z + 1 == map_.size.z) continue;
+      for (std::int64_t at = row + std::max(first, 1), end = row + std::min(last, map_.size.x - 1); at < end; ++at)
         if (const glm::u16vec4* here = &claimed_[at]; !here->w && (here[-1].w | here[1].w | here[-strides_[1]].w | here[strides_[1]].w | here[-strides_[2]].w | here[strides_[2]].w))
           carry_on(at);
+    }
   }
 
   // Needs all layers.
   void edges(int z) {
-    for (int y = 0; y < map_.size.y; ++y)
-      for (int x = 0; x < map_.size.x; ++x) {
-        const std::int64_t at = map_.index({x, y, z});
-        if (!map_.nodes[at].w) continue;
+    for (int y = 0; y < map_.size.y; ++y) {
+      const auto [first, last] = stale(y, z);
+      const std::int64_t row = map_.index({0, y, z});
+      for (int x = first; x < last; ++x) {
+        std::uint8_t& jumps = jumps_[row + x] = 0;
+        if (!map_.nodes[row + x].w) continue;
         for (int axis = 0; axis < 3; ++axis)
-          if (glm::ivec3(x, y, z)[axis] + 1 < map_.size[axis] && edge_jumps(at, axis)) jumps_[at] |= 1 << axis;
+          if (glm::ivec3(x, y, z)[axis] + 1 < map_.size[axis] && edge_jumps(row + x, axis)) jumps |= 1 << axis;
       }
+    }
   }
 
   // Needs all edges.
   void cubes(int z) {
     if (z + 1 >= map_.size.z) return;
     for (int y = 0; y + 1 < map_.size.y; ++y) {
-      const std::int64_t begin = map_.index({0, y, z});
-      for (std::int64_t at = begin; at + 1 < begin + map_.size.x; ++at) cube(at);
+      const auto [first, last] = stale(y, z);
+      const std::int64_t row = map_.index({0, y, z});
+      for (std::int64_t at = row + first, end = row + std::min(last, map_.size.x - 1); at < end; ++at) cube(at);
     }
   }
 
  private:
+  const std::array<int, 2>& stale(int y, int z) const { return stale_[y + std::int64_t{map_.size.y} * z]; }
+
   // The mean of what the claimed nodes next to it lead to, each with the one behind it, as far as they agree; nothing where
   // there are none. (The tiles leave two nodes at every border that no cell claims.)
   void carry_on(std::int64_t at) {
@@ -176,42 +187,74 @@ class LivePreview::Finish {
   }
 
   void cube(std::int64_t at) {
-    const glm::u16vec4* nodes = &map_.nodes[at];
-    int any = 0;
-    for (const std::int64_t offset : offsets_) any |= nodes[offset].w;
-    if (!any) return;
-    std::array<Lanes, 8> c{};
-    unsigned covered = 0;
-    const Lanes none{}, full = none + PreviewMap::kFullFraction;
-    Lanes low = full, high = none;
-    bool bordered = false;
-    for (int i = 0; i < 8; ++i) {
-      const glm::u16vec4& node = nodes[offsets_[i]];
-      if (!node.w) continue;
-      covered |= 1u << i;
-      bordered = bordered || map_.apart[at + offsets_[i]] < 0;
-      c[i] = lanes_of(node);
-      low = least(low, c[i]);
-      high = most(high, c[i]);
+    const auto [low, high] = bounds(&map_.nodes[at]);
+    if (!high.w) {
+      map_.cubes[at] = PreviewMap::kNothing;
+      return;
     }
-    map_.reach[at] = {glm::u16vec3(low[0], low[1], low[2]), glm::u16vec3(high[0], high[1], high[2])};
-    bool jumps = false;
-    for (int i = 0; i < 8; ++i) jumps = jumps || (jumps_[at + offsets_[i]] & ~i & 7);
-    if ((bordered || covered != 255) && squared_steps(high - low) > kAcross * kAcross)  // nodes of two sheets may lie across
-      for (int i = 0; i < 8 && !jumps; ++i)
-        for (int j = 0; j < i && !jumps; ++j)
-          if ((covered >> i & 1) && (covered >> j & 1)) jumps = squared_steps(c[i] - c[j]) > kAcross * kAcross * std::popcount(unsigned(i ^ j));
+    bool bordered = false, jumps = false;
+    for (int i = 0; i < 8; ++i) {
+      bordered = bordered || map_.apart[at + offsets_[i]] < 0;  // 0 where not covered
+      jumps = jumps || (jumps_[at + offsets_[i]] & ~i & 7);
+    }
+    if (low.w) map_.reach[at] = {glm::u16vec3(low), glm::u16vec3(high)};
+    if (bordered || !low.w) jumps = jumps_across(at) || jumps;
     map_.cubes[at] = jumps ? PreviewMap::kBroken : bordered ? PreviewMap::kBordered : PreviewMap::kWhole;
   }
 
+  // Lowest and highest of a cube's nodes, covered or not, two at a time.
+  std::array<glm::u16vec4, 2> bounds(const glm::u16vec4* nodes) const {
+    using Shorts = short __attribute__((vector_size(16)));
+    constexpr short kSign = std::numeric_limits<short>::min();  // turns the order of unsigned numbers into that of signed ones
+    constexpr Shorts kSigns{kSign, kSign, kSign, kSign, kSign, kSign, kSign, kSign};
+    Shorts low, high;
+    for (const int i : {0, 2, 4, 6}) {
+      Shorts two;
+      std::memcpy(&two, nodes + offsets_[i], sizeof two);
+      two ^= kSigns;
+      low = i == 0 ? two : two < low ? two : low;
+      high = i == 0 ? two : two > high ? two : high;
+    }
+    low ^= kSigns;
+    high ^= kSigns;
+    std::array<glm::u16vec4, 2> lows, highs;
+    std::memcpy(&lows, &low, sizeof low);
+    std::memcpy(&highs, &high, sizeof high);
+    return {glm::min(lows[0], lows[1]), glm::max(highs[0], highs[1])};
+  }
+
+  // Nodes of two sheets may lie across a cube that some nodes are missing from. Also bounds those that are there.
+  bool jumps_across(std::int64_t at) {
+    std::array<Lanes, 8> c{};
+    int count = 0;
+    std::array<int, 8> corner{};
+    const Lanes none{}, full = none + PreviewMap::kFullFraction;
+    Lanes low = full, high = none;
+    for (int i = 0; i < 8; ++i) {
+      const glm::u16vec4& node = map_.nodes[at + offsets_[i]];
+      if (!node.w) continue;
+      corner[count] = i;
+      c[count] = lanes_of(node);
+      low = least(low, c[count]);
+      high = most(high, c[count++]);
+    }
+    map_.reach[at] = {glm::u16vec3(low[0], low[1], low[2]), glm::u16vec3(high[0], high[1], high[2])};
+    if (squared_steps(high - low) <= kAcross * kAcross) return false;
+    for (int i = 0; i < count; ++i)
+      for (int j = 0; j < i; ++j)
+        if (squared_steps(c[i] - c[j]) > kAcross * kAcross * std::popcount(unsigned(corner[i] ^ corner[j]))) return true;
+    return false;
+  }
+
   PreviewMap& map_;
+  std::vector<std::uint8_t>& jumps_;
+  const std::vector<std::array<int, 2>>& stale_;
   const LivePreview& preview_;
   const std::vector<glm::u16vec4>& claimed_;
   std::array<std::int64_t, 3> strides_;
   std::array<std::int64_t, 8> offsets_;  // of a cube's corners
   Lanes jump_{}, steepest_{};
   glm::vec3 steps_{0};                // of a fraction
-  std::vector<std::uint8_t> jumps_;  // by node: bit per axis along which the next one lies on another sheet
 };
 
 // What is rasterized again: whole tiles of nodes.
@@ -332,7 +375,9 @@ std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTra
   if (!pose_vertices(posed_from_rest, blend)) return map_;
   bound_cells();
   rasterize();
-  map_ = finish();
+  Made& made = spare();
+  finish(made);
+  map_ = made.map;
   return map_;
 }
 
@@ -497,6 +542,7 @@ void LivePreview::rasterize() {
   if (fresh) {
     first_ = first;
     size_ = size;
+    for (Made& made : made_) made.stale.assign(std::int64_t{size.y} * size.z, {0, size.x});
     claimed_.assign(std::int64_t{size.x} * size.y * size.z, glm::u16vec4(0));
     claiming_.assign(claimed_.size(), -1);
     claimed_apart_.assign(claimed_.size(), 0);
@@ -523,6 +569,8 @@ void LivePreview::rasterize() {
       if (tiles.dirty[t]) cells[end[t]++] = static_cast<std::int32_t>(i);
     });
   cells_rasterized_ = begin[count];
+  if (!fresh)
+    for (const std::int32_t t : work) mark_stale(tiles.at(t) * kTile - first_);
   parallel_for(std::ssize(work), 1, [&](std::int64_t from, std::int64_t to) {
     for (auto w = from; w < to; ++w) rasterize_tile(tiles.at(work[w]), cells.data() + begin[work[w]], begin[work[w] + 1] - begin[work[w]]);
   });
@@ -542,20 +590,45 @@ void LivePreview::rasterize_tile(const glm::ivec3& tile_at, const std::int32_t* 
     }
 }
 
-std::shared_ptr<PreviewMap> LivePreview::finish() const {
-  auto map = std::make_shared<PreviewMap>();
+// What is finished from the nodes of a tile: nodes carried on from them, edges to those, and cubes.
+//   low  its lowest node
+void LivePreview::mark_stale(const glm::ivec3& low) {
+  const glm::ivec3 from = glm::max(low - 3, glm::ivec3(0)), to = glm::min(low + kTile + 2, size_);
+  for (Made& made : made_)
+    for (int z = from.z; z < to.z; ++z)
+      for (int y = from.y; y < to.y; ++y) {
+        auto& [first, end] = made.stale[y + std::int64_t{size_.y} * z];
+        if (first == end) first = from.x, end = to.x;
+        else first = std::min(first, from.x), end = std::max(end, to.x);
+      }
+}
+
+// A map of the present size that nobody else holds.
+LivePreview::Made& LivePreview::spare() {
+  Made& made = made_[made_[0].map.use_count() > made_[1].map.use_count()];
+  const bool is_free = made.map && made.map.use_count() == 1;
+  std::atomic_thread_fence(std::memory_order_acquire);  // after whatever the last other holder has read
+  if (is_free && made.map->first == first_ && made.map->size == size_) return made;
   const Span span = span_of(lattice_);
-  map->step = lattice_.step;
-  map->grid = lattice_.grid;
-  map->first = first_;
-  map->size = size_;
-  map->low = span.low;
-  map->extent = span.extent;
-  map->nodes.resize(claimed_.size());
-  map->apart.resize(claimed_.size());
-  map->cubes.assign(claimed_.size(), PreviewMap::kNothing);
-  map->reach.resize(claimed_.size());
-  Finish finish(*map, *this);
+  if (!is_free) made.map = std::make_shared<PreviewMap>();
+  PreviewMap& map = *made.map;
+  map.step = lattice_.step;
+  map.grid = lattice_.grid;
+  map.first = first_;
+  map.size = size_;
+  map.low = span.low;
+  map.extent = span.extent;
+  map.nodes.resize(claimed_.size());
+  map.apart.resize(claimed_.size());
+  map.cubes.assign(claimed_.size(), PreviewMap::kNothing);
+  map.reach.resize(claimed_.size());
+  made.jumps.assign(claimed_.size(), 0);
+  made.stale.assign(std::int64_t{size_.y} * size_.z, {0, size_.x});
+  return made;
+}
+
+void LivePreview::finish(Made& made) const {
+  Finish finish(made, *this);
   parallel_for(size_.z, 1, [&](std::int64_t begin, std::int64_t end) {
     for (auto z = begin; z < end; ++z) finish.layer(int(z));
   });
@@ -565,7 +638,7 @@ std::shared_ptr<PreviewMap> LivePreview::finish() const {
   parallel_for(size_.z, 1, [&](std::int64_t begin, std::int64_t end) {
     for (auto z = begin; z < end; ++z) finish.cubes(int(z));
   });
-  return map;
+  made.stale.assign(made.stale.size(), {0, 0});
 }
 
 }  // namespace limber

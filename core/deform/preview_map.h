@@ -12,7 +12,8 @@
 // may lead into tissue of another side (preview_lattice.h), which has gone elsewhere; so each node knows how far that is, and
 // beyond the border, where that distance falls below zero, nothing is read.
 //
-// Only the surroundings of cells that moved are rasterized again. What comes out never depends on what was posed before.
+// Only the surroundings of cells that moved are rasterized and finished again, in the memory of the map before last where
+// nobody holds that any longer. What comes out never depends on what was posed before.
 #pragma once
 
 #include <array>
@@ -92,6 +93,13 @@ class LivePreview {
   class Tile;
   class Finish;
 
+  // A map, and what has to be done again before it tells the present pose.
+  struct Made {
+    std::shared_ptr<PreviewMap> map;
+    std::vector<std::uint8_t> jumps;         // by node: bit per axis along which the next one lies on another sheet
+    std::vector<std::array<int, 2>> stale;   // by row of nodes (y, then z): first and end
+  };
+
   // The cells of the lattice and, after them, their parts.
   std::int64_t cell_count() const { return std::ssize(range_); }
   std::int64_t part_of(std::int64_t cell) const { return cell - std::ssize(lattice_.cells); }
@@ -110,7 +118,9 @@ class LivePreview {
   void bound_cells();
   void rasterize();
   void rasterize_tile(const glm::ivec3& tile, const std::int32_t* cells, std::int64_t count);
-  std::shared_ptr<PreviewMap> finish() const;
+  void mark_stale(const glm::ivec3& tile);
+  Made& spare();
+  void finish(Made& made) const;
 
   std::shared_ptr<const LabelVolume> volume_;
   PreviewLattice lattice_;
@@ -134,7 +144,8 @@ class LivePreview {
   std::vector<glm::u16vec4> claimed_;     // by node: what a cell says
   std::vector<std::int8_t> claimed_apart_;
   std::vector<std::int32_t> claiming_;    // by node: that cell, -1 for none
-  std::shared_ptr<const PreviewMap> map_;
+  std::array<Made, 2> made_;
+  std::shared_ptr<const PreviewMap> map_;  // the last one made
   std::int64_t cells_rasterized_ = 0;
 };
 

@@ -16,9 +16,11 @@ namespace {
 constexpr float kSurface = 98 / 255.0f;  // the share at which rays stop
 constexpr int kLayersInside = 6;         // half voxels in which the shown tissue is looked for
 constexpr std::int64_t kGrain = 4096;
+constexpr double kMostCells = 16e6;      // that shares are first counted in, each 8 bytes for a while
 
 // As rays see the set, moved so that it ends at one half.
-void soften(Occupancy& body) {
+//   voxels  an edge of a cell
+void soften(Occupancy& body, float voxels) {
   const glm::ivec3 size = body.grid.size;
   const std::int64_t steps[] = {1, size.x, std::int64_t{size.x} * size.y};
   std::vector<float> from;
@@ -33,7 +35,7 @@ void soften(Occupancy& body) {
         }
       });
     }
-  for (float& share : body.share) share += 0.5f - kSurface;
+  for (float& share : body.share) share += (0.5f - kSurface) / voxels;
 }
 
 // The first shown label from a little outside inward; the nearest tissue's where there is none.
@@ -50,13 +52,15 @@ Label label_inside(const LabelVolume& volume, const LabelSet& shown, const Affin
 SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& labels, std::int64_t vertices) {
   LabelSet shown = labels;
   shown[0] = 0;  // air never counts
-  // Whole voxels first: coarser cells are taken together from these.
-  Occupancy fine = occupancy_of(volume, shown, 0);
-  soften(fine);
+  // Whole voxels first, where there is room for them: coarser cells are taken together from these.
+  const auto finest_of = [](const Grid& grid) { return std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}); };
+  const double edge = std::ceil(std::cbrt(double(volume.grid.voxel_count()) / kMostCells));
+  Occupancy fine = occupancy_of(volume, shown, edge * finest_of(volume.grid));
+  soften(fine, static_cast<float>(std::cbrt(double(volume.grid.voxel_count()) / double(fine.grid.voxel_count()))));
   TriangleMesh mesh = surface_of(fine);
-  for (double coarser = 2; std::ssize(mesh.V) > vertices; ++coarser) {
-    const double finest = std::min({fine.grid.spacing.x, fine.grid.spacing.y, fine.grid.spacing.z});
-    mesh = surface_of(coarsened(fine, coarser * finest));
+  for (double coarser = 1; std::ssize(mesh.V) > vertices;) {
+    coarser = std::max(coarser + 1, std::floor(coarser * std::sqrt(double(std::ssize(mesh.V)) / double(vertices))));  // a surface has as many as its area in cells
+    mesh = surface_of(coarsened(fine, coarser * finest_of(fine.grid)));
   }
 
   SkinnedSurface surface;

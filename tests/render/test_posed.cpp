@@ -197,7 +197,7 @@ TEST_CASE("posed body: the surface that stands in while it moves has the volume'
       const Image surface = view.read();
       INFO(degrees, " degrees: silhouette ", silhouette_difference(surface, volume), ", colours ", colours_agree(surface, volume), ", vertices ", at_rest->V.size());
       CHECK(silhouette_difference(surface, volume) < 0.01);
-      CHECK(colours_agree(surface, volume) > 0.85);  // least where an elbow folds
+      CHECK(colours_agree(surface, volume) > (degrees < 60 ? 0.9 : 0.85));  // less where an elbow folds
       const auto hit = view.pick(kSize / 2);
       View3D other(studio.renderer);
       scene.moving = Moving::Volume;

@@ -61,7 +61,12 @@ Pose tube_pose(const Sitter& sitter, double degrees, double twist_degrees = 0) {
   return pose;
 }
 
-bool same(const PreviewMap& a, const PreviewMap& b) { return a.first == b.first && a.size == b.size && a.nodes == b.nodes && a.cubes == b.cubes; }
+bool same(const PreviewMap& a, const PreviewMap& b) {
+  if (!(a.first == b.first && a.size == b.size && a.nodes == b.nodes && a.apart == b.apart && a.cubes == b.cubes)) return false;
+  for (std::size_t i = 0; i < a.cubes.size(); ++i)
+    if (a.cubes[i] != PreviewMap::kNothing && !(a.reach[i].low == b.reach[i].low && a.reach[i].high == b.reach[i].high)) return false;
+  return true;
+}
 
 }  // namespace
 
@@ -115,7 +120,15 @@ TEST_CASE("preview: posing step by step gives the same map, bit for bit, as posi
   for (const Blend blend : {Blend::Linear, Blend::DualQuaternion}) {
     LivePreview stepwise = tube.preview();
     std::shared_ptr<const PreviewMap> last;
-    for (const double degrees : {0.0, 25.0, 24.0, 24.5, 80.0, 81.0}) last = stepwise.update(tube.motions(tube_pose(tube, degrees, degrees / 2)), blend);
+    std::vector<std::pair<std::shared_ptr<const PreviewMap>, PreviewMap>> held;  // maps that somebody goes on showing, and as they were
+    for (const double degrees : {0.0, 25.0, 24.0, 24.5, 24.6, 24.7, 24.8, 80.0, 81.0, 80.5, 81.0}) {
+      last = stepwise.update(tube.motions(tube_pose(tube, degrees, degrees / 2)), blend);
+      if (held.size() < 4 && degrees < 24.7) held.emplace_back(last, *last);
+      if (degrees == 24.7) held.clear();
+      for (const auto& [map, before] : held) CHECK(same(*map, before));
+      LivePreview fresh = tube.preview();
+      CHECK(same(*last, *fresh.update(tube.motions(tube_pose(tube, degrees, degrees / 2)), blend)));
+    }
     const std::int64_t partial = stepwise.cells_rasterized();
     const ThreadCount one(1);
     LivePreview whole = tube.preview();

@@ -18,15 +18,16 @@ struct Ball {
   SkinWeights weights;
   LabelSet shown = LabelSet(65536, 0);
 
-  Ball() {
-    volume.grid.size = {30, 30, 30};
-    volume.grid.spacing = {1, 1, 1.5};
-    volume.grid.origin = {-14.5, -14.5, -21.75};
+  //   edge  voxels
+  explicit Ball(int edge = 30) {
+    volume.grid.size = glm::ivec3(edge);
+    volume.grid.spacing = 30.0 / edge * glm::dvec3(1, 1, 1.5);
+    volume.grid.origin = glm::dvec3(-15, -15, -22.5) + 0.5 * volume.grid.spacing;
     volume.voxels.assign(volume.grid.voxel_count(), 0);
     const AffineTransform world = world_from_voxel(volume.grid);
-    for (int z = 0; z < 30; ++z)
-      for (int y = 0; y < 30; ++y)
-        for (int x = 0; x < 30; ++x)
+    for (int z = 0; z < edge; ++z)
+      for (int y = 0; y < edge; ++y)
+        for (int x = 0; x < edge; ++x)
           if (const double r = glm::length(world * glm::dvec3(x, y, z)); r < 11) volume.at({x, y, z}) = r < 8 ? kFlesh : kSkin;
     tissue = TissueVoxels(volume);
     weights = SkinWeights({"Lower", "Upper"}, tissue);
@@ -57,6 +58,16 @@ TEST_CASE("skinned surface: it lies on the body, is closed, and knows the tissue
   ball.shown[0] = 0;
   ball.shown[kFlesh] = 0;
   CHECK(skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 100).V.empty());
+}
+
+TEST_CASE("skinned surface: of a volume of many voxels it lies no further off and fills the vertices it may have") {
+  const Ball ball(270);
+  const SkinnedSurface surface = skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 10'000);
+  CHECK(surface.V.size() <= 10'000);
+  CHECK(surface.V.size() > 4'000);
+  double sum = 0;
+  for (const glm::dvec3& v : surface.V) sum += glm::length(v) - 11;
+  CHECK(std::abs(sum / double(surface.V.size())) < 0.5 * ball.volume.grid.spacing.x);
 }
 
 TEST_CASE("skinned surface: at rest it is where it is, a bone's motion carries all of it, and threads change nothing") {
