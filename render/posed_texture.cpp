@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <utility>
 
 #include <epoxy/gl.h>
@@ -18,10 +19,20 @@ constexpr Format3D kNodes = {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, true};
 constexpr Format3D kApart = {GL_R8_SNORM, GL_RED, GL_BYTE, true};
 constexpr Format3D kCubes = {GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, false};
 
-void write(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const void* texels) {
+// The layers that differ from those that are there, in runs.
+//   before  what is there, of the same size; null: nothing
+template <class Texel>
+void write(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const std::vector<Texel>& texels, const std::vector<Texel>* before) {
   glBindTexture(GL_TEXTURE_3D, texture.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, size.x, size.y, size.z, format.pixels, format.type, texels);
+  const std::int64_t layer = std::int64_t{size.x} * size.y;
+  const auto is_there = [&](int z) { return before && std::memcmp(&texels[z * layer], &(*before)[z * layer], layer * sizeof(Texel)) == 0; };
+  for (int z = 0; z < size.z;) {
+    const int first = z;
+    while (z < size.z && !is_there(z)) ++z;
+    if (z > first) glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, first, size.x, size.y, z - first, format.pixels, format.type, &texels[first * layer]);
+    else ++z;
+  }
 }
 
 // Maps grow and shrink from pose to pose. Room is kept, and is no power of two: a software driver translates its programs
@@ -107,13 +118,16 @@ void PosedTexture::upload(const std::shared_ptr<const PreviewMap>& map, int larg
     const glm::ivec3 room = roomier(std::exchange(room_, glm::ivec3(0)), map->size, largest_texture);
     if (!allocate(nodes_, room, kNodes) || !allocate(apart_, room, kApart) || !allocate(cubes_, room, kCubes)) throw no_room();
     room_ = room;
+    map_ = nullptr;
   }
+  const std::shared_ptr<const PreviewMap> last = std::exchange(map_, nullptr);  // until this has ended
+  const PreviewMap* before = last && last->size == map->size ? last.get() : nullptr;
   size_ = map->size;
-  write(nodes_, size_, kNodes, map->nodes.data());
-  write(apart_, size_, kApart, map->apart.data());
-  write(cubes_, size_, kCubes, map->cubes.data());
-  map_ = map;
+  write(nodes_, size_, kNodes, map->nodes, before ? &before->nodes : nullptr);
+  write(apart_, size_, kApart, map->apart, before ? &before->apart : nullptr);
+  write(cubes_, size_, kCubes, map->cubes, before ? &before->cubes : nullptr);
   gl::check_gl("the upload of a pose");
+  map_ = map;
 }
 
 int PosedTexture::bind(const VolumeTexture& volume, gl::Program& program, int first) const {
@@ -138,9 +152,11 @@ void PosedHull::update(const std::shared_ptr<const PreviewMap>& pointer, const V
   const double halving = 1 << volume.halvings();
   const glm::vec3 scale(map.extent / halving / double(PreviewMap::kFullFraction)), offset((map.low + 0.5) / halving + double(kPad));
   const std::array<std::int64_t, 3> stride = {1, map.size.x, std::int64_t{map.size.x} * map.size.y};
-  std::vector<std::uint8_t> holds(map.cubes.size());
+  std::vector<std::uint8_t>& holds = holds_[1];
+  holds.resize(map.cubes.size());
   parallel_for(map.size.z, 4, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin * stride[2]; i < end * stride[2]; ++i) {
+      holds[i] = PreviewMap::kNothing;
       if (map.cubes[i] == PreviewMap::kNothing) continue;
       // Beside a fold what is mirrored lies outside the nodes' box; elsewhere a piece of a ray is a little straighter than the map.
       const float margin = map.cubes[i] >= PreviewMap::kBroken ? float(map.step / halving) : 0.25f;
@@ -149,7 +165,9 @@ void PosedHull::update(const std::shared_ptr<const PreviewMap>& pointer, const V
     }
   });
 
-  Hull::Faces faces;
+  Hull::Faces& faces = faces_;
+  faces.corners.clear();
+  faces.indices.clear();
   for (int z = 0; z < map.size.z; ++z)
     for (int y = 0; y < map.size.y; ++y) {
       const std::int64_t row = map.index({0, y, z});
@@ -177,8 +195,11 @@ void PosedHull::update(const std::shared_ptr<const PreviewMap>& pointer, const V
     const glm::ivec3 room = roomier(std::exchange(room_, glm::ivec3(0)), map.size, volume.largest_texture());
     if (!allocate(cubes_, room, kCubes)) throw no_room();
     room_ = room;
+    holds_size_ = glm::ivec3(0);
   }
-  write(cubes_, map.size, kCubes, holds.data());
+  write(cubes_, map.size, kCubes, holds, map.size == holds_size_ ? &holds_[0] : nullptr);
+  holds_[0].swap(holds_[1]);
+  holds_size_ = map.size;
   map_ = pointer;
   revision_ = field.revision();
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A live preview's inverse map (core/deform/preview_map.h) on the card. A posed body is drawn in posed space: rays, slices
 // and shading read the map at a posed place and then the volume's own textures at the rest point it tells, so a pose
-// uploads the map alone.
+// uploads the map alone, and of that the layers that have changed.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/deform/preview_map.h"
 #include "render/gl/object.h"
@@ -45,8 +47,10 @@ class PosedHull {
 
  private:
   Hull hull_;
+  Hull::Faces faces_;
   gl::Texture cubes_;
-  glm::ivec3 room_{0};
+  std::array<std::vector<std::uint8_t>, 2> holds_;  // what cubes_ shows; what it is to show
+  glm::ivec3 room_{0}, holds_size_{0};
   std::shared_ptr<const PreviewMap> map_;
   int revision_ = 0;  // of the field
 };

@@ -367,7 +367,12 @@ LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const Tissue
   for (const CellPart& part : lattice_.parts) {
     const bool bends = std::any_of(part.influences.begin(), part.influences.end(), [&](const auto& each) { return each.size() > 1 || each[0].bone != part.influences[0][0].bone; });
     first_motion_.push_back(bends ? std::exchange(count, count + 8) : -1);
+    for (const auto& each : part.influences) {
+      part_offsets_.push_back(static_cast<std::int32_t>(part_influences_.size()));
+      part_influences_.insert(part_influences_.end(), each.begin(), each.end());
+    }
   }
+  part_offsets_.push_back(static_cast<std::int32_t>(part_influences_.size()));
   motion_.resize(count);
 }
 
@@ -396,38 +401,54 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   const double step = lattice_.step;
   world_from_cell_ = {world_from_voxel.linear * step, world_from_voxel * glm::dvec3(0.5 * step - 0.5)};
   cell_from_world_ = voxel_from_world.linear / step;
-  const auto posed = [&](const glm::ivec3& vertex, std::span<const BoneWeight> influences) {
-    const glm::dvec3 world = world_from_voxel * (glm::dvec3(vertex) * step - 0.5);
-    const glm::dvec3 moved = blend_point(blend, bones, influences, world) - world;
-    const glm::dvec3 at = glm::dvec3(vertex) - 0.5 + voxel_from_world.linear * moved / step;
+  // What bones do alone, in cells: by how much the corner with the index moves.
+  std::vector<AffineTransform> moves;
+  for (const RigidTransform& bone : posed_from_rest) {
+    const glm::dmat3 turn = glm::mat3_cast(bone.rotation) - glm::dmat3(1);
+    moves.push_back({cell_from_world_ * turn * world_from_cell_.linear, cell_from_world_ * (turn * (world_from_cell_ * glm::dvec3(-0.5)) + bone.translation)});
+  }
+  //   motion  where what the bones do together is kept for cells that bend; null: nowhere
+  const auto posed = [&](const glm::ivec3& vertex, std::span<const BoneWeight> influences, SkinTransform* motion) {
+    glm::dvec3 at = glm::dvec3(vertex) - 0.5;
+    if (influences.size() == 1) {
+      at += moves[influences[0].bone] * glm::dvec3(vertex);
+      if (motion) *motion = bones[influences[0].bone];
+    } else {
+      const SkinTransform together = blended_transform(blend, bones, influences);
+      const BoneWeight whole{0, 1};
+      const glm::dvec3 world = world_from_cell_ * at;
+      at += cell_from_world_ * (blend_point(blend, {&together, 1}, {&whole, 1}, world) - world);
+      if (motion) *motion = together;
+    }
     for (int axis = 0; axis < 3; ++axis)
       if (!(std::abs(at[axis]) < kFurthest))
         throw Error("the pose carries the tissue too far away", "while the volume follows the pose", "check the pose and the rig");
     return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
+  };
+  const auto rests = [&](std::span<const BoneWeight> influences) {
+    return std::none_of(influences.begin(), influences.end(), [&](const BoneWeight& each) { return bone_moved_[each.bone]; });
   };
   parallel_for(std::ssize(lattice_.vertices), 512, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = begin; i < end; ++i) {
       const std::span<const BoneWeight> influences(lattice_.influences.data() + lattice_.offsets[i], lattice_.offsets[i + 1] - lattice_.offsets[i]);
       const std::int64_t place = lattice_.place(lattice_.vertices[i]);
       moved_[place] = 0;
-      if (std::none_of(influences.begin(), influences.end(), [&](const BoneWeight& each) { return bone_moved_[each.bone]; })) continue;
-      const FixedPoint fixed = posed(lattice_.vertices[i], influences);
+      if (rests(influences)) continue;
       const std::int32_t motion = motion_of_[place];
+      const FixedPoint fixed = posed(lattice_.vertices[i], influences, motion < 0 ? nullptr : &motion_[motion]);
       moved_[place] = all || motion >= 0 || fixed != posed_[place];
       posed_[place] = fixed;
-      if (motion >= 0) motion_[motion] = blended_transform(blend, bones, influences);
     }
   });
   parallel_for(std::ssize(lattice_.parts), 128, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = begin; i < end; ++i) {
-      const CellPart& part = lattice_.parts[i];
       part_moved_[i] = 0;
       for (int c = 0; c < 8; ++c) {
-        const std::vector<BoneWeight>& influences = part.influences[c];
-        if (std::none_of(influences.begin(), influences.end(), [&](const BoneWeight& each) { return bone_moved_[each.bone]; })) continue;
+        const std::int64_t corner = 8 * i + c;
+        const std::span<const BoneWeight> influences(part_influences_.data() + part_offsets_[corner], part_offsets_[corner + 1] - part_offsets_[corner]);
+        if (rests(influences)) continue;
         part_moved_[i] = 1;
-        posed_parts_[i][c] = posed(lattice_.cells[part.cell] + kCorners[c], influences);
-        if (first_motion_[i] >= 0) motion_[first_motion_[i] + c] = blended_transform(blend, bones, influences);
+        posed_parts_[i][c] = posed(lattice_.cells[lattice_.parts[i].cell] + kCorners[c], influences, first_motion_[i] < 0 ? nullptr : &motion_[first_motion_[i] + c]);
       }
     }
   });

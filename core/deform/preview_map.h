@@ -127,6 +127,8 @@ class LivePreview {
   std::vector<int> priority_;  // by label; air lowest
   std::vector<std::int32_t> motion_of_;  // by place: of motion_, at the corners of cells that can bend; else -1
   std::vector<std::int32_t> first_motion_;  // by part: of its corners; -1 for those that cannot bend
+  std::vector<BoneWeight> part_influences_;  // of corner c of part p: from part_offsets_[8 p + c] up to the next one
+  std::vector<std::int32_t> part_offsets_;
 
   AffineTransform world_from_cell_;
   glm::dmat3 cell_from_world_{1};  // of directions
