@@ -412,7 +412,7 @@ void BrushReach::see_row(int side, int y, int z) {
 // side will do.
 bool BrushReach::line_is_clear(const glm::ivec3& from, const glm::ivec3& to) const {
   const int x = std::abs(to.x - from.x), y = std::abs(to.y - from.y), z = std::abs(to.z - from.z), step_x = to.x > from.x ? 1 : -1;
-  const std::ptrdiff_t step_y = std::ptrdiff_t{to.y > from.y ? words_ : -words_}, step_z = std::ptrdiff_t{to.z > from.z ? size_.y : -size_.y} * words_;
+  const std::ptrdiff_t step_y = to.y > from.y ? words_ : -words_, step_z = std::ptrdiff_t{to.z > from.z ? size_.y : -size_.y} * words_;
   const std::uint64_t* row = &tissue_rows_[(std::size_t(from.z) * size_.y + from.y) * words_];
   const auto is_tissue = [](const std::uint64_t* r, int at) { return (r[at >> 6] >> (at & 63) & 1) != 0; };
   // Faces are crossed at (k + 1/2) / x, and so on; all times 2 x y z.
