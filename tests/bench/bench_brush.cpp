@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One dab of a weight brush on the paper's arm (or the procedural one): which voxels it reaches. Dabs run along the arm's
-// bones, through its middle, where the ball holds most tissue.
+// One dab of a weight brush on the paper's arm (or the procedural one): which voxels it reaches, and a whole dab, in which it
+// also changes their weights. Dabs run along the arm's bones, through its middle, where the ball holds most tissue.
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <optional>
 
 #include "core/rig/armature_io.h"
-#include "core/skin/brush_reach.h"
+#include "core/rig/bone_parts.h"
+#include "core/skin/geodesic.h"
+#include "core/skin/stroke.h"
 #include "core/volume/phantom.h"
 #include "core/volume/volume_io.h"
 #include "tests/bench/bench.h"
@@ -19,6 +23,7 @@ struct Arm {
   TissueTable tissues;
   Armature armature;
   TissueVoxels tissue;
+  std::shared_ptr<const SkinWeights> weights;
   std::vector<glm::dvec3> path;  // world
 };
 
@@ -39,6 +44,8 @@ const Arm& arm() {
       made.armature = std::move(phantom.armature);
     }
     made.tissue = TissueVoxels(made.volume);
+    const BoneParts parts = split_bones(made.volume, made.tissue, made.tissues, made.armature);
+    made.weights = std::make_shared<const SkinWeights>(bind_geodesic(made.volume, made.tissue, made.armature, parts));
     for (const Bone& bone : made.armature.bones)
       for (int i = 0; i < 40; ++i) made.path.push_back(glm::mix(bone.head, bone.tail, i / 40.0));
     return made;
@@ -61,10 +68,40 @@ void brush_reach(benchmark::State& state, BrushDistance distance, double voxels,
   state.counters["goal_ms"] = goal_ms;
 }
 
+// Strokes of 40 dabs along one bone after the other, painting that bone; bone tissue stays as it is.
+void brush_dab(benchmark::State& state, BrushKind kind, BrushDistance distance, double voxels, double goal_ms) {
+  const Arm& body = arm();
+  StrokeSettings settings;
+  settings.brush.kind = kind;
+  settings.brush.radius = voxels * body.volume.grid.spacing.x;
+  settings.brush.distance = distance;
+  settings.brush.strength = 0.5;
+  std::optional<Stroke> stroke;
+  std::size_t next = 0;
+  std::int64_t memory = 0;
+  for (auto _ : state) {
+    if (next % 40 == 0) {
+      state.PauseTiming();
+      if (stroke) memory = std::max(memory, stroke->memory_bytes());
+      settings.bones = {static_cast<int>(next / 40)};
+      stroke.emplace(StrokeBody{body.volume, body.tissue, body.tissues, body.armature}, body.weights, settings);
+      state.ResumeTiming();
+    }
+    stroke->dab(body.path[next]);
+    next = (next + 1) % body.path.size();
+  }
+  state.counters["stroke_mb"] = double(memory) / 1e6;
+  state.counters["goal_ms"] = goal_ms;
+}
+
 }  // namespace
 
 BENCHMARK_CAPTURE(brush_reach, euclidean_16, BrushDistance::Euclidean, 16, 0.12)->Apply(five_times);
 BENCHMARK_CAPTURE(brush_reach, geodesic_16, BrushDistance::Geodesic, 16, 0.6)->Apply(five_times);
 BENCHMARK_CAPTURE(brush_reach, geodesic_32, BrushDistance::Geodesic, 32, 4)->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, add_euclidean_16, BrushKind::Add, BrushDistance::Euclidean, 16, 0.12)->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, add_geodesic_16, BrushKind::Add, BrushDistance::Geodesic, 16, 0.6)->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, add_geodesic_32, BrushKind::Add, BrushDistance::Geodesic, 32, 4)->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, smooth_geodesic_16, BrushKind::Smooth, BrushDistance::Geodesic, 16, 0.6)->Apply(five_times);
 
 }  // namespace limber::bench

@@ -1,0 +1,572 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/skin/stroke.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kBrick = TissueVoxels::kBrick;
+// Bricks done by one thread at a time. Dabs of fewer are not worth waking another for.
+constexpr std::int64_t kBricksAtOnce = 16;
+
+using Target = std::vector<std::pair<int, double>>;
+
+void add_to(Target& target, const Influence& influence, double factor) {
+  for (int i = 0; i < 4; ++i) {
+    if (influence.weight[i] == 0) continue;
+    const int bone = influence.bone[i];
+    const auto found = std::find_if(target.begin(), target.end(), [&](const auto& t) { return t.first == bone; });
+    if (found != target.end())
+      found->second += factor * influence.weight[i];
+    else
+      target.emplace_back(bone, factor * influence.weight[i]);
+  }
+}
+
+// Where a brick's voxels stand in its chunk.
+struct BrickView {
+  const TissueVoxels::Brick* brick = nullptr;
+  const Influence* influences = nullptr;
+  std::array<std::uint16_t, kBrick> before{};  // tissue voxels below each slice
+
+  const Influence* at(int x, int y, int z) const {
+    if (!brick) return nullptr;
+    const int bit = x + kBrick * y;
+    if (!(brick->mask[z] >> bit & 1)) return nullptr;
+    return influences + before[z] + std::popcount(brick->mask[z] & ((std::uint64_t{1} << bit) - 1));
+  }
+};
+
+}  // namespace
+
+class Stroke::Work {
+ public:
+  Work(const StrokeBody& body, std::shared_ptr<const SkinWeights> weights, StrokeSettings settings);
+
+  void to(const glm::dvec3& point, double pressure);
+  void dab(const glm::dvec3& centre, double pressure);
+  const SkinWeights::Chunk& chunk(std::int64_t brick) const {
+    const int slot = slot_of_[brick];
+    return slot < 0 || bricks_[slot].now.empty() ? weights_->chunk(brick) : bricks_[slot].now;
+  }
+  const SkinWeights& original() const { return *weights_; }
+  std::vector<int> take_dirty();
+  bool empty() const;
+  SkinWeights weights() const;
+  SkinWeights finish();
+  std::int64_t memory_bytes() const;
+
+  int dab_count = 0;
+  std::vector<std::int64_t> blocked;  // #bones
+
+ private:
+  // A brick that the stroke came to.
+  struct Brick {
+    int brick;
+    SkinWeights::Chunk now;  // empty until something changes
+    // #chunk: the most any dab has covered each voxel so far, in 1/65535, for either side; empty where dabs accumulate.
+    std::array<std::vector<std::uint16_t>, 2> cover;
+    bool dirty = false;
+  };
+  // What is painted on one side of the body.
+  struct Side {
+    std::vector<int> bones;
+    int parent = -1;          // JointCapsule
+    glm::dvec3 along{0};      // share of the blend a voxel further along each axis
+    double at_origin = 0;
+    glm::dvec3 shift{0};      // Smear: where weights come from, voxels
+    Target average;
+  };
+  struct Blocked {
+    std::vector<std::pair<int, std::int64_t>> by;
+    void add(int bone);
+  };
+
+  BrushFilter filter_of(const StrokeBody& body, const StrokeSettings& settings) const;
+  Side side_of(std::vector<int> bones) const;
+  void find_nearby(const Reached& reached);
+  void dab_side(int side, const glm::dvec3& centre, double strength);
+  void touch(const Reached& reached, int plane);
+  void paint_brick(const Reached& reached, const Reached::Brick& part, int side, float strength, Influence* next, Blocked& blocked);
+  void apply(const Side& side, Influence& influence, const Target* target, const glm::ivec3& voxel, double cover, Blocked& blocked) const;
+  bool looks_around() const { return brush_.kind >= BrushKind::Smooth && brush_.kind <= BrushKind::Smear; }
+
+  // Of the weights that this dab starts from.
+  const SkinWeights::Chunk& source(int brick) const { return accumulate_ ? chunk(brick) : weights_->chunk(brick); }
+  BrickView view(int brick) const;
+  bool target_at(const Side& side, const glm::ivec3& voxel, const std::array<BrickView, 7>& views, const Influence& own,
+                 Target& target) const;
+  void smeared(const Side& side, const glm::ivec3& voxel, Target& target) const;
+  void find_average(Side& side, const Reached& reached, float strength);
+
+  const StrokeBody body_;
+  std::shared_ptr<const SkinWeights> weights_;
+  const Brush brush_;
+  const bool accumulate_;
+  WeightRules rules_;
+  BrushReach reach_;
+  AffineTransform voxel_from_world_;
+  std::array<Side, 2> sides_;
+  std::optional<MirrorPlane> mirror_;
+  bool same_bones_ = false;  // on both sides: one cover is enough
+  BoneSet locked_;
+  Normalize normalize_;
+  bool ready_ = false;
+
+  std::vector<std::int32_t> slot_of_;  // #bricks, -1: not touched
+  std::vector<Brick> bricks_;
+  std::vector<Influence> next_;        // of a dab that looks around and accumulates
+  std::optional<glm::dvec3> last_point_, last_dab_;
+  double last_pressure_ = 1, since_dab_ = 0;
+};
+
+void Stroke::Work::Blocked::add(int bone) {
+  for (auto& [other, count] : by)
+    if (other == bone) {
+      ++count;
+      return;
+    }
+  by.emplace_back(bone, 1);
+}
+
+// Setting up
+
+BrushFilter Stroke::Work::filter_of(const StrokeBody& body, const StrokeSettings& settings) const {
+  BrushFilter filter = settings.filter;
+  if (!settings.rigid_bone_tissue) return filter;
+  LabelSet soft = filter.labels.empty() ? LabelSet(65536, 1) : filter.labels;
+  bool any = false;
+  for (const Tissue& tissue : body.tissues.tissues)
+    if (is_bone(tissue.kind) && tissue.label < soft.size()) {
+      soft[tissue.label] = 0;
+      any = true;
+    }
+  if (any) filter.labels = std::move(soft);
+  return filter;
+}
+
+Stroke::Work::Work(const StrokeBody& body, std::shared_ptr<const SkinWeights> weights, StrokeSettings settings)
+    : body_(body),
+      weights_(std::move(weights)),
+      brush_(settings.brush),
+      accumulate_(brush_.accumulate || brush_.kind == BrushKind::Smear),
+      rules_(body.armature, settings.locked, settings.normalize),
+      reach_(body.volume, body.tissue, filter_of(body, settings)),
+      voxel_from_world_(voxel_from_world(body.volume.grid)),
+      mirror_(settings.mirror),
+      locked_(settings.locked),
+      normalize_(settings.normalize) {
+  if (weights_->size() != body.tissue.size() || weights_->bones().size() != body.armature.bones.size())
+    throw std::logic_error("Stroke: the weights are of another body");
+  const auto in_rig = [&](int bone) { return bone >= 0 && bone < std::ssize(body.armature.bones); };
+  if (settings.bones.empty() || !std::all_of(settings.bones.begin(), settings.bones.end(), in_rig))
+    throw std::logic_error("Stroke: no bone of the rig");
+  blocked.assign(body.armature.bones.size(), 0);
+  slot_of_.assign(body.tissue.bricks().size(), -1);
+  sides_[0] = side_of(settings.bones);
+  if (mirror_) {
+    const std::vector<int> pairs = mirror_pairs(body.armature);
+    std::vector<int> others;
+    for (const int bone : settings.bones) others.push_back(pairs[bone]);
+    sides_[1] = side_of(others);
+    same_bones_ = others == settings.bones;
+  }
+}
+
+Stroke::Work::Side Stroke::Work::side_of(std::vector<int> bones) const {
+  Side side;
+  side.bones = std::move(bones);
+  if (brush_.kind != BrushKind::JointCapsule) return side;
+  const Bone& child = body_.armature.bones[side.bones[0]];
+  side.parent = child.parent;
+  if (side.parent < 0) throw Error("this bone has no joint to blend across", child.name, "choose a bone that has a parent");
+  const Bone& parent = body_.armature.bones[side.parent];
+  // Across the plane that halves the joint's angle.
+  glm::dvec3 normal(0);
+  for (const glm::dvec3 way : {child.head - parent.head, child.tail - child.head})
+    if (glm::length(way) > 0) normal += glm::normalize(way);
+  if (glm::length(normal) < 1e-6) normal = child.tail - child.head;
+  normal = glm::normalize(normal) / std::max(brush_.blend_mm, 1e-6);
+  const AffineTransform world = world_from_voxel(body_.volume.grid);
+  for (int axis = 0; axis < 3; ++axis) side.along[axis] = glm::dot(normal, world.linear[axis]);
+  side.at_origin = glm::dot(normal, world.offset - child.head) + 0.5;
+  return side;
+}
+
+// A bone without relatives that are free leaves its weight to the one with the most weight where the stroke begins.
+void Stroke::Work::find_nearby(const Reached& reached) {
+  ready_ = true;
+  const std::vector<int>& bones = sides_[0].bones;
+  if (rules_.heir(bones[0], bones) >= 0) return;
+  std::vector<std::int64_t> sum(body_.armature.bones.size());
+  for (const Reached::Brick& part : reached.bricks)
+    for (int i = part.begin; i < part.end; ++i) {
+      const Influence& influence = weights_->chunk(part.brick)[reached.at[i]];
+      for (int k = 0; k < 4; ++k) sum[influence.bone[k]] += influence.weight[k];
+    }
+  int best = -1;
+  for (int b = 0; b < std::ssize(sum); ++b) {
+    const bool free = !rules_.is_locked(b) && std::find(bones.begin(), bones.end(), b) == bones.end();
+    if (free && sum[b] > 0 && (best < 0 || sum[b] > sum[best])) best = b;
+  }
+  rules_ = WeightRules(body_.armature, locked_, normalize_, best);
+}
+
+// The path
+
+void Stroke::Work::to(const glm::dvec3& point, double pressure) {
+  if (!last_point_) {
+    last_point_ = point;
+    last_pressure_ = pressure;
+    dab(point, pressure);
+    return;
+  }
+  const double step = std::max(brush_.spacing, 0.01) * brush_.radius, length = glm::length(point - *last_point_);
+  double at = step - since_dab_;
+  for (; at <= length; at += step) {
+    const double share = length > 0 ? at / length : 1;
+    dab(glm::mix(*last_point_, point, share), glm::mix(last_pressure_, pressure, share));
+  }
+  since_dab_ = length - (at - step);
+  last_point_ = point;
+  last_pressure_ = pressure;
+}
+
+void Stroke::Work::dab(const glm::dvec3& centre, double pressure) {
+  const double strength = std::clamp(brush_.strength * pressure, 0.0, 1.0);
+  if (brush_.kind == BrushKind::Smear) {
+    const glm::dvec3 way = last_dab_ ? centre - *last_dab_ : glm::dvec3(0);
+    sides_[0].shift = voxel_from_world_.linear * way;
+    if (mirror_) sides_[1].shift = voxel_from_world_.linear * mirror_->direction(way);
+  }
+  dab_side(0, centre, strength);
+  if (mirror_) dab_side(1, mirror_->place(centre), strength);
+  last_dab_ = centre;
+  ++dab_count;
+}
+
+// One dab
+
+void Stroke::Work::touch(const Reached& reached, int plane) {
+  for (const Reached::Brick& part : reached.bricks) {
+    std::int32_t& slot = slot_of_[part.brick];
+    if (slot < 0) {
+      slot = static_cast<std::int32_t>(bricks_.size());
+      bricks_.push_back({part.brick, {}, {}, false});
+    }
+    auto& cover = bricks_[slot].cover[plane];
+    if (!accumulate_ && cover.empty()) cover.assign(weights_->chunk(part.brick).size(), 0);
+  }
+}
+
+void Stroke::Work::dab_side(int side, const glm::dvec3& centre, double strength) {
+  const Reached& reached = reach_.dab(centre, brush_.radius, brush_.distance);
+  if (reached.bricks.empty()) return;
+  if (!ready_) find_nearby(reached);
+  const int plane = same_bones_ ? 0 : side;
+  touch(reached, plane);
+  if (brush_.kind == BrushKind::Average) find_average(sides_[side], reached, static_cast<float>(strength));
+  // What looks around must not see what this dab does.
+  const bool keep = looks_around() && accumulate_;
+  if (keep) next_.resize(reached.size());
+
+  const std::int64_t count = std::ssize(reached.bricks), grain = count <= 2 * kBricksAtOnce ? count : kBricksAtOnce;
+  std::vector<Blocked> blocked_in((count + grain - 1) / grain);
+  parallel_for(count, grain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto b = begin; b < end; ++b)
+      paint_brick(reached, reached.bricks[b], side, static_cast<float>(strength), keep ? next_.data() : nullptr, blocked_in[begin / grain]);
+  });
+  if (keep)
+    for (const Reached::Brick& part : reached.bricks) {
+      Brick& brick = bricks_[slot_of_[part.brick]];
+      for (int i = part.begin; i < part.end; ++i) {
+        if (next_[i] == chunk(part.brick)[reached.at[i]]) continue;
+        if (brick.now.empty()) brick.now = weights_->chunk(part.brick);
+        brick.now[reached.at[i]] = next_[i];
+        brick.dirty = true;
+      }
+    }
+  for (const Blocked& some : blocked_in)
+    for (const auto& [bone, times] : some.by) blocked[bone] += times;
+}
+
+BrickView Stroke::Work::view(int index) const {
+  BrickView view;
+  if (index < 0) return view;
+  view.brick = &body_.tissue.bricks()[index];
+  view.influences = source(index).data();
+  int before = 0;
+  for (int z = 0; z < kBrick; ++z) {
+    view.before[z] = static_cast<std::uint16_t>(before);
+    before += std::popcount(view.brick->mask[z]);
+  }
+  return view;
+}
+
+void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& part, int side, float strength, Influence* next, Blocked& blocked_here) {
+  Brick& brick = bricks_[slot_of_[part.brick]];
+  const SkinWeights::Chunk& original = weights_->chunk(part.brick);
+  const TissueVoxels::Brick& tissue = body_.tissue.bricks()[part.brick];
+  const float per_radius = static_cast<float>(1 / brush_.radius);
+  const int plane = same_bones_ ? 0 : side, other = 1 - plane;
+  const bool two = mirror_ && !same_bones_ && !accumulate_ && !brick.cover[other].empty();
+  const bool around = looks_around();
+  std::array<BrickView, 7> views;
+  if (around) {
+    views[6] = view(part.brick);
+    for (int d = 0; d < 6; ++d) {
+      glm::ivec3 beside = tissue.corner;
+      beside[d >> 1] += d & 1 ? kBrick : -kBrick;
+      views[d] = view(body_.volume.grid.contains(beside) ? body_.tissue.brick_at(beside) : -1);
+    }
+  }
+  Target target, other_target;
+  for (int i = part.begin; i < part.end; ++i) {
+    const int at = reached.at[i], cell = reached.cell[i];
+    const Influence& now = brick.now.empty() ? original[at] : brick.now[at];
+    if (next) next[i] = now;
+    float cover = strength * brush_.falloff(std::min(reached.distance[i] * per_radius, 1.0f));
+    const glm::ivec3 voxel = tissue.corner + glm::ivec3(cell & 7, cell >> 3 & 7, cell >> 6);
+    Influence made = now;
+    if (accumulate_) {
+      if (!(cover > 0)) continue;
+      if (around && !target_at(sides_[side], voxel, views, now, target)) continue;
+      apply(sides_[side], made, around ? &target : nullptr, voxel, cover, blocked_here);
+    } else {
+      const auto covered = static_cast<std::uint16_t>(cover * kFullWeight + 0.5f);
+      std::uint16_t& most = brick.cover[plane][at];
+      if (covered <= most) continue;
+      most = covered;
+      made = original[at];
+      const std::uint16_t beside = two ? brick.cover[other][at] : 0;
+      const bool has_target = !around || target_at(sides_[side], voxel, views, original[at], target);
+      const auto here = [&] {
+        if (has_target) apply(sides_[side], made, around ? &target : nullptr, voxel, double(covered) / kFullWeight, blocked_here);
+      };
+      if (beside == 0) {
+        here();
+      } else {
+        // What covers more comes first, so that the two sides stay mirror images.
+        const bool other_has = !around || target_at(sides_[other], voxel, views, original[at], other_target);
+        if (beside <= covered) here();
+        if (other_has) apply(sides_[other], made, around ? &other_target : nullptr, voxel, double(beside) / kFullWeight, blocked_here);
+        if (beside > covered) here();
+      }
+    }
+    if (next) {
+      next[i] = made;
+    } else if (made != now) {
+      if (brick.now.empty()) brick.now = original;
+      brick.now[at] = made;
+      brick.dirty = true;
+    }
+  }
+}
+
+void Stroke::Work::apply(const Side& side, Influence& influence, const Target* target, const glm::ivec3& voxel, double cover,
+                         Blocked& blocked_here) const {
+  WeightChange change;
+  if (brush_.kind == BrushKind::JointCapsule) {
+    const int child = side.bones[0];
+    const std::array<int, 2> both{child, side.parent};
+    const int total = WeightRules::sum_of(influence, both), before = WeightRules::sum_of(influence, std::span(&child, 1));
+    const double at = std::clamp(glm::dot(side.along, glm::dvec3(voxel)) + side.at_origin, 0.0, 1.0), blend = at * at * (3 - 2 * at);
+    change = rules_.divide(influence, child, side.parent, static_cast<int>(std::lround(before + (blend * total - before) * cover)));
+  } else if (target && brush_.all_bones) {
+    change = rules_.blend(influence, *target, cover);
+  } else {
+    const int before = WeightRules::sum_of(influence, side.bones);
+    double to = before;
+    switch (brush_.kind) {
+      case BrushKind::Add: to = before + cover * kFullWeight; break;
+      case BrushKind::Subtract: to = before - cover * kFullWeight; break;
+      case BrushKind::Set: to = before + (brush_.value * kFullWeight - before) * cover; break;
+      case BrushKind::Multiply: to = before * (1 + (brush_.value - 1) * cover); break;
+      default: {
+        double all = 0, group = 0;
+        for (const auto& [bone, share] : *target) {
+          all += share;
+          if (std::find(side.bones.begin(), side.bones.end(), bone) != side.bones.end()) group += share;
+        }
+        to = before + (group / all * kFullWeight - before) * cover;
+      }
+    }
+    // Rounded by hand: std::lround is a call.
+    const int whole = static_cast<int>(std::clamp(to, 0.0, double(kFullWeight)) + 0.5);
+    change = side.bones.size() == 1 ? rules_.set(influence, side.bones[0], whole) : rules_.set(influence, side.bones, whole);
+  }
+  if (!change.changed && change.blocked_by >= 0) blocked_here.add(change.blocked_by);
+}
+
+// What brushes that look around make of a voxel
+
+// False where nothing would change.
+bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, const std::array<BrickView, 7>& views, const Influence& own,
+                             Target& target) const {
+  target.clear();
+  if (brush_.kind == BrushKind::Average) {
+    target = side.average;
+    return !target.empty();
+  }
+  if (brush_.kind == BrushKind::Smear) {
+    smeared(side, voxel, target);
+    return !target.empty();
+  }
+  const glm::ivec3 cell = voxel & (kBrick - 1);
+  std::array<const Influence*, 6> beside;
+  int count = 0;
+  bool differs = false;
+  for (int d = 0; d < 6; ++d) {
+    glm::ivec3 v = cell;
+    const int axis = d >> 1;
+    v[axis] += d & 1 ? 1 : -1;
+    const bool inside = v[axis] >= 0 && v[axis] < kBrick;
+    v[axis] &= kBrick - 1;
+    const Influence* found = views[inside ? 6 : d].at(v.x, v.y, v.z);
+    if (!found) continue;
+    beside[count++] = found;
+    differs = differs || *found != own;
+  }
+  if (!differs) return false;
+  if (brush_.kind == BrushKind::Smooth) {
+    for (int i = 0; i < count; ++i) add_to(target, *beside[i], 1);
+  } else {
+    // As far again from the mean as it is.
+    add_to(target, own, 2 * count);
+    for (int i = 0; i < count; ++i) add_to(target, *beside[i], -1);
+    std::erase_if(target, [](const auto& t) { return t.second <= 0; });
+  }
+  return !target.empty();
+}
+
+// From where the stroke came, as far as tissue leads there; between voxels interpolated.
+void Stroke::Work::smeared(const Side& side, const glm::ivec3& voxel, Target& target) const {
+  if (side.shift == glm::dvec3(0)) return;
+  const auto influence_at = [&](const glm::ivec3& v) -> const Influence* {
+    if (!body_.volume.grid.contains(v)) return nullptr;
+    const std::int64_t place = body_.tissue.index_of(v);
+    if (place < 0) return nullptr;
+    const int brick = body_.tissue.brick_at(v);
+    return &source(brick)[place - body_.tissue.bricks()[brick].first];
+  };
+  const glm::dvec3 from = glm::dvec3(voxel) - side.shift;
+  const int steps = static_cast<int>(std::ceil(2 * std::max({std::abs(side.shift.x), std::abs(side.shift.y), std::abs(side.shift.z)})));
+  glm::ivec3 last = voxel;
+  for (int i = 1; i <= steps; ++i) {
+    const glm::ivec3 next(glm::round(glm::dvec3(voxel) - side.shift * (double(i) / steps)));
+    // One face after the other, the longest way first; air on the way ends it.
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::ivec3 at = last;
+      at[axis] = next[axis];
+      if (at == last) continue;
+      if (!influence_at(at)) {
+        add_to(target, *influence_at(last), 1);
+        return;
+      }
+      last = at;
+    }
+  }
+  const glm::dvec3 low = glm::floor(from), share = from - low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 bits(corner & 1, corner >> 1 & 1, corner >> 2);
+    double part = 1;
+    for (int axis = 0; axis < 3; ++axis) part *= bits[axis] ? share[axis] : 1 - share[axis];
+    if (part <= 0) continue;
+    if (const Influence* influence = influence_at(glm::ivec3(low) + bits)) add_to(target, *influence, part);
+  }
+}
+
+// Over the dab, by how much it covers. Whole numbers, so that the order does not matter.
+void Stroke::Work::find_average(Side& side, const Reached& reached, float strength) {
+  std::vector<std::int64_t> sum(body_.armature.bones.size());
+  const float per_radius = static_cast<float>(1 / brush_.radius);
+  for (const Reached::Brick& part : reached.bricks) {
+    const SkinWeights::Chunk& from = source(part.brick);
+    for (int i = part.begin; i < part.end; ++i) {
+      const auto cover = static_cast<std::int64_t>(strength * brush_.falloff(std::min(reached.distance[i] * per_radius, 1.0f)) * kFullWeight);
+      const Influence& influence = from[reached.at[i]];
+      for (int k = 0; k < 4; ++k) sum[influence.bone[k]] += cover * influence.weight[k];
+    }
+  }
+  side.average.clear();
+  for (int b = 0; b < std::ssize(sum); ++b)
+    if (sum[b] > 0) side.average.emplace_back(b, double(sum[b]));
+}
+
+// What came of it
+
+std::vector<int> Stroke::Work::take_dirty() {
+  std::vector<int> dirty;
+  for (Brick& brick : bricks_) {
+    if (brick.dirty) dirty.push_back(brick.brick);
+    brick.dirty = false;
+  }
+  std::sort(dirty.begin(), dirty.end());
+  return dirty;
+}
+
+bool Stroke::Work::empty() const {
+  return std::all_of(bricks_.begin(), bricks_.end(), [&](const Brick& b) { return b.now.empty() || b.now == weights_->chunk(b.brick); });
+}
+
+SkinWeights Stroke::Work::weights() const {
+  SkinWeights all = *weights_;
+  for (const Brick& brick : bricks_)
+    if (!brick.now.empty() && brick.now != weights_->chunk(brick.brick)) all.set_chunk(brick.brick, brick.now);
+  return all;
+}
+
+SkinWeights Stroke::Work::finish() {
+  SkinWeights all = *weights_;
+  for (Brick& brick : bricks_)
+    if (!brick.now.empty() && brick.now != weights_->chunk(brick.brick)) all.set_chunk(brick.brick, std::move(brick.now));
+  bricks_.clear();
+  slot_of_.assign(slot_of_.size(), -1);
+  return all;
+}
+
+std::int64_t Stroke::Work::memory_bytes() const {
+  std::int64_t bytes = reach_.memory_bytes() + std::ssize(slot_of_) * 4 + static_cast<std::int64_t>(bricks_.capacity() * sizeof(Brick)) +
+                       static_cast<std::int64_t>(next_.capacity() * sizeof(Influence));
+  for (const Brick& brick : bricks_)
+    bytes += static_cast<std::int64_t>(brick.now.capacity() * sizeof(Influence) + 2 * (brick.cover[0].capacity() + brick.cover[1].capacity()));
+  return bytes;
+}
+
+Stroke::Stroke(const StrokeBody& body, std::shared_ptr<const SkinWeights> weights, StrokeSettings settings)
+    : work_(std::make_unique<Work>(body, std::move(weights), std::move(settings))) {}
+Stroke::~Stroke() = default;
+Stroke::Stroke(Stroke&&) noexcept = default;
+Stroke& Stroke::operator=(Stroke&&) noexcept = default;
+
+void Stroke::to(const glm::dvec3& point, double pressure) { work_->to(point, pressure); }
+void Stroke::dab(const glm::dvec3& centre, double pressure) { work_->dab(centre, pressure); }
+const SkinWeights::Chunk& Stroke::chunk(std::int64_t brick) const { return work_->chunk(brick); }
+const SkinWeights& Stroke::original() const { return work_->original(); }
+std::vector<int> Stroke::take_dirty() { return work_->take_dirty(); }
+bool Stroke::empty() const { return work_->empty(); }
+int Stroke::dab_count() const { return work_->dab_count; }
+SkinWeights Stroke::weights() const { return work_->weights(); }
+SkinWeights Stroke::finish() { return work_->finish(); }
+std::int64_t Stroke::memory_bytes() const { return work_->memory_bytes(); }
+
+std::int64_t Stroke::blocked_count() const {
+  std::int64_t all = 0;
+  for (const std::int64_t times : work_->blocked) all += times;
+  return all;
+}
+
+int Stroke::blocked_by() const {
+  const auto most = std::max_element(work_->blocked.begin(), work_->blocked.end());
+  return most != work_->blocked.end() && *most > 0 ? static_cast<int>(most - work_->blocked.begin()) : -1;
+}
+
+}  // namespace limber
