@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/skin/weights_around.h"
 
 namespace limber {
 
@@ -17,33 +19,7 @@ constexpr int kBrick = TissueVoxels::kBrick;
 // Bricks done by one thread at a time. Dabs of fewer are not worth waking another for.
 constexpr std::int64_t kBricksAtOnce = 16;
 
-using Target = std::vector<std::pair<int, double>>;
-
-void add_to(Target& target, const Influence& influence, double factor) {
-  for (int i = 0; i < 4; ++i) {
-    if (influence.weight[i] == 0) continue;
-    const int bone = influence.bone[i];
-    const auto found = std::find_if(target.begin(), target.end(), [&](const auto& t) { return t.first == bone; });
-    if (found != target.end())
-      found->second += factor * influence.weight[i];
-    else
-      target.emplace_back(bone, factor * influence.weight[i]);
-  }
-}
-
-// Where a brick's voxels stand in its chunk.
-struct BrickView {
-  const TissueVoxels::Brick* brick = nullptr;
-  const Influence* influences = nullptr;
-  std::array<std::uint16_t, kBrick> before{};  // tissue voxels below each slice
-
-  const Influence* at(int x, int y, int z) const {
-    if (!brick) return nullptr;
-    const int bit = x + kBrick * y;
-    if (!(brick->mask[z] >> bit & 1)) return nullptr;
-    return influences + before[z] + std::popcount(brick->mask[z] & ((std::uint64_t{1} << bit) - 1));
-  }
-};
+using Target = WeightSum;
 
 }  // namespace
 
@@ -95,14 +71,14 @@ class Stroke::Work {
   void find_nearby(const Reached& reached);
   void dab_side(int side, const glm::dvec3& centre, double strength);
   void touch(const Reached& reached, int plane);
+  void paint_plainly(const Reached& reached, const Reached::Brick& part, int side, float strength, Blocked& blocked);
   void paint_brick(const Reached& reached, const Reached::Brick& part, int side, float strength, Influence* next, Blocked& blocked);
   void apply(const Side& side, Influence& influence, const Target* target, const glm::ivec3& voxel, double cover, Blocked& blocked) const;
   bool looks_around() const { return brush_.kind >= BrushKind::Smooth && brush_.kind <= BrushKind::Smear; }
 
   // Of the weights that this dab starts from.
   const SkinWeights::Chunk& source(int brick) const { return accumulate_ ? chunk(brick) : weights_->chunk(brick); }
-  BrickView view(int brick) const;
-  bool target_at(const Side& side, const glm::ivec3& voxel, const std::array<BrickView, 7>& views, const Influence& own,
+  bool target_at(const Side& side, const glm::ivec3& voxel, const std::optional<WeightsAround>& views, const Influence& own,
                  Target& target) const;
   void smeared(const Side& side, const glm::ivec3& voxel, Target& target) const;
   void find_average(Side& side, const Reached& reached, float strength);
@@ -276,13 +252,19 @@ void Stroke::Work::dab_side(int side, const glm::dvec3& centre, double strength)
   if (brush_.kind == BrushKind::Average) find_average(sides_[side], reached, static_cast<float>(strength));
   // What looks around must not see what this dab does.
   const bool keep = looks_around() && accumulate_;
+  const bool plain = brush_.kind <= BrushKind::Multiply && sides_[side].bones.size() == 1 && (!mirror_ || same_bones_ || accumulate_);
   if (keep) next_.resize(reached.size());
 
   const std::int64_t count = std::ssize(reached.bricks), grain = count <= 2 * kBricksAtOnce ? count : kBricksAtOnce;
   std::vector<Blocked> blocked_in((count + grain - 1) / grain);
   parallel_for(count, grain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto b = begin; b < end; ++b)
-      paint_brick(reached, reached.bricks[b], side, static_cast<float>(strength), keep ? next_.data() : nullptr, blocked_in[begin / grain]);
+    for (auto b = begin; b < end; ++b) {
+      if (plain)
+        paint_plainly(reached, reached.bricks[b], side, static_cast<float>(strength), blocked_in[begin / grain]);
+      else
+        paint_brick(reached, reached.bricks[b], side, static_cast<float>(strength), keep ? next_.data() : nullptr,
+                    blocked_in[begin / grain]);
+    }
   });
   if (keep)
     for (const Reached::Brick& part : reached.bricks) {
@@ -298,17 +280,45 @@ void Stroke::Work::dab_side(int side, const glm::dvec3& centre, double strength)
     for (const auto& [bone, times] : some.by) blocked[bone] += times;
 }
 
-BrickView Stroke::Work::view(int index) const {
-  BrickView view;
-  if (index < 0) return view;
-  view.brick = &body_.tissue.bricks()[index];
-  view.influences = source(index).data();
-  int before = 0;
-  for (int z = 0; z < kBrick; ++z) {
-    view.before[z] = static_cast<std::uint16_t>(before);
-    before += std::popcount(view.brick->mask[z]);
+// By far the most frequent brushes: one bone, and nothing to look at but the voxel itself. Covers are found for the whole brick
+// first, so that most voxels are done with one comparison.
+void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& part, int side, float strength, Blocked& blocked_here) {
+  Brick& brick = bricks_[slot_of_[part.brick]];
+  const SkinWeights::Chunk& original = weights_->chunk(part.brick);
+  const int bone = sides_[side].bones[0], count = part.end - part.begin;
+  const float per_radius = static_cast<float>(1 / brush_.radius);
+  std::array<std::uint16_t, kBrick * kBrick * kBrick> covers;
+  for (int i = 0; i < count; ++i) {
+    const float share = std::min(reached.distance[part.begin + i] * per_radius, 1.0f);
+    covers[i] = static_cast<std::uint16_t>(static_cast<int>(strength * brush_.falloff(share) * kFullWeight + 0.5f));
   }
-  return view;
+  std::uint16_t* most = accumulate_ ? nullptr : brick.cover[0].data();
+  // to = before * factor + added, at full cover
+  const double factor = brush_.kind == BrushKind::Set ? 0 : brush_.kind == BrushKind::Multiply ? brush_.value : 1;
+  double added = 0;
+  if (brush_.kind == BrushKind::Set) added = brush_.value * kFullWeight;
+  if (brush_.kind == BrushKind::Add) added = kFullWeight;
+  if (brush_.kind == BrushKind::Subtract) added = -kFullWeight;
+  for (int i = 0; i < count; ++i) {
+    const int at = reached.at[part.begin + i], covered = covers[i];
+    if (covered == 0) continue;
+    if (most) {
+      if (covered <= most[at]) continue;
+      most[at] = static_cast<std::uint16_t>(covered);
+    }
+    const Influence now = brick.now.empty() ? original[at] : brick.now[at];
+    Influence made = accumulate_ ? now : original[at];
+    int before = 0;
+    for (int k = 0; k < 4; ++k) before += made.bone[k] == bone ? made.weight[k] : 0;
+    const double cover = covered / double(kFullWeight), to = before + (before * (factor - 1) + added) * cover;
+    const int whole = static_cast<int>(std::clamp(to, 0.0, double(kFullWeight)) + 0.5);
+    const WeightChange change = rules_.set(made, bone, whole);
+    if (!change.changed && change.blocked_by >= 0) blocked_here.add(change.blocked_by);
+    if (std::bit_cast<std::array<std::uint64_t, 2>>(made) == std::bit_cast<std::array<std::uint64_t, 2>>(now)) continue;
+    if (brick.now.empty()) brick.now = original;
+    brick.now[at] = made;
+    brick.dirty = true;
+  }
 }
 
 void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& part, int side, float strength, Influence* next, Blocked& blocked_here) {
@@ -319,15 +329,8 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
   const int plane = same_bones_ ? 0 : side, other = 1 - plane;
   const bool two = mirror_ && !same_bones_ && !accumulate_ && !brick.cover[other].empty();
   const bool around = looks_around();
-  std::array<BrickView, 7> views;
-  if (around) {
-    views[6] = view(part.brick);
-    for (int d = 0; d < 6; ++d) {
-      glm::ivec3 beside = tissue.corner;
-      beside[d >> 1] += d & 1 ? kBrick : -kBrick;
-      views[d] = view(body_.volume.grid.contains(beside) ? body_.tissue.brick_at(beside) : -1);
-    }
-  }
+  std::optional<WeightsAround> views;
+  if (around) views.emplace(body_.tissue, part.brick, [&](int index) -> const SkinWeights::Chunk& { return source(index); });
   Target target, other_target;
   for (int i = part.begin; i < part.end; ++i) {
     const int at = reached.at[i], cell = reached.cell[i];
@@ -409,7 +412,7 @@ void Stroke::Work::apply(const Side& side, Influence& influence, const Target* t
 // What brushes that look around make of a voxel
 
 // False where nothing would change.
-bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, const std::array<BrickView, 7>& views, const Influence& own,
+bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, const std::optional<WeightsAround>& views, const Influence& own,
                              Target& target) const {
   target.clear();
   if (brush_.kind == BrushKind::Average) {
@@ -420,21 +423,10 @@ bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, const st
     smeared(side, voxel, target);
     return !target.empty();
   }
-  const glm::ivec3 cell = voxel & (kBrick - 1);
   std::array<const Influence*, 6> beside;
-  int count = 0;
+  const int count = views->beside(voxel & (kBrick - 1), beside);
   bool differs = false;
-  for (int d = 0; d < 6; ++d) {
-    glm::ivec3 v = cell;
-    const int axis = d >> 1;
-    v[axis] += d & 1 ? 1 : -1;
-    const bool inside = v[axis] >= 0 && v[axis] < kBrick;
-    v[axis] &= kBrick - 1;
-    const Influence* found = views[inside ? 6 : d].at(v.x, v.y, v.z);
-    if (!found) continue;
-    beside[count++] = found;
-    differs = differs || *found != own;
-  }
+  for (int i = 0; i < count; ++i) differs = differs || *beside[i] != own;
   if (!differs) return false;
   if (brush_.kind == BrushKind::Smooth) {
     for (int i = 0; i < count; ++i) add_to(target, *beside[i], 1);

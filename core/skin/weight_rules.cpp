@@ -104,6 +104,17 @@ WeightChange changed_to(Influence& influence, const Influence& next) {
   return {true, -1};
 }
 
+// Two bones, or one.
+Influence pair_of(int bone, int weight, int other) {
+  const int rest = kFullWeight - weight;
+  const bool first = weight > rest || (weight == rest && bone < other);
+  Influence made;
+  made.bone = {static_cast<std::uint16_t>(first ? bone : other), static_cast<std::uint16_t>(first ? other : bone), 0, 0};
+  made.weight = {static_cast<std::uint16_t>(first ? weight : rest), static_cast<std::uint16_t>(first ? rest : weight), 0, 0};
+  if (made.weight[1] == 0) made.bone[1] = 0;
+  return made;
+}
+
 int largest_locked(Entries& entries) {
   const Entry* locked = entries.largest(Part::Locked);
   return locked ? locked->bone : -1;
@@ -197,12 +208,33 @@ int WeightRules::sum_of(const Influence& influence, std::span<const int> bones) 
 }
 
 WeightChange WeightRules::set(Influence& influence, int bone, int weight) const {
-  if (!any_locked_ && normalize_ == Normalize::Unlocked) return set_freely(influence, bone, weight);
+  if (normalize_ == Normalize::Unlocked) {
+    bool free = true;
+    if (any_locked_) {
+      free = !locked_[bone];
+      for (int i = 0; i < 4; ++i) free = free && (influence.weight[i] == 0 || !locked_[influence.bone[i]]);
+    }
+    if (free) return set_freely(influence, bone, weight);
+  }
   return set(influence, std::span(&bone, 1), weight);
 }
 
-// By far the most frequent case, and the same as below: one bone, no locks.
+// By far the most frequent case, and the same as below: one bone, and no locks here.
 WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight) const {
+  if (influence.weight[2] == 0) {
+    const bool first = influence.bone[0] == bone, second = influence.bone[1] == bone && influence.weight[1] != 0;
+    if (first || second || influence.weight[1] == 0) {
+      const int before = first ? influence.weight[0] : second ? influence.weight[1] : 0, now = std::clamp(weight, 0, kFullWeight);
+      if (now == before) return {};
+      int other = influence.bone[first ? 1 : 0];
+      if (before == kFullWeight) {
+        other = heir(bone);
+        if (other < 0) return {false, nearest_relative(bone, {}, true)};
+      }
+      influence = pair_of(bone, now, other);
+      return {true, -1};
+    }
+  }
   int slot = 0, count = 0;
   for (int i = 0; i < 4; ++i) count += influence.weight[i] != 0;
   while (slot < count && influence.bone[slot] != bone) ++slot;
@@ -211,14 +243,6 @@ WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight)
   if (now == before) return {};
   if (others == 0) {
     influence = rigid_influence(bone);
-    return {true, -1};
-  }
-  if (before == kFullWeight) {
-    const int to = heir(bone);
-    if (to < 0) return {};  // a rig of one bone
-    influence.bone = {static_cast<std::uint16_t>(bone), static_cast<std::uint16_t>(to), 0, 0};
-    influence.weight = {static_cast<std::uint16_t>(now), static_cast<std::uint16_t>(others), 0, 0};
-    sort_influence(influence);
     return {true, -1};
   }
   if (slot == 4) {  // the smallest makes room

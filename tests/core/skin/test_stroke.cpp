@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <random>
 #include <tuple>
 
@@ -9,41 +8,13 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/skin/stroke.h"
 #include "core/volume/phantom.h"
-#include "tests/core/skin/small_body.h"
+#include "tests/core/skin/painted.h"
 
 using namespace limber;
 using namespace limber::test;
 
 namespace {
-
-struct Painted {
-  SmallBody body;
-  TissueVoxels tissue;
-  std::shared_ptr<const SkinWeights> weights;
-
-  explicit Painted(SmallBody made) : body(std::move(made)), tissue(body.volume) {
-    std::vector<std::string> names;
-    for (const Bone& bone : body.armature.bones) names.push_back(bone.name);
-    weights = std::make_shared<const SkinWeights>(names, tissue);
-  }
-  StrokeBody stroke_body() const { return {body.volume, tissue, body.tissues, body.armature}; }
-  void set(const std::function<Influence(const glm::ivec3&)>& of) {
-    SkinWeights all = *weights;
-    for (std::int64_t b = 0; b < all.chunk_count(); ++b) {
-      SkinWeights::Chunk chunk = all.chunk(b);
-      tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& v) { chunk[place - tissue.bricks()[b].first] = of(v); });
-      all.set_chunk(b, std::move(chunk));
-    }
-    weights = std::make_shared<const SkinWeights>(std::move(all));
-  }
-};
-
-const Influence& at(const TissueVoxels& tissue, const SkinWeights& weights, const glm::ivec3& v) {
-  const int brick = tissue.brick_at(v);
-  return weights.chunk(brick)[tissue.index_of(v) - tissue.bricks()[brick].first];
-}
 
 Painted bar() { return Painted(two_bone_bar(12, 40, 6)); }
 
@@ -62,20 +33,7 @@ SkinWeights one_dab(const Painted& painted, const StrokeSettings& settings, cons
   return stroke.finish();
 }
 
-// A bar across a plane of symmetry, x = 31 mm, with two arms and a trunk; weights at random but mirror images.
-Painted two_sided() {
-  SmallBody body;
-  body.volume.grid.size = {32, 14, 14};
-  body.volume.grid.spacing = glm::dvec3(2);
-  body.volume.voxels.assign(body.volume.grid.voxel_count(), 0);
-  for (int z = 2; z < 12; ++z)
-    for (int y = 2; y < 12; ++y)
-      for (int x = 2; x < 30; ++x) body.volume.at({x, y, z}) = kMuscle;
-  body.tissues = muscle_and_bone();
-  body.armature.bones = {bone_between("Trunk", -1, {31, 14, 2}, {31, 14, 26}), bone_between("LeftArm", 0, {31, 14, 14}, {58, 14, 14}),
-                         bone_between("RightArm", 0, {31, 14, 14}, {4, 14, 14})};
-  return Painted(std::move(body));
-}
+Painted two_sided() { return Painted(two_sided_body()); }
 
 }  // namespace
 
