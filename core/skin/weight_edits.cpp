@@ -210,8 +210,8 @@ WeightEdit smoothed(const StrokeBody& body, const SkinWeights& weights, int pass
   WeightEdit all{weights};
   for (int pass = 0; pass < passes; ++pass) {
     progress.update("smoothing", double(pass) / passes);
-    WeightEdit once = edited_voxels(body, all.weights, scope,
-                                    [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3& voxel, const WeightsAround& around) {
+    const auto towards_mean = [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3& voxel,
+                                  const WeightsAround& around) {
       std::array<const Influence*, 6> beside;
       const int count = around.beside(voxel & (kBrick - 1), beside);
       bool differs = false;
@@ -220,7 +220,8 @@ WeightEdit smoothed(const StrokeBody& body, const SkinWeights& weights, int pass
       WeightSum mean;
       for (int i = 0; i < count; ++i) add_to(mean, *beside[i], 1);
       return rules.blend(influence, mean, amount);
-    });
+    };
+    WeightEdit once = edited_voxels(body, all.weights, scope, towards_mean);
     all = std::move(once);
   }
   // Changed is what differs in the end, not in the last pass.

@@ -175,7 +175,8 @@ TEST_CASE("weight edits: weights are copied, moved and swapped between bones; sw
   scope.rigid_bone_tissue = false;
   const SkinWeights& before = *painted.weights;
   const SkinWeights swapped = copied(body, before, 1, 2, Copy::Swap, scope).weights;
-  const SkinWeights moved = copied(body, before, 1, 2, Copy::Move, scope).weights, replaced = copied(body, before, 1, 2, Copy::Replace, scope).weights;
+  const SkinWeights moved = copied(body, before, 1, 2, Copy::Move, scope).weights;
+  const SkinWeights replaced = copied(body, before, 1, 2, Copy::Replace, scope).weights;
   int wrong = 0;
   for (std::int64_t b = 0; b < before.chunk_count(); ++b)
     for (std::size_t i = 0; i < before.chunk(b).size(); ++i) {
