@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Weights in layers over a base: each has its own weights, a mask that says where and how much it covers, and an opacity. The
+// layers are put together from the bottom up, what is below shining through where a layer covers less, and what comes out is
+// normalized like any weights. Nothing below is changed by what is painted above it.
+//
+// Painting on a layer: a stroke (or any edit) starts from canvas(), which shows the layer where it covers and what is below it
+// elsewhere; painted_on() takes what it changed into the layer and lets the layer cover there.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/skin/weight_edits.h"
+
+namespace limber {
+
+struct WeightLayer {
+  using Mask = std::vector<std::uint16_t>;  // one brick's, in 1/65535
+
+  std::string name;
+  bool visible = true;
+  double opacity = 1;  // [0, 1]
+  SkinWeights weights;
+  std::vector<std::shared_ptr<const Mask>> mask;  // #bricks; null: covers nothing there
+
+  // What it covers, [0, 1], as seen.    i  in the brick's chunk
+  double cover(std::int64_t brick, std::size_t i) const { return visible && mask[brick] ? opacity * (*mask[brick])[i] / kFullWeight : 0; }
+};
+
+struct WeightLayers {
+  std::shared_ptr<const SkinWeights> base;
+  std::vector<std::shared_ptr<const WeightLayer>> layers;  // the lowest first
+};
+
+// A layer that covers nothing, at the top.
+WeightLayers with_new_layer(const WeightLayers& layers, const std::string& name);
+
+// One brick of what comes out, of the base and the first `count` layers.
+SkinWeights::Chunk composed_chunk(const WeightLayers& layers, std::int64_t brick, std::size_t count);
+// All of it. Bricks that no layer covers are shared with the base.
+SkinWeights composed(const WeightLayers& layers);
+
+// What is painted on when this layer is.
+SkinWeights canvas(const WeightLayers& layers, std::size_t layer);
+// The layer after its canvas was changed from `before` to `after`: where they differ it has what is new, and covers fully.
+WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after);
+
+// The mask becomes `cover` [0, 1] in the region (empty: everywhere). Where the layer did not cover before it now has what its
+// canvas shows.
+WeightLayer with_mask(const WeightLayers& layers, std::size_t layer, const TissueVoxels& tissue, const TissueRegion& region, double cover);
+
+// The layer joined with the one below it, or with the base: what comes out stays the same (to the four bones a voxel can have).
+// Throws Error where either layer is hidden.
+WeightLayers merged_down(const WeightLayers& layers, std::size_t layer);
+
+}  // namespace limber

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <numeric>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "core/base/error.h"
+#include "core/skin/weight_layers.h"
+#include "tests/core/skin/painted.h"
+
+using namespace limber;
+using namespace limber::test;
+
+namespace {
+
+WeightLayers on(const Painted& painted) { return with_new_layer({painted.weights, {}}, "Elbow"); }
+
+// The layer at `index` replaced.
+WeightLayers with(const WeightLayers& layers, std::size_t index, WeightLayer layer) {
+  WeightLayers other = layers;
+  other.layers[index] = std::make_shared<const WeightLayer>(std::move(layer));
+  return other;
+}
+
+WeightLayers painted_at(const Painted& painted, const WeightLayers& layers, std::size_t layer, const glm::dvec3& point, int bone) {
+  StrokeSettings settings;
+  settings.brush.radius = 9;
+  settings.brush.falloff = FalloffShape::Linear;
+  settings.bones = {bone};
+  const auto before = std::make_shared<const SkinWeights>(canvas(layers, layer));
+  Stroke stroke(painted.stroke_body(), before, settings);
+  stroke.to(point);
+  return with(layers, layer, painted_on(*layers.layers[layer], *before, stroke.finish()));
+}
+
+double worst_difference(const SkinWeights& a, const SkinWeights& b) {
+  double worst = 0;
+  for (std::int64_t c = 0; c < a.chunk_count(); ++c)
+    for (std::size_t i = 0; i < a.chunk(c).size(); ++i)
+      for (int bone = 0; bone < std::ssize(a.bones()); ++bone) worst = std::max(worst, std::abs(a.chunk(c)[i].of(bone) - b.chunk(c)[i].of(bone)));
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("weight layers: an empty layer changes nothing and shares everything") {
+  const Painted painted(two_bone_bar());
+  const SkinWeights all = composed(on(painted));
+  for (std::int64_t b = 0; b < all.chunk_count(); ++b) CHECK(all.shared_chunk(b) == painted.weights->shared_chunk(b));
+}
+
+TEST_CASE("weight layers: what is painted on a layer comes out as painted, fades with its opacity, and is gone when hidden") {
+  const Painted painted(two_bone_bar());
+  const WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
+  StrokeSettings settings;
+  settings.brush.radius = 9;
+  settings.brush.falloff = FalloffShape::Linear;
+  settings.bones = {1};
+  Stroke direct(painted.stroke_body(), painted.weights, settings);
+  direct.to({6, 6, 40});
+  const SkinWeights expected = direct.finish();
+  CHECK(composed(layers) == expected);
+  CHECK(composed(layers) != *painted.weights);
+
+  WeightLayer half = *layers.layers[0];
+  half.opacity = 0.5;
+  const SkinWeights faded = composed(with(layers, 0, half));
+  painted.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
+    if (v.z == 20) CHECK(at(painted.tissue, faded, v).of(1) == doctest::Approx(at(painted.tissue, expected, v).of(1) / 2).epsilon(1e-3));
+  });
+  half.visible = false;
+  CHECK(composed(with(layers, 0, half)) == *painted.weights);
+}
+
+TEST_CASE("weight layers: the base may change below a layer, which keeps what it covers") {
+  Painted painted(two_bone_bar());
+  WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
+  const SkinWeights before = composed(layers);
+  layers.base = std::make_shared<const SkinWeights>(flooded(painted.stroke_body(), *painted.weights, std::vector<int>{1}, Flood::Set, 0.25).weights);
+  const SkinWeights after = composed(layers);
+  CHECK(at(painted.tissue, after, {3, 3, 20}) == at(painted.tissue, before, {3, 3, 20}));
+  CHECK(at(painted.tissue, after, {3, 3, 40}).of(1) == doctest::Approx(0.25).epsilon(1e-3));
+  // And on the canvas the new base is seen beside it.
+  CHECK(at(painted.tissue, canvas(layers, 0), {3, 3, 40}).of(1) == doctest::Approx(0.25).epsilon(1e-3));
+}
+
+TEST_CASE("weight layers: a mask takes a layer back by region, and brings it to where it did not cover without a change") {
+  const Painted painted(two_bone_bar());
+  const WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
+  const TissueRegion upper = region_where(painted.tissue, [](std::int64_t, const glm::ivec3& v) { return v.z >= 20; });
+  const SkinWeights cut = composed(with(layers, 0, with_mask(layers, 0, painted.tissue, upper, 0)));
+  CHECK(at(painted.tissue, cut, {3, 3, 21}) == at(painted.tissue, *painted.weights, {3, 3, 21}));
+  CHECK(at(painted.tissue, cut, {3, 3, 19}) == at(painted.tissue, composed(layers), {3, 3, 19}));
+  CHECK(composed(with(layers, 0, with_mask(layers, 0, painted.tissue, {}, 1))) == composed(layers));
+}
+
+TEST_CASE("weight layers: merging down changes nothing that comes out, sums stay exact, and hidden layers are refused") {
+  std::mt19937 random(1);
+  Painted painted(two_bone_bar());
+  painted.set([&](const glm::ivec3&) { return quantize({{0, 1 + random() % 5}, {1, random() % 5}}); });
+  WeightLayers layers = on(painted);
+  layers = painted_at(painted, layers, 0, {6, 6, 40}, 1);
+  layers = with_new_layer(layers, "Wrist");
+  layers = painted_at(painted, layers, 1, {8, 4, 46}, 0);
+  for (const std::size_t l : {0, 1}) {
+    const TissueRegion back = region_where(painted.tissue, [](std::int64_t, const glm::ivec3& v) { return v.y > 3; });
+    WeightLayer layer = with_mask(layers, l, painted.tissue, back, 0.6);
+    layer.opacity = 0.7 + 0.1 * double(l);
+    layers = with(layers, l, layer);
+  }
+  const SkinWeights all = composed(layers);
+  for (const auto& chunk : {all.chunk(0), all.chunk(all.chunk_count() / 2)})
+    for (const Influence& influence : chunk) CHECK(std::accumulate(influence.weight.begin(), influence.weight.end(), 0) == kFullWeight);
+  const WeightLayers one = merged_down(layers, 1);
+  CHECK(one.layers.size() == 1);
+  CHECK(worst_difference(composed(one), all) < 1e-4);
+  const WeightLayers none = merged_down(one, 0);
+  CHECK(none.layers.empty());
+  CHECK(worst_difference(*none.base, all) < 1e-4);
+  CHECK(composed(none) == *none.base);
+
+  WeightLayer hidden = *layers.layers[0];
+  hidden.visible = false;
+  CHECK_THROWS_AS(merged_down(with(layers, 0, hidden), 1), Error);
+  CHECK_THROWS_AS(merged_down(with(layers, 0, hidden), 0), Error);
+}
