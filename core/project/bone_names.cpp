@@ -2,6 +2,7 @@
 #include "core/project/bone_names.h"
 
 #include <optional>
+#include <set>
 #include <type_traits>
 
 #include "core/base/error.h"
@@ -104,12 +105,14 @@ void follow_names(Document& document, const Armature& before, const Armature& af
     pose.rotation = names.follow(pose.rotation);
     take(part, std::move(pose));
   }
-  if (!document.anchors) return;
-  Anchors anchors;
-  for (const std::string& pin : document.anchors->pins)
-    if (const auto name = names.now(pin)) anchors.pins.insert(*name);
-  anchors.poles = names.follow(document.anchors->poles);
-  take(document.anchors, std::move(anchors));
+  const auto follow = [&](const std::set<std::string>& bones) {
+    std::set<std::string> next;
+    for (const std::string& bone : bones)
+      if (const auto name = names.now(bone)) next.insert(*name);
+    return next;
+  };
+  if (document.locks) take(document.locks, WeightLocks{follow(document.locks->bones)});
+  if (document.anchors) take(document.anchors, Anchors{follow(document.anchors->pins), names.follow(document.anchors->poles)});
 }
 
 void follow_mirrored(Document& document, const Armature& before, const Armature& after, const std::vector<int>& bones) {
@@ -147,10 +150,19 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
     carry(pose.rotation, turned);
     take(part, std::move(pose));
   }
+  const auto carry_names = [&](std::set<std::string>& bones) {
+    std::set<std::string> next;
+    for (const std::string& bone : bones) next.insert(gone_over.contains(bone) ? gone_over.at(bone) : bone);
+    bones = std::move(next);
+  };
+  if (document.locks) {
+    WeightLocks locks = *document.locks;
+    carry_names(locks.bones);
+    take(document.locks, std::move(locks));
+  }
   if (!document.anchors) return;
   Anchors anchors = *document.anchors;
-  for (const auto& [name, now] : gone_over)
-    if (anchors.pins.erase(name)) anchors.pins.insert(now);
+  carry_names(anchors.pins);
   carry(anchors.poles, [&](const glm::dvec3& place) { return plane.place(place); });
   take(document.anchors, std::move(anchors));
 }

@@ -17,6 +17,7 @@
 #include "core/pose/pose_library.h"
 #include "core/rig/armature.h"
 #include "core/skin/skin_weights.h"
+#include "core/skin/weight_locks.h"
 #include "core/volume/label_volume.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/volume_io.h"
@@ -84,6 +85,7 @@ struct Document {
   int frame = 0;  // of that clip
   PoseLibrary poses;
   std::shared_ptr<const Anchors> anchors;
+  std::shared_ptr<const WeightLocks> locks;
 
   const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 

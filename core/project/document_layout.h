@@ -8,11 +8,12 @@
 
 namespace limber {
 
-// 1 had one motion and no clips, 2 no library of poses, 3 no anchors, 4 nothing above the two lowest bits of a clip's reference.
-constexpr std::uint32_t kDocumentLayout = 5;
+// 1 had one motion and no clips, 2 no library of poses, 3 no anchors, 4 nothing above the two lowest bits of a clip's reference,
+// 5 no locks of weights.
+constexpr std::uint32_t kDocumentLayout = 6;
 
 // A part's first byte.
-enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors };
+enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors, WeightLocks };
 
 template <class T>
 struct PartKindOf;
@@ -29,6 +30,7 @@ template <> struct PartKindOf<Result>      { static constexpr PartKind kKind = P
 template <> struct PartKindOf<Clip>        { static constexpr PartKind kKind = PartKind::Clip;       static constexpr const char* kName = "clip"; };
 template <> struct PartKindOf<NamedPose>   { static constexpr PartKind kKind = PartKind::NamedPose;  static constexpr const char* kName = "pose of the library"; };
 template <> struct PartKindOf<Anchors>     { static constexpr PartKind kKind = PartKind::Anchors;    static constexpr const char* kName = "pins and poles"; };
+template <> struct PartKindOf<WeightLocks> { static constexpr PartKind kKind = PartKind::WeightLocks; static constexpr const char* kName = "locks of weights"; };
 // clang-format on
 
 // The reference, and above it what source and rig rest in.

@@ -152,6 +152,10 @@ void get(ByteReader& in, Anchors& anchors) {
   }
 }
 
+void get(ByteReader& in, WeightLocks& locks) {
+  for (const std::string& bone : get_texts(in)) locks.bones.insert(bone);
+}
+
 void get(ByteReader& in, RetargetMap& map) {
   for (std::size_t count = in.count(41); count > 0; --count) {
     RetargetMap::Source& source = map.sources[in.text()];
@@ -257,6 +261,7 @@ class Reading {
       in.require(document.clip >= 0);
       if (layout > 2) list(document.poses);
       if (layout > 3) part(document.anchors);
+      if (layout > 5) part(document.locks);
     }
     in.require(next == node.nodes.size());
     in.end();

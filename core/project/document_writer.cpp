@@ -84,6 +84,11 @@ void put(ByteWriter& out, const Anchors& anchors) {
   }
 }
 
+void put(ByteWriter& out, const WeightLocks& locks) {
+  out.count(locks.bones.size());
+  for (const std::string& bone : locks.bones) out.text(bone);
+}
+
 void put(ByteWriter& out, const Motion& motion) {
   out.count(motion.joints.size());
   for (const BvhJoint& joint : motion.joints) {
@@ -200,6 +205,7 @@ class DocumentWriter::Writing {
     out.count(document.poses.size());
     for (const auto& pose : document.poses) root.nodes.push_back(write(pose));
     part(document.anchors);
+    part(document.locks);
     root.bytes = out.take();
     const ChunkHash hash = put_chunk(to_chunk(root));
     progress_.update("save", 1);

@@ -64,6 +64,12 @@ std::int64_t own_bytes(const Anchors& anchors) {
   for (const auto& [bone, place] : anchors.poles) bytes += kNode + std::int64_t{sizeof bone + sizeof place} + heap_bytes(bone);
   return bytes;
 }
+std::int64_t own_bytes(const WeightLocks& locks) {
+  constexpr std::int64_t kNode = kBlock + 32;  // of a set
+  std::int64_t bytes = 0;
+  for (const std::string& bone : locks.bones) bytes += kNode + std::int64_t{sizeof bone} + heap_bytes(bone);
+  return bytes;
+}
 std::int64_t own_bytes(const Visibility& visibility) {
   return static_cast<std::int64_t>(visibility.looks.size()) * (kBlock + std::int64_t{sizeof(std::pair<Label, TissueLook>)} + 32);
 }
@@ -122,6 +128,7 @@ class History::Ledger {
       if (count(clip, step)) count(clip->motion, step);
     for (const auto& pose : document.poses) count(pose, step);
     count(document.anchors, step);
+    count(document.locks, step);
     bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results) + heap_bytes(document.clips) + heap_bytes(document.poses));
   }
 

@@ -27,6 +27,7 @@ bool equal(const Anchors& a, const Anchors& b) {
   const auto same_pole = [](const auto& x, const auto& y) { return x.first == y.first && same(x.second, y.second); };
   return a.pins == b.pins && std::equal(a.poles.begin(), a.poles.end(), b.poles.begin(), b.poles.end(), same_pole);
 }
+bool equal(const WeightLocks& a, const WeightLocks& b) { return a == b; }
 bool equal(const LabelVolume& a, const LabelVolume& b) { return a.grid == b.grid && a.voxels == b.voxels; }
 bool equal(const Tissue& a, const Tissue& b) {
   return a.label == b.label && same(a.file_value, b.file_value) && a.name == b.name && a.colour == b.colour && a.kind == b.kind &&
@@ -156,7 +157,8 @@ bool same_contents(const Document& a, const Document& b) {
   const auto all_equal = [](const auto& ours, const auto& theirs) {
     return std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(), [](const auto& x, const auto& y) { return equal(x, y); });
   };
-  return a.clip == b.clip && a.frame == b.frame && all_equal(a.clips, b.clips) && all_equal(a.poses, b.poses) && equal(a.anchors, b.anchors);
+  return a.clip == b.clip && a.frame == b.frame && all_equal(a.clips, b.clips) && all_equal(a.poses, b.poses) && equal(a.anchors, b.anchors) &&
+         equal(a.locks, b.locks);
 }
 
 Document small_document() {
@@ -174,6 +176,7 @@ Document small_document() {
   document.poses = {shared(NamedPose{"Reach \xff", {{"Lower", {0.5, -0.0, 1e-300, 0.5}}}, {}, std::string("\0PNG", 4)}),
                     shared(NamedPose{"", {{"Upper", {1, 0, 0, 0}}}, glm::dvec3(1, -0.0, 1e-9), std::string(100'000, 'p')})};
   document.anchors = shared(Anchors{.pins = {"Lower", "gone \xff"}, .poles = {{"Lower", {1e-300, -0.0, 70}}}});
+  document.locks = shared(WeightLocks{{"Lower", "gone \xff"}});
   document.visibility = shared(Visibility{.looks = {{2, {.visible = false, .opacity = 0.25f}}}});
   document.results.push_back(shared(result_of(document, random)));
   return document;

@@ -81,12 +81,14 @@ TEST_CASE("bone names: keys, maps, poses of the library and pins go with their b
   CHECK(document.poses[0]->rotation == std::map<std::string, glm::dquat>{{"Upper", before.poses[0]->rotation.at("Lower")}});
   CHECK(document.anchors->pins == std::set<std::string>{"Upper", "gone \xff"});
   CHECK(document.anchors->poles.begin()->first == "Upper");
+  CHECK(document.locks->bones == std::set<std::string>{"Upper", "gone \xff"});
   CHECK(document.clips[1] == before.clips[1]);  // what names no bone stays the same part
 
   // And back again.
   follow_names(document, swapped, *before.armature);
   CHECK(document.poses[0]->rotation == before.poses[0]->rotation);
   CHECK(*document.anchors == *before.anchors);
+  CHECK(*document.locks == *before.locks);
   CHECK(document.clips[0]->keys == old.keys);
 }
 

@@ -66,11 +66,12 @@ TEST_CASE("project: a document of the second layout opens, with an empty library
   Document now = small_document();
   now.poses.clear();
   now.anchors = nullptr;
+  now.locks = nullptr;
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  // The same, without the count of poses and the flag of anchors at its end.
-  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 1);
+  // The same, without the count of poses and the flags of anchors and locks at its end.
+  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 2);
   node.bytes[0] = 2;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -80,11 +81,25 @@ TEST_CASE("project: a document of the second layout opens, with an empty library
 TEST_CASE("project: a document of the third layout opens, without pins and poles") {
   Document now = small_document();
   now.anchors = nullptr;
+  now.locks = nullptr;
+  Chunks chunks;
+  DocumentWriter writer;
+  Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
+  node.bytes.resize(node.bytes.size() - 2);
+  node.bytes[0] = 3;
+  std::vector<std::string> warnings;
+  CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
+  CHECK(warnings.empty());
+}
+
+TEST_CASE("project: a document of the fifth layout opens, without locks of weights") {
+  Document now = small_document();
+  now.locks = nullptr;
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
   node.bytes.pop_back();
-  node.bytes[0] = 3;
+  node.bytes[0] = 5;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
   CHECK(warnings.empty());
