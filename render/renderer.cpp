@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 
 #include "core/base/error.h"
+#include "core/volume/tissue_voxels.h"
 #include "render/headless.h"
 #include "render/renderer_parts.h"
 
@@ -63,6 +64,15 @@ const PosedTexture* Renderer::Parts::pose(Body& body, const std::shared_ptr<cons
   if (!body.pose) body.pose = std::make_unique<PosedTexture>();
   if (body.pose->map() != map) body.pose->upload(map, largest_texture);
   return body.pose.get();
+}
+
+const WeightTexture* Renderer::Parts::weights(Body& body, const std::optional<ShownWeights>& shown) {
+  if (!shown) return nullptr;
+  if (const auto volume = body.volume->original().lock(); !volume || shown->tissue->grid_size() != volume->grid.size)
+    throw Error("the weights were made for another volume", "display of weights", "show the volume that they belong to");
+  if (!body.weights) body.weights = std::make_unique<WeightTexture>(*body.volume);
+  body.weights->update(*body.volume, *shown);
+  return body.weights.get();
 }
 
 const PosedHull* Renderer::Parts::posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map) {

@@ -21,6 +21,8 @@
 #include "render/visible_field.h"
 #include "render/volume_pass.h"
 #include "render/volume_texture.h"
+#include "render/weight_pass.h"
+#include "render/weight_texture.h"
 
 namespace limber::render {
 
@@ -34,6 +36,7 @@ struct Renderer::Parts {
     std::vector<std::unique_ptr<VisibleField>> layers;
     std::unique_ptr<PosedTexture> pose;  // the last one drawn, with the hull of each layer in it
     std::vector<std::unique_ptr<PosedHull>> posed_hulls;
+    std::unique_ptr<WeightTexture> weights;  // what was shown of them last
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
   const LooksTexture& looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks, Display display);
@@ -41,6 +44,8 @@ struct Renderer::Parts {
   const VisibleField& layer(Body& body, const LooksTexture& looks, size_t layer);
   // The map on the card; null without one.
   const PosedTexture* pose(Body& body, const std::shared_ptr<const PreviewMap>& map);
+  // What is shown of weights on the card; null for nothing.
+  const WeightTexture* weights(Body& body, const std::optional<ShownWeights>& shown);
   // Where rays that look for a layer start in posed space; null without a map.
   const PosedHull* posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map);
   VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
@@ -50,6 +55,7 @@ struct Renderer::Parts {
   ComposePass compose;
   ArmaturePass armature;
   SlicePass slice;
+  WeightPass weigh;
   SurfacePass surface;
   std::string note;
 

@@ -15,6 +15,8 @@
 #include "core/volume/label_volume.h"
 
 namespace limber {
+class SkinWeights;
+class TissueVoxels;
 struct PreviewMap;
 struct PosedSurface;
 }
@@ -63,6 +65,24 @@ enum class Moving {
   Surface,
 };
 
+// What of skin weights is shown in the tissues' place (render/weight_colours.h).
+enum class WeightDisplay {
+  Active,    // the weight of one bone, exact 0 and exact 1 apart
+  Dominant,  // the bone that has most of a voxel
+  Mixed,     // all its bones, by their shares
+  Count,     // how many bones it follows
+};
+struct ShownWeights {
+  std::shared_ptr<const SkinWeights> weights;
+  std::shared_ptr<const TissueVoxels> tissue;  // of the volume
+  WeightDisplay display = WeightDisplay::Active;
+  int bone = -1;  // of the weights' bones, the active one; -1: none
+  std::shared_ptr<const std::vector<glm::vec3>> swatches;  // #bones of the weights, sRGB
+  bool contours = true;  // lines where the active bone's weight passes a quarter, a half, three quarters; else between colours
+
+  bool operator==(const ShownWeights&) const = default;
+};
+
 struct Scene {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const PreviewMap> pose;  // of this volume: its body is drawn as the map leads; null: as the volume is
@@ -71,6 +91,7 @@ struct Scene {
   std::shared_ptr<const LabelLooks> looks;
   Display display = Display::Solid;
   Clip clip;
+  std::optional<ShownWeights> weights;  // nothing: tissues
   std::optional<Label> outlined;  // tissue with a selection outline
 
   std::shared_ptr<const Armature> armature;

@@ -9,6 +9,8 @@ namespace limber::render {
 
 namespace {
 
+constexpr float kJoined = 3, kSlant = 6;  // padded voxels, and pixels as they lie on a surface that is seen at a slant
+
 const char* const kShade = R"(
 in vec2 ndc;
 uniform sampler2D u_depth, u_normal;
@@ -53,12 +55,41 @@ vec3 lit(vec3 albedo, vec3 normal, float open) {
   return albedo * (light + 0.06 * rim * sky) + 0.04 * gloss * open;
 }
 
+#ifdef WEIGHTS
+uniform sampler2D u_weight;
+uniform usampler2D u_place;
+uniform int u_lines;      // 0 none, 1 between ranges of the weight, 2 between colours
+uniform vec2 u_joined;    // steps of the place that pixels side by side on one surface are apart, at most: so many, and so many by their size
+const float kLine = 0.55;
+
+// Whether a line may run between what the two show.
+bool differs(vec4 weight, vec4 other) { return other.a != 0.0 && (u_lines == 1 ? other.a != weight.a : other.rgb != weight.rgb); }
+
+// Whether the pixels lie on one surface.
+bool joined(ivec2 at, ivec2 beside) {
+  vec3 apart = vec3(texelFetch(u_place, at, 0).xyz) - vec3(texelFetch(u_place, beside, 0).xyz);
+  float most = u_joined.x + u_joined.y * length(u_base_x + texelFetch(u_depth, at, 0).r * u_toward_x);
+  return dot(apart, apart) < most * most;
+}
+
+vec3 colour_of(ivec2 at, vec3 tissue) {
+  vec4 weight = texelFetch(u_weight, at, 0);
+  ivec2 last = textureSize(u_weight, 0) - 1, right = min(at + ivec2(1, 0), last), above = min(at + ivec2(0, 1), last);
+  bool to_right = differs(weight, texelFetch(u_weight, right, 0)), to_above = differs(weight, texelFetch(u_weight, above, 0));
+  bool line = u_lines != 0 && ((to_right && joined(at, right)) || (to_above && joined(at, above)));
+  return weight.a == 0.0 ? tissue : weight.rgb * (line ? kLine : 1.0);
+}
+#endif
+
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 normal = texelFetch(u_normal, at, 0);
   uint label = texelFetch(u_label, at, 0).r;
   uvec4 look = texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0);
   vec3 srgb = vec3(look.rgb) / 255.0;
+#ifdef WEIGHTS
+  srgb = colour_of(at, srgb);
+#endif
   bool cap = normal.a > 0.7;
   float alpha = normal.a == 0.0 || (look.a & 7u) > u_layer + 1u ? 0.0 : 1.0;
 #ifdef GHOST
@@ -81,12 +112,15 @@ ShadePass::ShadePass()
     : solid_("shade", gl::kWholePicture, std::string(kRayUniforms) + kShade),
       posed_("shade posed", gl::kWholePicture, std::string("#define POSED\n") + kRayUniforms + kPosedFunctions + kShade),
       ghost_("shade ghost", gl::kWholePicture, std::string(kRayUniforms) + kShade, "#define GHOST"),
+      weights_("shade weights", gl::kWholePicture, std::string(kRayUniforms) + kShade, "#define WEIGHTS"),
+      posed_weights_("shade posed weights", gl::kWholePicture, std::string("#define POSED\n#define WEIGHTS\n") + kRayUniforms + kPosedFunctions + kShade),
       nothing_(gl::VertexArray::create()) {}
 
 void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed, const GBuffer& buffer,
-                     const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect, int layer, bool ghost) {
+                     const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect, int layer, bool ghost, Colours colours) {
   if (field.hull().empty()) return;
-  gl::Program& program = ghost ? ghost_ : posed ? posed_ : solid_;
+  const bool weights = colours != Colours::Tissues && !ghost;
+  gl::Program& program = ghost ? ghost_ : weights ? (posed ? posed_weights_ : weights_) : posed ? posed_ : solid_;
   glViewport(0, 0, buffer.size().x, buffer.size().y);
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
@@ -105,7 +139,14 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
   program.set_texture("u_looks", 3, GL_TEXTURE_2D, looks.name());
   program.set_texture("u_occupancy", 4, GL_TEXTURE_3D, field.occupancy().name());
   program.set("u_occupancy_texel", 1.0f / glm::vec3(volume.layout().bricks() * kBrick));
-  if (posed && !ghost) posed->bind(volume, program, 5);
+  int unit = 5;
+  if (posed && !ghost) unit = posed->bind(volume, program, unit);
+  if (weights) {
+    program.set_texture("u_weight", unit++, GL_TEXTURE_2D, buffer.weight.name());
+    program.set_texture("u_place", unit++, GL_TEXTURE_2D, buffer.place.name());
+    program.set("u_lines", colours == Colours::WeightsWithContours ? 1 : colours == Colours::WeightsWithBorders ? 2 : 0);
+    program.set("u_joined", glm::vec2(kJoined, kSlant * 2 / float(buffer.size().x)) / place_step(volume));
+  }
   // A normal of the view, in padded coordinates: one brick long whatever the spacing.
   const glm::dmat3 to_view = glm::transpose(rays.view_from_gradient);
   const double scale = kBrick / std::max({glm::length(to_view[0]), glm::length(to_view[1]), glm::length(to_view[2])});

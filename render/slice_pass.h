@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A plane through the labels, one pixel at a time, voxels as they are; or through a posed body, where its map leads.
+// A plane through the labels, one pixel at a time, voxels as they are; or through a posed body, where its map leads. Weights
+// take the place of the tissues' colours, with the borders of tissues faintly upon them.
 #pragma once
 
 #include <map>
 #include <memory>
-#include <utility>
+#include <optional>
+#include <tuple>
 
 #include "render/looks_texture.h"
 #include "render/posed_texture.h"
 #include "render/view.h"
 #include "render/volume_texture.h"
+#include "render/weight_texture.h"
 
 namespace limber::render {
 
@@ -18,12 +21,13 @@ class SlicePass {
   SlicePass();
 
   // Into the framebuffer that is bound: hidden tissue and air show the background.
-  //   posed  of a posed body, or null
-  void draw(const VolumeTexture& volume, const PosedTexture* posed, const LooksTexture& looks, const SliceCamera& camera, SliceDisplay display,
-            std::optional<Label> outlined, const glm::ivec2& size);
+  //   posed    of a posed body, or null
+  //   weights  shown in the tissues' place, or null
+  void draw(const VolumeTexture& volume, const PosedTexture* posed, const LooksTexture& looks, const WeightTexture* weights, bool contours, const SliceCamera& camera,
+            SliceDisplay display, std::optional<Label> outlined, const glm::ivec2& size);
 
  private:
-  std::map<std::pair<int, bool>, std::unique_ptr<gl::Program>> programs_;  // by number of atlases, and for posed bodies
+  std::map<std::tuple<int, bool, std::optional<WeightReading>>, std::unique_ptr<gl::Program>> programs_;  // by number of atlases, for posed bodies, with weights
   gl::VertexArray nothing_;
 };
 

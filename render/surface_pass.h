@@ -15,14 +15,14 @@ class SurfacePass {
   SurfacePass();
 
   // All of the buffer; `view_from_world` turns directions.
-  void draw(const std::shared_ptr<const PosedSurface>& surface, const ViewRays& rays, const glm::dmat3& view_from_world, const GBuffer& buffer);
+  void draw(const std::shared_ptr<const PosedSurface>& surface, const VolumeTexture& volume, const ViewRays& rays, const glm::dmat3& view_from_world, const GBuffer& buffer);
 
  private:
   void upload(const std::shared_ptr<const PosedSurface>& surface);
 
   gl::Program program_;
   gl::VertexArray array_;
-  gl::Buffer places_, normals_, labels_, corners_;
+  gl::Buffer places_, normals_, labels_, rest_, corners_;
   std::shared_ptr<const PosedSurface> uploaded_;
 };
 

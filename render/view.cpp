@@ -113,11 +113,12 @@ struct BodyKey {
   std::optional<std::array<glm::dvec3, 2>> box, plane;
   Camera camera;
   glm::ivec2 size{0};
+  bool places = false;  // where at rest pixels lie is wanted
 
   bool operator==(const BodyKey&) const = default;
 };
-BodyKey key_of(const Scene& scene, const Camera& camera, const glm::ivec2& size) {
-  return {scene.volume, scene.pose, scene.looks, scene.display, scene.clip.box, scene.clip.plane, camera, size};
+BodyKey key_of(const Scene& scene, const Camera& camera, const glm::ivec2& size, bool places) {
+  return {scene.volume, scene.pose, scene.looks, scene.display, scene.clip.box, scene.clip.plane, camera, size, places};
 }
 
 // What lies on top of it.
@@ -191,12 +192,15 @@ struct View3D::Impl {
   Slowness rays;           // through a posed body
   double sample_took = 0;  // s, of the sample under way
   bool shows_surface = false;
+  std::int64_t rays_followed = 0;
+  int weight_changes = 0;  // of the weights' texture, as drawn
 
   struct Source {
     Renderer::Parts::Body* body = nullptr;
     const LooksTexture* looks = nullptr;
     std::vector<const VisibleField*> layers;
     const PosedTexture* pose = nullptr;
+    const WeightTexture* weights = nullptr;
     std::vector<const PosedHull*> posed_hulls;  // of each layer; null at rest
 
     const Hull& hull(size_t layer) const { return posed_hulls[layer] ? posed_hulls[layer]->hull() : layers[layer]->hull(); }
@@ -207,6 +211,7 @@ struct View3D::Impl {
     result.body = &parts.body(scene.volume);
     result.looks = &parts.looks(*result.body, scene.looks, scene.display);
     result.pose = parts.pose(*result.body, scene.pose);
+    result.weights = parts.weights(*result.body, scene.weights);
     for (size_t layer = 0; layer < result.looks->layers().size(); ++layer) {
       result.layers.push_back(&parts.layer(*result.body, *result.looks, layer));
       result.posed_hulls.push_back(parts.posed_hull(*result.body, layer, scene.pose));
@@ -229,23 +234,33 @@ struct View3D::Impl {
   void start(const Source& source, const ViewRays& rays, Layers& buffers, const glm::ivec2& size, const PixelRect& part) {
     VolumePass& pass = volume_pass(source);
     for (size_t layer = 0; layer < source.layers.size(); ++layer) {
-      buffers[layer].resize(size);
+      buffers[layer].resize(size, key.places);
       pass.draw_hull(source.hull(layer), rays, buffers[layer], part);
     }
   }
   void march(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
     VolumePass& pass = volume_pass(source);
+    if (!part.empty()) rays_followed += std::int64_t{part.high.x - part.low.x} * (part.high.y - part.low.y);
     for (size_t layer = 0; layer < source.layers.size(); ++layer)
       pass.march(*source.body->volume, *source.layers[layer], source.pose, source.posed_hulls[layer], source.looks->texture(), static_cast<int>(layer), scene.clip, rays,
                  buffers[layer], part);
   }
+  ShadePass::Colours colours() const {
+    if (!scene.weights) return ShadePass::Colours::Tissues;
+    if (!scene.weights->contours) return ShadePass::Colours::Weights;
+    return scene.weights->display == WeightDisplay::Active ? ShadePass::Colours::WeightsWithContours
+           : scene.weights->display == WeightDisplay::Mixed ? ShadePass::Colours::Weights : ShadePass::Colours::WeightsWithBorders;
+  }
   void shade(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
+    for (size_t layer = 0; source.weights && layer < source.layers.size(); ++layer)
+      parts.weigh.draw(*source.body->volume, *source.weights, rays, buffers[layer], part);
+    weight_changes = source.weights ? source.weights->change().count : 0;
     body.resize(buffers[0].size(), GL_RGBA8);
     body.share_depth(buffers[0].hull_depth);
     body.clear();
     for (size_t layer = source.layers.size(); layer-- > 0;)
       parts.shade.draw(*source.body->volume, *source.layers[layer], source.pose, buffers[layer], source.looks->texture(), rays, part, static_cast<int>(layer),
-                       layer == 0 && scene.display == Display::XRay);
+                       layer == 0 && scene.display == Display::XRay, colours());
   }
 
   // The whole body at once, at every `scale`-th pixel.
@@ -265,8 +280,8 @@ struct View3D::Impl {
   void draw_surface(const Source& source) {
     const ViewRays rays = rays_of(source, key.size, 0);
     rect = VolumePass::covered(source.hull(0), rays, key.size);
-    shown[0].resize(key.size);
-    parts.surface.draw(scene.surface, rays, glm::mat3_cast(glm::conjugate(key.camera.world_from_view)), shown[0]);
+    shown[0].resize(key.size, key.places);
+    parts.surface.draw(scene.surface, *source.body->volume, rays, glm::mat3_cast(glm::conjugate(key.camera.world_from_view)), shown[0]);
     shade(source, rays, shown, rect);
     shown_scale = 1;
   }
@@ -307,6 +322,22 @@ struct View3D::Impl {
     return true;
   }
 
+  // Other weights upon what the rays have met.
+  //   only_weights  nothing but the weights themselves is new
+  void recolour(const Source& source, bool only_weights) {
+    const ViewRays rays = rays_of(source, shown[0].size(), 0);
+    PixelRect part = rect;
+    if (only_weights && !source.pose && sample > 0 && source.weights->change().count == weight_changes + 1)
+      part = intersection(part, VolumePass::covered(source.weights->change().low, source.weights->change().high, rays, shown[0].size()));
+    shade(source, rays, shown, part);
+    if (sample == 0) return;
+    // The picture at rest takes over what is new, and is refined once more.
+    average.bind();
+    parts.compose.accumulate(body.texture(), key.size, 1, part);
+    sample = 1;
+    next_tile = 0;
+  }
+
   // What the body can cover in the output, with a margin for outlines and for stretched pixels.
   PixelRect shown_rect() const {
     const int margin = shown_scale + 3;
@@ -335,18 +366,21 @@ View3D::~View3D() = default;
 
 void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, double now, int scale) {
   Impl& my = *impl_;
-  const BodyKey key = key_of(scene, camera, size);
+  const BodyKey key = key_of(scene, camera, size, my.key.places || scene.weights.has_value());
   const bool moved = !my.drawn || key != my.key || (scale > 0 && (my.shown_scale != scale || my.sample > 0));
   const bool overlay_changed = !my.drawn || !same_overlay(scene, my.scene);
-  if (!moved && !overlay_changed && my.complete()) return;
+  const bool recoloured = my.drawn && scene.weights != my.scene.weights;
+  if (!moved && !recoloured && !overlay_changed && my.complete()) return;
 
   const KeepFramebuffer keep;
+  ShownWeights before = my.scene.weights.value_or(ShownWeights{});
+  if (scene.weights) before.weights = scene.weights->weights;
   my.key = key;
   my.scene = scene;
   my.output.resize(size, GL_RGBA8);
   const auto source = my.source(scene);
   my.refines = scale == 0 && source;
-  bool redraw = overlay_changed || moved;
+  bool redraw = overlay_changed || moved || recoloured;
   if (!source) {
     my.shown_scale = 0;
     my.sample = 0;
@@ -366,6 +400,9 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
       if (cost > kFrame) my.moving_scale = std::min(at + 1, kCoarsest);
       else if (at > 1 && cost * at * at / ((at - 1) * (at - 1)) < kFrame * 0.85) my.moving_scale = at - 1;
     }
+  } else if (recoloured) {
+    my.changed_at = now;
+    my.recolour(*source, scene.weights == before);
   } else if (my.refines && my.sample < kSamples && now - my.changed_at >= kRest) {
     redraw |= my.refine(*source);
   }
@@ -375,6 +412,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
 
 bool View3D::complete() const { return impl_->complete(); }
 int View3D::scale() const { return impl_->shown_scale; }
+std::int64_t View3D::rays_followed() const { return impl_->rays_followed; }
 bool View3D::slow() const { return impl_->rays.slow(); }
 bool View3D::shows_surface() const { return impl_->shows_surface; }
 unsigned View3D::texture() const { return impl_->output.texture().name(); }
@@ -475,7 +513,8 @@ void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay
   my.parts.compose.background(scene.dark_background ? Background::Dark : Background::Light, size);
   if (scene.volume && scene.looks) {
     auto& body = my.parts.body(scene.volume);
-    my.parts.slice.draw(*body.volume, my.parts.pose(body, scene.pose), my.parts.looks(body, scene.looks, Display::Solid), camera, display, scene.outlined, size);
+    my.parts.slice.draw(*body.volume, my.parts.pose(body, scene.pose), my.parts.looks(body, scene.looks, Display::Solid), my.parts.weights(body, scene.weights),
+                        scene.weights && scene.weights->contours, camera, display, scene.outlined, size);
   }
   gl::check_gl("drawing a slice");
 }

@@ -61,6 +61,7 @@ class View3D {
   void draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, double now, int scale = 0);
   bool complete() const;
   int scale() const;         // of the body in the last picture; 0: there is none
+  std::int64_t rays_followed() const;  // pixels of all pictures so far whose rays were followed, the covered rectangles'
   bool slow() const;         // rays through a posed body take too long for a moving picture: a surface would be drawn
   bool shows_surface() const;  // in place of the volume, in the last picture
   unsigned texture() const;  // RGBA8, `size` pixels, top row first when drawn with uv (0, 1) to (1, 0)

@@ -45,6 +45,7 @@ uniform mat3 u_view_from_gradient;
 layout(location = 0) out float out_depth;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out uint out_label;
+layout(location = 3) out uvec4 out_place;
 
 #ifdef POSED
 uniform usampler3D u_near_cubes;   // of the map, where they lead near the set
@@ -55,6 +56,7 @@ const float kNodeTap = 0.5 / 1.4;  // nodes for u_tap: half a node, so that dire
 
 uniform float u_tap;               // voxels; of either sign, which mirrors the tetrahedron
 uniform vec3 u_label_shift;
+uniform float u_places;            // a padded voxel
 
 const float kSurface = float(SURFACE) / 255.0;
 const float kBand = 72.0 / 255.0;           // from here on the surface may be near
@@ -199,6 +201,7 @@ void main() {
     out_depth = 1e30;
     out_normal = vec4(0.0);
     out_label = 0u;
+    out_place = uvec4(0u);
     return;
   }
   bool cap = cut && found == s_start;
@@ -270,6 +273,8 @@ void main() {
 #endif
   out_normal = vec4(normal * 0.5 + 0.5, cap ? 1.0 : fold ? 2.0 / 3.0 : 1.0 / 3.0);
   out_label = label;
+  // Inside the first voxels, where there are no steps.
+  out_place = uvec4(uvec3(clamp((p + (cap ? d * 0.02 : inward * 0.7)) * u_places, vec3(0.0), vec3(65535.0))), 1u);
 }
 )";
 
@@ -312,8 +317,13 @@ bool eye_inside(const Hull& hull, const ViewRays& rays) {
 
 PixelRect intersection(const PixelRect& a, const PixelRect& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
 
-void GBuffer::resize(const glm::ivec2& size) {
-  if (size == size_) return;
+void GBuffer::resize(const glm::ivec2& size, bool places) {
+  if (size == size_ && places == bool(place)) return;
+  if (places && !place) {
+    place = gl::Texture::create();
+    weight = gl::Texture::create();
+    weight_target = gl::Framebuffer::create();
+  }
   if (!hull_target) {
     for (gl::Texture* texture : {&depth, &normal, &label, &range, &hull_depth}) *texture = gl::Texture::create();
     hull_target = gl::Framebuffer::create();
@@ -328,21 +338,35 @@ void GBuffer::resize(const glm::ivec2& size) {
   attach(normal, size, GL_RGB10_A2, GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, GL_COLOR_ATTACHMENT1);
   attach(label, size, GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, GL_COLOR_ATTACHMENT2);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, hull_depth.name(), 0);
-  const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
-  glDrawBuffers(3, targets);
+  const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3};
+  if (place) attach(place, size, GL_RGBA16UI, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT, GL_COLOR_ATTACHMENT3);
+  glDrawBuffers(place ? 4 : 3, targets);
+  if (place) {
+    glBindFramebuffer(GL_FRAMEBUFFER, weight_target.name());
+    attach(weight, size, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_COLOR_ATTACHMENT0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, hull_depth.name(), 0);
+  }
   gl::check_gl("the buffers of a picture");
 }
 
 VolumePass::VolumePass(int atlases, Space space)
     : hull_("hull", kHullVertex, kHullFragment), march_("march", gl::kWholePicture, march_source(atlases, space)), nothing_(gl::VertexArray::create()) {}
 
+float place_step(const VolumeTexture& volume) {
+  const glm::ivec3 extent = volume.layout().blocks * kBlock;
+  return static_cast<float>(std::max({extent.x, extent.y, extent.z})) / 65535.0f;
+}
+
 PixelRect VolumePass::covered(const Hull& hull, const ViewRays& rays, const glm::ivec2& size) {
-  if (hull.empty()) return {};
+  return hull.empty() ? PixelRect{} : covered(hull.low(), hull.high(), rays, size);
+}
+
+PixelRect VolumePass::covered(const glm::vec3& box_low, const glm::vec3& box_high, const ViewRays& rays, const glm::ivec2& size) {
   const PixelRect whole = {{0, 0}, size};
   glm::dvec2 low(1e30), high(-1e30);
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 padded(corner & 1 ? hull.high().x : hull.low().x, corner & 2 ? hull.high().y : hull.low().y,
-                            corner & 4 ? hull.high().z : hull.low().z);
+    const glm::dvec3 padded(corner & 1 ? box_high.x : box_low.x, corner & 2 ? box_high.y : box_low.y,
+                            corner & 4 ? box_high.z : box_low.z);
     const glm::dvec4 clip = rays.clip_from_padded * glm::dvec4(padded, 1);
     if (clip.w < 1e-6) return whole;
     const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(size);
@@ -390,6 +414,7 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   glClearBufferfv(GL_COLOR, 0, depth);
   glClearBufferfv(GL_COLOR, 1, normal);
   glClearBufferuiv(GL_COLOR, 2, label);
+  if (buffer.place) glClearBufferuiv(GL_COLOR, 3, label);
   if (hull.empty()) return;
 
   // Drawn at the far plane: only where the hull lies in front.
@@ -407,6 +432,7 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   march_.set_texture("u_range", unit++, GL_TEXTURE_2D, buffer.range.name());
   march_.set("u_nearest", eye_inside(hull, rays) ? static_cast<float>(rays.nearest) : -kNothingDepth);
   march_.set("u_label_shift", rays.label_shift);
+  march_.set("u_places", 1.0f / place_step(volume));
   march_.set("u_tap", rays.mirrored_taps ? -kTap : kTap);
   march_.set_texture("u_looks", unit++, GL_TEXTURE_2D, looks.name());
   march_.set("u_layer", static_cast<unsigned>(layer));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds what each pixel shows: rays march through a visible set to its surface, and position, normal and label of what they
-// meet go into buffers that later passes shade, outline and pick from.
+// meet go into buffers that later passes shade, outline and pick from; and where skin weights are shown its place at rest.
 //
 // The hull of the set is drawn first, giving each ray its start; rays of pixels beside it never run. From there a ray reads
 // one texel a step, skipping as far as the texel allows; near the surface it reads filtered values, and the crossing is
@@ -36,7 +36,8 @@ PixelRect intersection(const PixelRect& a, const PixelRect& b);
 // What the rays of a picture met.
 class GBuffer {
  public:
-  void resize(const glm::ivec2& size);
+  //   places  also where at rest each pixel lies, and room for what is shown of weights there
+  void resize(const glm::ivec2& size, bool places = false);
   const glm::ivec2& size() const { return size_; }
 
   gl::Texture depth;   // R32F: mm before the eye along the direction of view; kNothingDepth
@@ -44,11 +45,16 @@ class GBuffer {
   gl::Texture label;   // R16UI
   gl::Texture range;   // RG32F: depth where the ray enters the hull, negated, and where it leaves it for good
   gl::Texture hull_depth;
-  gl::Framebuffer hull_target, march_target;
+  gl::Texture place;   // RGBA16UI: padded coordinates at rest, in the voxel that gave the label, in steps of place_step(); last 1 where there is one
+  gl::Texture weight;  // RGBA8: as weight_texture.h has it
+  gl::Framebuffer hull_target, march_target, weight_target;
 
  private:
   glm::ivec2 size_{0};
 };
+
+// Of a buffer's places: the finest that 16 bits can count through the volume by.
+float place_step(const VolumeTexture& volume);
 
 class VolumePass {
  public:
@@ -57,6 +63,8 @@ class VolumePass {
 
   // The part of the picture that the hull covers.
   static PixelRect covered(const Hull& hull, const ViewRays& rays, const glm::ivec2& size);
+  // That a box of padded coordinates covers.
+  static PixelRect covered(const glm::vec3& low, const glm::vec3& high, const ViewRays& rays, const glm::ivec2& size);
 
   // The start of every ray inside `rect`.
   void draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);

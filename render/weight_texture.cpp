@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "render/weight_texture.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include <epoxy/gl.h>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/skin/skin_weights.h"
+#include "core/volume/tissue_voxels.h"
+#include "render/weight_colours.h"
+
+namespace limber::render {
+
+namespace {
+
+constexpr Format3D kTexels = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, true};
+constexpr std::int64_t kBatch = 16;  // slots worked out together: 3 MB
+
+// The texel of an influence.
+class Texels {
+ public:
+  explicit Texels(const ShownWeights& shown) : shown_(shown) {
+    if (shown.swatches) swatches_ = *shown.swatches;
+    if (shown.bone >= 0 && shown.bone < std::ssize(swatches_)) swatches_[static_cast<std::size_t>(shown.bone)] = kActiveBone;
+  }
+
+  glm::u8vec4 of(const Influence& influence) const {
+    switch (shown_.display) {
+      case WeightDisplay::Active: return of_active(influence);
+      case WeightDisplay::Dominant: return of_colour(swatches_[influence.bone[0]]);
+      case WeightDisplay::Mixed: return of_colour(mixed_colour(influence, swatches_));
+      case WeightDisplay::Count: break;
+    }
+    return of_colour(count_colour(static_cast<int>(std::count_if(influence.weight.begin(), influence.weight.end(), [](auto weight) { return weight > 0; }))));
+  }
+
+ private:
+  glm::u8vec4 of_active(const Influence& influence) const {
+    int weight = 0;
+    for (int i = 0; i < 4; ++i)
+      if (influence.bone[i] == shown_.bone) weight += influence.weight[i];  // unused places have none
+    return {(weight * 255 + kFullWeight / 2) / kFullWeight, weight == 0 ? 255 : 0, weight == kFullWeight ? 255 : 0, 255};
+  }
+  static glm::u8vec4 of_colour(const glm::vec3& colour) { return {glm::u8vec3(glm::clamp(colour, 0.0f, 1.0f) * 255.0f + 0.5f), 255}; }
+
+  const ShownWeights& shown_;
+  std::vector<glm::vec3> swatches_;
+};
+
+// Padded coordinates, half open.
+struct Box {
+  glm::ivec3 low{1 << 30}, high{-(1 << 30)};
+  bool empty() const { return glm::any(glm::greaterThanEqual(low, high)); }
+  void add(const Box& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
+  glm::ivec3 size() const { return high - low; }
+};
+Box intersection(const Box& a, const Box& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
+
+Box box_of(const TissueVoxels::Brick& brick, int halvings) {
+  const glm::ivec3 last = brick.corner + (TissueVoxels::kBrick - 1);
+  return {(brick.corner >> halvings) + kPad, (last >> halvings) + kPad + 1};
+}
+Box grown(const Box& box) { return {box.low - 1, box.high + 1}; }
+// With its apron.
+Box box_of_block(const glm::ivec3& block) { return {block * kBlock - kApron, (block + 1) * kBlock + kApron}; }
+
+// What is to be uploaded of a slot.
+struct Part {
+  int slot;
+  Box box;
+};
+
+std::vector<Part> parts_of(const BlockLayout& layout, const TissueVoxels& tissue, const std::vector<std::uint8_t>& changed, int halvings) {
+  std::vector<Box> boxes(layout.block_of_slot.size());
+  for (std::size_t b = 0; b < changed.size(); ++b) {
+    if (!changed[b]) continue;
+    const Box brick = grown(box_of(tissue.bricks()[b], halvings));  // air beside it takes its colours
+    const glm::ivec3 first = glm::max((brick.low - kApron) >> 5, glm::ivec3(0)), last = glm::min((brick.high - 1 + kApron) >> 5, layout.blocks - 1);
+    for (int z = first.z; z <= last.z; ++z)
+      for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) {
+          const glm::ivec3 block(x, y, z);
+          const int slot = layout.slot_of_block[static_cast<std::size_t>(layout.block_index(block))];
+          if (slot >= 0) boxes[static_cast<std::size_t>(slot)].add(intersection(brick, box_of_block(block)));
+        }
+  }
+  std::vector<Part> parts;
+  for (std::size_t slot = 0; slot < boxes.size(); ++slot)
+    if (!boxes[slot].empty()) parts.push_back({static_cast<int>(slot), boxes[slot]});
+  return parts;
+}
+static_assert(kBlock == 1 << 5);
+
+// Air beside tissue takes the mean of the tissue beside it, axis by axis: what is read a little outside, or filtered there,
+// is then what lies inside.
+void spread_into_air(std::vector<glm::u8vec4>& texels, const glm::ivec3& size) {
+  const std::array<std::ptrdiff_t, 3> stride = {1, size.x, std::ptrdiff_t{size.x} * size.y};
+  std::vector<std::pair<std::ptrdiff_t, glm::u8vec4>> found;
+  for (int axis = 0; axis < 3; ++axis) {
+    found.clear();
+    for (int z = 0; z < size.z; ++z)
+      for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+          const std::ptrdiff_t at = x + y * stride[1] + z * stride[2];
+          if (texels[at].a != 0) continue;
+          const int place = glm::ivec3(x, y, z)[axis];
+          const glm::u8vec4 before = place > 0 ? texels[at - stride[axis]] : glm::u8vec4(0), after = place + 1 < size[axis] ? texels[at + stride[axis]] : glm::u8vec4(0);
+          if (before.a == 0 && after.a == 0) continue;
+          found.push_back({at, before.a == 0 ? after : after.a == 0 ? before : glm::u8vec4((glm::ivec4(before) + glm::ivec4(after)) / 2)});
+        }
+    for (const auto& [at, texel] : found) texels[at] = texel;
+  }
+}
+
+// Where the volume is drawn coarser, a texel takes any of its tissue voxels.
+std::vector<glm::u8vec4> texels_of_tissue(const Box& box, const ShownWeights& shown, const Texels& texels, int halvings) {
+  const glm::ivec3 size = box.size();
+  std::vector<glm::u8vec4> result(static_cast<std::size_t>(size.x) * size.y * size.z, glm::u8vec4(0));
+  const TissueVoxels& tissue = *shown.tissue;
+  const glm::ivec3 low = glm::max((box.low - kPad) << halvings, glm::ivec3(0)), high = glm::min((box.high - kPad) << halvings, tissue.grid_size());
+  for (int z = low.z & ~7; z < high.z; z += TissueVoxels::kBrick)
+    for (int y = low.y & ~7; y < high.y; y += TissueVoxels::kBrick)
+      for (int x = low.x & ~7; x < high.x; x += TissueVoxels::kBrick) {
+        const int brick = tissue.brick_at({x, y, z});
+        if (brick < 0) continue;
+        const SkinWeights::Chunk& chunk = shown.weights->chunk(brick);
+        const std::int64_t first = tissue.bricks()[static_cast<std::size_t>(brick)].first;
+        tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
+          const glm::ivec3 at = (voxel >> halvings) + kPad - box.low;
+          if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, size))) return;
+          result[(static_cast<std::size_t>(at.z) * size.y + at.y) * size.x + at.x] = texels.of(chunk[static_cast<std::size_t>(place - first)]);
+        });
+      }
+  return result;
+}
+
+std::vector<glm::u8vec4> texels_of(const Box& box, const ShownWeights& shown, const Texels& texels, int halvings) {
+  const Box around = grown(box);
+  std::vector<glm::u8vec4> large = texels_of_tissue(around, shown, texels, halvings);
+  spread_into_air(large, around.size());
+  const glm::ivec3 size = box.size(), room = around.size();
+  std::vector<glm::u8vec4> result;
+  result.reserve(static_cast<std::size_t>(size.x) * size.y * size.z);
+  for (int z = 1; z <= size.z; ++z)
+    for (int y = 1; y <= size.y; ++y) {
+      const auto row = large.begin() + (std::ptrdiff_t{z} * room.y + y) * room.x + 1;
+      result.insert(result.end(), row, row + size.x);
+    }
+  return result;
+}
+
+bool holds(const SkinWeights::Chunk& chunk, int bone, int other) {
+  return std::any_of(chunk.begin(), chunk.end(), [&](const Influence& influence) {
+    bool any = false;
+    for (int i = 0; i < 4; ++i) any |= influence.weight[i] > 0 && (influence.bone[i] == bone || influence.bone[i] == other);
+    return any;
+  });
+}
+
+std::string hex_vec3(const glm::vec3& colour) {
+  return "vec3(" + std::to_string(colour.r) + ", " + std::to_string(colour.g) + ", " + std::to_string(colour.b) + ")";
+}
+
+}  // namespace
+
+WeightTexture::WeightTexture(const VolumeTexture& volume) {
+  const glm::ivec3 size = volume.layout().slots * kSlot;
+  for (int a = 0; a < volume.layout().atlases; ++a) {
+    atlases_.push_back(gl::Texture::create());
+    if (!allocate(atlases_.back(), size, kTexels))
+      throw Error("the weights cannot be shown: the graphics driver has no room for them", "skin weights", "show the tissues, or re-grid the volume with a larger spacing");
+    bytes_ += std::int64_t{size.x} * size.y * size.z * 4;
+  }
+}
+
+std::vector<std::uint8_t> WeightTexture::changed_bricks(const ShownWeights& shown) const {
+  const std::int64_t bricks = std::ssize(shown.tissue->bricks());
+  std::vector<std::uint8_t> changed(static_cast<std::size_t>(bricks), 1);
+  if (!shown_ || shown.tissue != shown_->tissue || shown.display != shown_->display || shown.swatches != shown_->swatches || shown_->weights->chunk_count() != bricks) return changed;
+  const bool other_bone = shown.bone != shown_->bone && shown.display != WeightDisplay::Count;
+  parallel_for(bricks, 256, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t b = begin; b < end; ++b)
+      changed[static_cast<std::size_t>(b)] =
+          shown.weights->shared_chunk(b) != shown_->weights->shared_chunk(b) || (other_bone && holds(shown.weights->chunk(b), shown.bone, shown_->bone));
+  });
+  return changed;
+}
+
+void WeightTexture::update(const VolumeTexture& volume, const ShownWeights& shown) {
+  texels_uploaded_ = 0;
+  ShownWeights now = shown;
+  now.contours = true;  // drawn, not uploaded
+  if (shown_ == now) return;
+  if (shown.weights->size() != shown.tissue->size() || shown.weights->chunk_count() != std::ssize(shown.tissue->bricks()))
+    throw std::logic_error("the weights are another volume's");
+  const BlockLayout& layout = volume.layout();
+  std::vector<Part> parts = parts_of(layout, *shown.tissue, changed_bricks(shown), volume.halvings());
+  if (change_.count == 0) {  // nothing is there yet
+    parts.clear();
+    for (int slot = 0; slot < std::ssize(layout.block_of_slot); ++slot) parts.push_back({slot, box_of_block(layout.block_of_slot[static_cast<std::size_t>(slot)])});
+  }
+  shown_.reset();  // until this has ended
+  const Texels texels(shown);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  Box whole;
+  std::vector<std::vector<glm::u8vec4>> batch(kBatch);
+  for (std::int64_t begin = 0; begin < std::ssize(parts); begin += kBatch) {
+    const std::int64_t end = std::min<std::int64_t>(begin + kBatch, std::ssize(parts));
+    parallel_for(end - begin, 1, [&](std::int64_t first, std::int64_t last) {
+      for (std::int64_t i = first; i < last; ++i)
+        batch[static_cast<std::size_t>(i)] = texels_of(parts[static_cast<std::size_t>(begin + i)].box, shown, texels, volume.halvings());
+    });
+    for (std::int64_t i = begin; i < end; ++i) {
+      const auto& [slot, box] = parts[static_cast<std::size_t>(i)];
+      const glm::ivec3 at = layout.place_of(slot) * kSlot + box.low - box_of_block(layout.block_of_slot[static_cast<std::size_t>(slot)]).low, size = box.size();
+      glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<std::size_t>(layout.atlas_of(slot))].name());
+      glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, size.x, size.y, size.z, kTexels.pixels, kTexels.type, batch[static_cast<std::size_t>(i - begin)].data());
+      texels_uploaded_ += std::int64_t{size.x} * size.y * size.z;
+      whole.add(box);
+    }
+  }
+  gl::check_gl("the upload of weights");
+  // What is filtered reaches further.
+  if (!whole.empty()) change_ = {glm::vec3(whole.low) - 1.0f, glm::vec3(whole.high) + 1.0f, change_.count + 1};
+  shown_ = now;
+}
+
+int WeightTexture::bind(const VolumeTexture& volume, gl::Program& program, int first) const {
+  first = bind_atlases(program, "u_weights", atlases_, first);
+  program.set_texture("u_weight_index", first++, GL_TEXTURE_3D, volume.index().name());
+  program.set("u_weight_texel", 1.0f / glm::vec3(volume.layout().slots * kSlot));
+  program.set("u_weight_blocks", volume.layout().blocks);
+  return first;
+}
+
+WeightReading reading_of(WeightDisplay display) {
+  return display == WeightDisplay::Active ? WeightReading::Ramp : display == WeightDisplay::Mixed ? WeightReading::Filtered : WeightReading::Voxels;
+}
+
+std::string weight_functions(int atlases, WeightReading reading) {
+  const auto choose = [&](const std::string& read) {
+    std::string text;
+    for (int a = 0; a < atlases; ++a) {
+      std::string line = "  return " + read + ";\n";
+      line.replace(line.find('@'), 1, std::to_string(a));
+      text += a + 1 < atlases ? "  if (atlas == " + std::to_string(a + 1) + "u)" + line : line;
+    }
+    return text;
+  };
+  std::string text = reading == WeightReading::Ramp ? "#define RAMP\n" : reading == WeightReading::Filtered ? "#define FILTERED\n" : "#define VOXELS\n";
+  for (int a = 0; a < atlases; ++a) text += "uniform sampler3D u_weights" + std::to_string(a) + ";\n";
+  text += "uniform usampler3D u_weight_index;\nuniform vec3 u_weight_texel;\nuniform ivec3 u_weight_blocks;\n"
+          "vec4 weights_filtered(uint atlas, vec3 at) {\n" + choose("textureLod(u_weights@, at * u_weight_texel, 0.0)") + "}\n"
+          "vec4 weights_fetched(uint atlas, ivec3 at) {\n" + choose("texelFetch(u_weights@, at, 0)") + "}\n"
+          "const float kSlotSize = " + std::to_string(kSlot) + ".0, kBlockSize = " + std::to_string(kBlock) + ".0, kApronSize = " + std::to_string(kApron) + ".0;\n"
+          "vec3 weight_ramp(float weight) {\n  float at = clamp(weight, 0.0, 1.0) * 6.0;\n  vec3 colour = " + hex_vec3(kWeightRamp[0]) + ";\n";
+  for (std::size_t step = 0; step + 1 < kWeightRamp.size(); ++step)
+    text += "  colour += " + hex_vec3(kWeightRamp[step + 1] - kWeightRamp[step]) + " * clamp(at - " + std::to_string(step) + ".0, 0.0, 1.0);\n";
+  text += "  return colour;\n}\nconst vec3 kExactZero = " + hex_vec3(kExactZero) + ", kExactOne = " + hex_vec3(kExactOne) + ";\n";
+  return text + R"(
+vec4 weights_at(vec3 p) {
+  ivec3 block = clamp(ivec3(floor(p / kBlockSize)), ivec3(0), u_weight_blocks - 1);
+  uvec4 entry = texelFetch(u_weight_index, block, 0);
+  vec3 at = clamp(p - vec3(block) * kBlockSize, vec3(0.0), vec3(kBlockSize) - 1e-3) + vec3(entry.xyz) * kSlotSize + kApronSize;
+#ifdef VOXELS
+  vec4 texel = weights_fetched(entry.w, ivec3(at));
+#else
+  vec4 texel = weights_filtered(entry.w, at);
+#endif
+  return entry.w == 0u ? vec4(0.0) : texel;
+}
+
+vec4 weight_colour(vec4 texel) {
+  vec3 read = texel.rgb / max(texel.a, 1e-3);  // what is filtered counts tissue alone
+#ifdef RAMP
+  vec3 colour = read.g > 0.5 ? kExactZero : read.b > 0.5 ? kExactOne : weight_ramp(read.r);
+  float range = 1.0 + step(0.25, read.r) + step(0.5, read.r) + step(0.75, read.r);
+#else
+  vec3 colour = read;
+  const float range = 1.0;
+#endif
+  return texel.a < 0.004 ? vec4(0.0) : vec4(colour, range / 255.0);
+}
+)";
+}
+
+}  // namespace limber::render
