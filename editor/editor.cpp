@@ -15,6 +15,7 @@
 #include "editor/panels/panels.h"
 #include "editor/project.h"
 #include "editor/sitting.h"
+#include "editor/skin_display.h"
 #include "editor/timeline.h"
 #include "editor/tooltip.h"
 
@@ -89,7 +90,7 @@ void Dialog::escape(Editor& editor) { editor.close_dialog(); }
 Editor::Editor(Host& host, const Preferences& preferences)
     : host(host), preferences(preferences), keymap(read_keymap(asset("keymap.json"))), operators(gather_operators()),
       jobs(kJobsAtOnce, [&host] { host.wake(); }), arrangements(preferences.arrangements),
-      handling(std::make_unique<Handling>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
+      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
   IMGUI_CHECKVERSION();
   imgui = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -126,7 +127,7 @@ Editor::~Editor() {
 void Editor::open_dialog(std::unique_ptr<Dialog> dialog) { next_dialog_ = std::move(dialog); }
 void Editor::close_dialog() { next_dialog_ = std::unique_ptr<Dialog>(); }
 
-bool Editor::busy() const { return jobs.busy() || live->busy(); }
+bool Editor::busy() const { return jobs.busy() || live->busy() || skin->shares.busy(); }
 
 double Editor::rest() const {
   if (frames_wanted_ > 0 || !host.events.empty() || views->body.move || (modal && modal->moving())) return 0;
@@ -153,6 +154,7 @@ void Editor::draw_views() {
   update_scene(*views, document(), selection, preferences.theme == "dark");
   live->follow(*this);
   show_posed(*this);
+  show_weights(*this);
   move_camera(views->body, now, preferences.reduce_motion);
   ended(*this, "pose");
   const Document shown = shown_document(*this);

@@ -40,6 +40,7 @@ namespace limber::editor {
 struct Timeline;
 struct Handling;
 struct LastOperation;
+struct SkinDisplay;
 
 // What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
 struct Drag {
@@ -160,6 +161,7 @@ struct Editor {
   std::optional<glm::vec3> edited_colour;
   Tool tool = Tool::Select;
   std::unique_ptr<Handling> handling;  // of bones; never null
+  std::unique_ptr<SkinDisplay> skin;  // of skin_display.h; never null
   std::string open_menu;  // of the top bar
   std::string open_popup;  // a menu of menus.h wanted at the pointer in the next frame; "" for none
   std::string shown_popup;  // the one that is open

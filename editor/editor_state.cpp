@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/arrangement_json.h"
+#include "editor/skin_display.h"
 
 namespace limber::editor {
 
@@ -80,6 +81,7 @@ std::string editor_state(const Editor& editor) {
             {"grid", views.grid}, {"axes", views.axes}, {"scale_bar", views.scale_bar}, {"letters", views.letters}, {"show_cross_hair", views.show_cross_hair},
             {"bones", views.bones}, {"bone_shape", static_cast<int>(views.bone_shape)}, {"bone_names", views.bone_names}, {"bone_axes", views.bone_axes},
             {"bones_in_front", views.bones_in_front}};
+  json["weights"] = {{"display", editor.skin->display ? static_cast<int>(*editor.skin->display) : 4}, {"contours", editor.skin->contours}};
   json["arrangements"] = Json::parse(json_text(editor.arrangements));
   json["method"] = editor.resampling.method;
   for (const SliceState& slice : views.slices)
@@ -96,6 +98,12 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   take_choice(json, "display", 3, views.display);
   take_choice(json, "slices", 2, views.slice_display);
   if (const Json method = json.value("method", Json()); method == "lbs" || method == "dqs") editor.resampling.method = method;
+  if (const auto weights = json.find("weights"); weights != json.end() && weights->is_object()) {
+    int display = editor.skin->display ? static_cast<int>(*editor.skin->display) : 4;
+    take(*weights, "display", 0, 4, display);
+    editor.skin->display = display == 4 ? std::nullopt : std::optional(static_cast<render::WeightDisplay>(display));
+    take(*weights, "contours", editor.skin->contours);
+  }
   take_vector(json, "cross_hair", views.cross_hair);
   take(json, "grid", views.grid);
   take(json, "axes", views.axes);

@@ -23,7 +23,8 @@ inline constexpr char kVisible[] = "\uf06e", kHidden[] = "\uf070", kOneView[] = 
 
 // Tools
 inline constexpr char kSelect[] = "\uf245", kMove[] = "\uf047", kRotate[] = "\uf01e", kScale[] = "\uf0b2", kPick[] = "\uf1fb", kCut[] = "\uf0c4",
-                      kReach[] = "\uf1e0", kExtrude[] = "\uf08e", kSnap[] = "\uf076", kBreakdown[] = "\uf1de", kMirror[] = "\uf0ec", kLinkViews[] = "\uf0c1";
+                      kReach[] = "\uf1e0", kExtrude[] = "\uf08e", kSnap[] = "\uf076", kBreakdown[] = "\uf1de", kMirror[] = "\uf0ec", kLinkViews[] = "\uf0c1",
+                      kLock[] = "\uf023", kUnlocked[] = "\uf13e";
 
 // Time
 inline constexpr char kFirst[] = "\uf049", kBack[] = "\uf048", kPlay[] = "\uf04b", kPause[] = "\uf04c", kForward[] = "\uf051", kLast[] = "\uf050",

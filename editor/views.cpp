@@ -100,20 +100,25 @@ Box tissue_box(Views& views, const Document& document, std::optional<Label> tiss
   return box_of_voxels(document.volume->grid, glm::dvec3(box.low) - 0.5, glm::dvec3(box.high) + 0.5);
 }
 
-std::vector<BoneWeight> weights_at(Views& views, const Document& document, const glm::ivec3& voxel) {
-  if (!document.weights || !document.volume || !document.volume->grid.contains(voxel)) return {};
+const std::shared_ptr<const TissueVoxels>& tissue_voxels(Views& views, const Document& document) {
   if (views.tissue_voxels_of != document.volume) {
     views.tissue_voxels = std::make_shared<const TissueVoxels>(*document.volume);
     views.tissue_voxels_of = document.volume;
   }
-  const TissueVoxels& tissue = *views.tissue_voxels;
+  return views.tissue_voxels;
+}
+
+std::vector<BoneWeight> weights_at(Views& views, const Document& document, const glm::ivec3& voxel) {
+  const auto& shown = views.preview_weights ? views.preview_weights : document.weights;
+  if (!shown || !document.volume || !document.volume->grid.contains(voxel)) return {};
+  const TissueVoxels& tissue = *tissue_voxels(views, document);
   const std::int64_t place = tissue.index_of(voxel);
-  if (place < 0 || tissue.size() != document.weights->size()) return {};
+  if (place < 0 || tissue.size() != shown->size()) return {};
   const int brick = tissue.brick_at(voxel);
-  const Influence& influence = document.weights->chunk(brick)[place - tissue.bricks()[brick].first];
+  const Influence& influence = shown->chunk(brick)[place - tissue.bricks()[brick].first];
   std::vector<BoneWeight> weights;
   for (int i = 0; i < 4; ++i)
-    if (influence.weight[i]) weights.push_back({document.weights->bones()[influence.bone[i]], influence.weight[i] / double(kFullWeight)});
+    if (influence.weight[i]) weights.push_back({shown->bones()[influence.bone[i]], influence.weight[i] / double(kFullWeight)});
   return weights;
 }
 

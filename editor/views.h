@@ -95,6 +95,7 @@ struct Views {
   std::shared_ptr<const TissueTable> preview_tissues;
   std::shared_ptr<const Pose> preview_pose;
   std::shared_ptr<const Armature> preview_armature;
+  std::shared_ptr<const SkinWeights> preview_weights;
   glm::vec2 handle_from{0};  // where the pointer pressed the handle that is dragged
   render::Scene scene;  // of the last frame
   std::optional<render::Scene> other_scene;  // what it is compared with; nothing: no comparison
@@ -123,6 +124,8 @@ std::optional<glm::ivec3> voxel_shown_at(const render::Scene& scene, const glm::
 
 // Shifts what a slice shows by so many pixels.
 void shift(SliceState& slice, const glm::dvec2& pixels);
+// The tissue voxels of the document's volume, found once; it has one.
+const std::shared_ptr<const TissueVoxels>& tissue_voxels(Views& views, const Document& document);
 // The weights of a voxel of the document's volume.
 std::vector<BoneWeight> weights_at(Views& views, const Document& document, const glm::ivec3& voxel);
 

@@ -23,6 +23,8 @@ void draw_tour(Editor& editor);
 // In the views
 void draw_body_overlay(Editor& editor, const Rect& rect);
 void draw_slice_overlay(Editor& editor, ViewId id, const Rect& rect);
+bool draw_weight_legend(Editor& editor, const Rect& view);  // true where there is one
+void draw_weights_at_pointer(Editor& editor);
 void draw_empty_view(Editor& editor, const Rect& rect);
 void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel);
 void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state);
@@ -31,6 +33,7 @@ void hover_views(Editor& editor);
 
 // Sections of the sidebar
 void draw_outliner(Editor& editor, Column& column);
+void draw_bones(Editor& editor, Column& column);
 void draw_tissues(Editor& editor, Column& column);
 void draw_tissue(Editor& editor, Column& column);
 void draw_bone(Editor& editor, Column& column);

@@ -34,6 +34,7 @@ void draw_sidebar(Editor& editor) {
   {
     Column column(editor, "sections", rect);
     draw_steps(editor, column);
+    if (editor.workspace == Workspace::Skin) draw_bones(editor, column);
     if (editor.workspace == Workspace::Resample) {
       draw_running(editor, column);
       draw_resample(editor, column);

@@ -54,6 +54,8 @@ std::vector<KeyHint> hints(const Editor& editor) {
     operators = {{"file.open", "Open"}, {"file.new", "New"}, {"search.commands", "Search"}, {"help.guide", "Help"}, {"file.quit", "Quit"}};
   else if (editor.workspace == Workspace::Rig && editor.selection.bone)
     operators = {{"rig.move", "Move"}, {"rig.rotate", "Rotate"}, {"rig.extrude", "Extrude"}, {"rig.delete", "Delete"}, {"view.orbit", "Turn"}, {"view.xray", "X-ray"}, {"select.all", "All bones"}};
+  else if (editor.workspace == Workspace::Skin && editor.document().weights)
+    operators = {{"skin.pick_bone", "Pick bone"}, {"skin.display_pie", "Display"}, {"skin.lock_pie", "Lock"}, {"view.orbit", "Turn"}, {"view.zoom_step", "Zoom"}, {"view.xray", "X-ray"}, {"view.frame_all", "Frame all"}};
   else if (editor.workspace == Workspace::Pose && editor.selection.bone)
     operators = {{"pose.rotate", "Rotate"}, {"pose.move", "Move"}, {"pose.clear_rotation", "Clear"}, {"view.orbit", "Turn"}, {"view.xray", "X-ray"}, {"select.all", "All bones"}};
   else

@@ -147,6 +147,12 @@ void put_options(Editor& editor, Header& header) {
     if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"})) header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
     header.line();
   }
+  if (editor.workspace == Workspace::Skin && editor.document().weights) {
+    const auto kDisplays = {"skin.show_active", "skin.show_dominant", "skin.show_mixed", "skin.show_count", "skin.show_tissues"};
+    if (header.fits(190, kDisplays)) header.choice("Weight display", kDisplays);
+    if (header.fits(90, {"skin.contours"})) header.toggle("skin.contours");
+    header.line();
+  }
   if (editor.workspace == Workspace::Pose) {
     if (header.fits(170, {"resample.lbs", "resample.dqs"})) {
       header.label("Preview");

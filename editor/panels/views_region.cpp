@@ -11,6 +11,7 @@
 #include "editor/menus.h"
 #include "editor/panels/panels.h"
 #include "editor/results.h"
+#include "editor/skin_display.h"
 #include "editor/tissues.h"
 #include "editor/wipe.h"
 
@@ -165,7 +166,7 @@ void hover_views(Editor& editor) {
   if (!editor.document().volume || editor.drag) return;
   if (place->id == ViewId::Body) hover_body(editor, *place);
   else hover_slice(editor, *place);
-  if (hover.inside && scene_at_pointer(editor, *place).volume == editor.document().volume) hover.weights = weights_at(*editor.views, editor.document(), hover.voxel);
+  if (hover.inside && is_of_document(editor, scene_at_pointer(editor, *place).volume)) hover.weights = weights_at(*editor.views, editor.document(), hover.voxel);
 }
 
 void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state) {
@@ -225,6 +226,7 @@ void draw_views_region(Editor& editor) {
     if (editor.layout.view_places.size() > 1 && place.id == editor.views->active) outline(place.rect, look.theme.accent, 0, 2 * look.line());
     ImGui::PopClipRect();
   }
+  draw_weights_at_pointer(editor);
   draw_pointer_menu(editor);
   draw_pick_list(editor);
   draw_last_operation_popup(editor);

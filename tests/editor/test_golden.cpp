@@ -17,6 +17,7 @@
 #include <optional>
 #include <thread>
 
+#include "core/skin/heat_diffusion.h"
 #include "core/volume/phantom.h"
 #include "editor/task.h"
 #include "tests/editor/sitting.h"
@@ -223,6 +224,46 @@ TEST_CASE("golden: a limb held by a pin and a pole, at rest and out of reach") {
   scene.play("key G\n key Z\n key -\n key 9\n key 0");
   check_golden("ik_out_of_reach", scene.picture());
   scene.play("key Escape");
+}
+
+// The arm with weights in the Skin workspace, the forearm active.
+struct Weighted : Arm {
+  Weighted() {
+    Document next = editor().document();
+    next.weights = std::make_shared<const SkinWeights>(diffuse_heat(*next.volume, *next.tissues, *next.armature));
+    editor().history.commit("Heat diffusion", next);
+    editor().selection.bone = 1;
+    editor().selection.bones = {1};
+    play("key Ctrl+2\n move \"3D view/view\"\n key Num3\n wait-idle");
+    render::Camera& camera = editor().views->body.camera;
+    camera.centre = next.armature->bones[1].head;
+    camera.distance *= 0.5;
+    editor().views->cross_hair = camera.centre;
+    editor().touch();
+  }
+};
+
+TEST_CASE("golden: skin weights as a ramp with contours, and what lies under the pointer") {
+  Weighted scene;
+  check_golden("skin_active", scene.picture());
+}
+
+TEST_CASE("golden: skin weights by dominant bones, one of them isolated, with locks") {
+  Weighted scene;
+  scene.play("key D\n click \"Dominant bones\"\n click Bones/skin.lock_others\n move 700 18");
+  check_golden("skin_dominant", scene.picture());
+}
+
+TEST_CASE("golden: skin weights, all influences mixed") {
+  Weighted scene;
+  scene.play("key D\n click \"All influences\"\n move 700 18");
+  check_golden("skin_mixed", scene.picture());
+}
+
+TEST_CASE("golden: skin weights, the number of influences, on the forearm's region alone") {
+  Weighted scene;
+  scene.play("key D\n click \"Number of influences\"\n click Bones/list/Forearm/eye Ctrl\n move 700 18");
+  check_golden("skin_count", scene.picture());
 }
 
 TEST_CASE("golden: arm, four views") {
