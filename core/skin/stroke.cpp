@@ -306,7 +306,7 @@ void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& p
       if (covered <= most[at]) continue;
       most[at] = static_cast<std::uint16_t>(covered);
     }
-    const Influence now = brick.now.empty() ? original[at] : brick.now[at];
+    const Influence& now = brick.now.empty() ? original[at] : brick.now[at];
     Influence made = accumulate_ ? now : original[at];
     int before = 0;
     for (int k = 0; k < 4; ++k) before += made.bone[k] == bone ? made.weight[k] : 0;
@@ -314,9 +314,12 @@ void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& p
     const int whole = static_cast<int>(std::clamp(to, 0.0, double(kFullWeight)) + 0.5);
     const WeightChange change = rules_.set(made, bone, whole);
     if (!change.changed && change.blocked_by >= 0) blocked_here.add(change.blocked_by);
-    if (std::bit_cast<std::array<std::uint64_t, 2>>(made) == std::bit_cast<std::array<std::uint64_t, 2>>(now)) continue;
+    // By halves, as they were written: the whole would have to wait for both.
+    const auto bones = std::bit_cast<std::uint64_t>(made.bone), weights = std::bit_cast<std::uint64_t>(made.weight);
+    if (bones == std::bit_cast<std::uint64_t>(now.bone) && weights == std::bit_cast<std::uint64_t>(now.weight)) continue;
     if (brick.now.empty()) brick.now = original;
-    brick.now[at] = made;
+    brick.now[at].bone = std::bit_cast<std::array<std::uint16_t, 4>>(bones);
+    brick.now[at].weight = std::bit_cast<std::array<std::uint16_t, 4>>(weights);
     brick.dirty = true;
   }
 }

@@ -2,6 +2,8 @@
 #include "core/skin/weight_rules.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -104,14 +106,22 @@ WeightChange changed_to(Influence& influence, const Influence& next) {
   return {true, -1};
 }
 
+// Four numbers written at once: what is read whole right after being written in parts makes the machine wait.
+std::array<std::uint16_t, 4> four(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
+  if constexpr (std::endian::native == std::endian::little)
+    return std::bit_cast<std::array<std::uint16_t, 4>>(a | b << 16 | c << 32 | d << 48);
+  else
+    return std::bit_cast<std::array<std::uint16_t, 4>>(a << 48 | b << 32 | c << 16 | d);
+}
+
 // Two bones, or one.
 Influence pair_of(int bone, int weight, int other) {
   const int rest = kFullWeight - weight;
   const bool first = weight > rest || (weight == rest && bone < other);
+  const int most = first ? weight : rest, least = first ? rest : weight;
   Influence made;
-  made.bone = {static_cast<std::uint16_t>(first ? bone : other), static_cast<std::uint16_t>(first ? other : bone), 0, 0};
-  made.weight = {static_cast<std::uint16_t>(first ? weight : rest), static_cast<std::uint16_t>(first ? rest : weight), 0, 0};
-  if (made.weight[1] == 0) made.bone[1] = 0;
+  made.bone = four(first ? bone : other, least == 0 ? 0 : first ? other : bone, 0, 0);
+  made.weight = four(most, least, 0, 0);
   return made;
 }
 
@@ -123,18 +133,22 @@ int largest_locked(Entries& entries) {
 }  // namespace
 
 void sort_influence(Influence& influence) {
+  const auto [a, b, c, d] = influence.weight;
+  if (a > b && (b > c || (b == 0 && c == 0)) && (c > d || (c == 0 && d == 0))) {
+    influence.bone = four(influence.bone[0], b ? influence.bone[1] : 0, c ? influence.bone[2] : 0, d ? influence.bone[3] : 0);
+    return;
+  }
   std::array<std::uint32_t, 4> key;
   for (int i = 0; i < 4; ++i) key[i] = std::uint32_t{influence.weight[i]} << 16 | (0xffffu - influence.bone[i]);
-  const auto order = [&](int a, int b) {
-    const std::uint32_t more = std::max(key[a], key[b]), less = std::min(key[a], key[b]);
-    key[a] = more;
-    key[b] = less;
+  const auto order = [&](int i, int k) {
+    const std::uint32_t more = std::max(key[i], key[k]), less = std::min(key[i], key[k]);
+    key[i] = more;
+    key[k] = less;
   };
   order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
-  for (int i = 0; i < 4; ++i) {
-    influence.weight[i] = static_cast<std::uint16_t>(key[i] >> 16);
-    influence.bone[i] = static_cast<std::uint16_t>(influence.weight[i] ? 0xffffu - (key[i] & 0xffffu) : 0);
-  }
+  const auto bone = [&](int i) { return key[i] >> 16 ? 0xffffu - (key[i] & 0xffffu) : 0; };
+  influence.weight = four(key[0] >> 16, key[1] >> 16, key[2] >> 16, key[3] >> 16);
+  influence.bone = four(bone(0), bone(1), bone(2), bone(3));
 }
 
 // Rounded, the rest to the largest share; cut off where rounding would take more than there is.
@@ -251,31 +265,26 @@ WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight)
   } else if (slot == count) {
     ++count;
   }
-  influence.bone[slot] = static_cast<std::uint16_t>(bone);
-  influence.weight[slot] = 0;
+  std::array<int, 4> shared{};
   int sum = 0, largest = -1;
   for (int i = 0; i < count; ++i) {
+    if (i == slot) continue;
     sum += influence.weight[i];
-    if (i != slot && (largest < 0 || influence.weight[i] > influence.weight[largest])) largest = i;
+    if (largest < 0 || influence.weight[i] > influence.weight[largest]) largest = i;
   }
-  int left = others;
-  if (count > 2) {
-    for (const double half : {0.5, 0.0}) {
-      left = others;
-      std::array<int, 4> shared{};
-      for (int i = 0; i < count; ++i) {
-        if (i == slot || i == largest) continue;
-        shared[i] = static_cast<int>(double(influence.weight[i]) / sum * others + half);
-        left -= shared[i];
-      }
-      if (left < 0) continue;
-      for (int i = 0; i < count; ++i)
-        if (i != slot && i != largest) influence.weight[i] = static_cast<std::uint16_t>(shared[i]);
-      break;
+  for (const double half : {0.5, 0.0}) {
+    int left = others;
+    for (int i = 0; i < count; ++i) {
+      if (i == slot || i == largest) continue;
+      shared[i] = static_cast<int>(double(influence.weight[i]) / sum * others + half);
+      left -= shared[i];
     }
+    shared[largest] = left;
+    if (left >= 0) break;
   }
-  influence.weight[largest] = static_cast<std::uint16_t>(left);
-  influence.weight[slot] = static_cast<std::uint16_t>(now);
+  shared[slot] = now;
+  influence.bone[slot] = static_cast<std::uint16_t>(bone);
+  influence.weight = four(shared[0], shared[1], shared[2], shared[3]);
   sort_influence(influence);
   return {true, -1};
 }
