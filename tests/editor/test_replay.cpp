@@ -307,8 +307,11 @@ TEST_CASE("replay: every operator that can run without more words does, and leav
 TEST_CASE("replay: while a number is typed its field shows digits alone, and no tip covers what is below") {
   SmallEditor test({1280, 720});
   test.editor->history.reset(bending_limb(), "Open limb");
-  test.play("key Ctrl+3\nclick \"Motion/Onion skin/Onion frames...\"\nwait-idle\nmove \"On either side/value\"\nwait 2");
-  CHECK(test.editor->tip.widget.empty());  // its first field has the keyboard
+  test.play("key Ctrl+3\nwait-idle\nmove view.four\nwait 2");
+  CHECK(test.editor->tip.widget == "Four views");  // tips come while nothing is typed,
+  CHECK(test.fact("text:Four views") == "shown");
+  test.play("click \"Motion/Onion skin/Onion frames...\"\nwait-idle\nmove \"On either side/value\"\nwait 2");
+  CHECK(test.editor->tip.widget.empty());  // but this dialog's first field has the keyboard
   const editor::Rect field = test.editor->widgets.find("On either side/value")->rect;
   const auto beside = [&] {
     const render::Image picture = test.host->picture();
