@@ -14,6 +14,9 @@ namespace limber::editor {
 
 namespace {
 constexpr double kFastest = 1;  // of a number for a pixel's drag, however far its ends are
+
+// Beside a field's text. Where several fields share a row their digits need the room.
+float margin_of(const Look& look, const Rect& field) { return look.px(field.width() < look.px(64) ? 4 : 7); }
 }
 
 void checkbox_mark(Editor& editor, const Rect& rect, bool on, bool hovered) {
@@ -45,7 +48,7 @@ bool any_number_field(Editor& editor, const std::string& name, const Rect& rect,
   ImGui::SetNextItemWidth(rect.width());
   ImGui::PushFont(look.fonts.mono);
   ImGui::PushStyleColor(ImGuiCol_Text, with_alpha(look.theme.text, ImGui::TempInputIsActive(ImGui::GetID(id.c_str())) ? 1 : 0));
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(look.px(7), std::round((rect.height() - look.fonts.mono->FontSize) / 2)));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(margin_of(look, rect), std::round((rect.height() - look.fonts.mono->FontSize) / 2)));
   const double speed = std::clamp((high - low) / std::max(1.0f, rect.width()), 1e-6, kFastest);
   const bool changed = ImGui::DragScalar(id.c_str(), ImGuiDataType_Double, &value, static_cast<float>(speed), &low, &high, format, flags);
   const bool typing = ImGui::TempInputIsActive(ImGui::GetItemID());
@@ -67,7 +70,7 @@ bool any_number_field(Editor& editor, const std::string& name, const Rect& rect,
   char written[48];
   std::snprintf(written, sizeof written, format, value);
   const char* text = written[0] == '-' && std::strtod(written, nullptr) == 0 ? written + 1 : written;
-  float right = rect.high.x - look.px(7);
+  float right = rect.high.x - margin_of(look, rect);
   if (*unit) {
     put_text(editor, look.fonts.small, look.theme.text2, Rect{rect.low, {right, rect.high.y}}, unit, Align::Right);
     right -= text_size(look.fonts.small, unit).x + look.px(4);

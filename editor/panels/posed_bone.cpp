@@ -70,7 +70,7 @@ glm::dquat with_part(const glm::dquat& rotation, int part, double value) {
 // w, x, y, z.
 void draw_quaternion(Editor& editor, Column& column, const std::string& label, int bone, const glm::dquat& rotation) {
   const Look& look = editor.look;
-  Rect rect = column.property("Quaternion");
+  Rect rect = column.property("W X Y Z");
   rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
   const glm::dquat shown = rotation.w < 0 ? -rotation : rotation;
   const double parts[] = {shown.w, shown.x, shown.y, shown.z};
