@@ -103,7 +103,7 @@ void MotionPicture::draw(Editor& editor, const Rect& rect, bool z_up, double rat
   const Rect bar{{picture.low.x, picture.high.y - look.px(3)}, picture.high};
   fill({bar.low, {bar.low.x + static_cast<float>(share) * bar.width(), bar.high.y}}, look.theme.accent, 0);
   char words[64];
-  std::snprintf(words, sizeof words, "Frame %d of %d", frame_, motion_->frame_count);
+  std::snprintf(words, sizeof words, "Frame %d / %d", frame_, motion_->frame_count - 1);
   put_text(editor, look.fonts.mono, look.theme.text2, Rect{{rect.low.x, picture.high.y}, {rect.high.x, picture.high.y + text}}, words);
   put_text(editor, look.fonts.small, look.theme.text3, Rect{{rect.low.x, picture.high.y + text}, rect.high}, "Plays under the pointer; drag to scrub.");
 }

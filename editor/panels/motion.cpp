@@ -13,17 +13,20 @@ namespace limber::editor {
 namespace {
 
 // One of several operators, of which one holds.
-void choice_of_operators(Editor& editor, const Rect& rect, const char* name, std::initializer_list<const char*> ids) {
+//   words  of the operators, where they need not say again what the row's name says; empty: their labels
+void choice_of_operators(Editor& editor, const Rect& rect, const char* name, std::initializer_list<const char*> ids, std::initializer_list<const char*> words = {}) {
   std::vector<std::string> labels;
   int chosen = 0;
   for (const char* id : ids) {
     const Operator* op = find_operator(editor, id);
     if (op->checked(editor)) chosen = static_cast<int>(labels.size());
-    labels.push_back(op->label);
+    labels.push_back(words.size() > 0 ? words.begin()[labels.size()] : op->label);
   }
   const PathScope path(editor, name);
   if (choice_field(editor, rect, labels, chosen)) run(editor, ids.begin()[chosen]);
 }
+
+constexpr std::initializer_list<const char*> kRests = {"As it lies", "T-pose", "A-pose", "Supine"};
 
 void draw_clip_row(Editor& editor, Column& column) {
   std::vector<std::string> names;
@@ -80,8 +83,8 @@ void draw_motion(Editor& editor, Column& column) {
         draw_match(editor, column, *on_rig);
         choice_of_operators(editor, column.property("Travel"), "Travel", {"motion.travel_locked", "motion.travel_in_place", "motion.travel_free"});
         choice_of_operators(editor, column.property("Stands as"), "Stands as", {"motion.reference_found", "motion.reference_rest", "motion.reference_first"});
-        choice_of_operators(editor, column.property("At rest"), "Motion at rest", {"motion.rest_file", "motion.rest_t", "motion.rest_a", "motion.rest_anatomical"});
-        choice_of_operators(editor, column.property(""), "Rig at rest", {"motion.rig_rest_file", "motion.rig_rest_t", "motion.rig_rest_a", "motion.rig_rest_anatomical"});
+        choice_of_operators(editor, column.property("Clip at rest"), "Clip at rest", {"motion.rest_file", "motion.rest_t", "motion.rest_a", "motion.rest_anatomical"}, kRests);
+        choice_of_operators(editor, column.property("Rig at rest"), "Rig at rest", {"motion.rig_rest_file", "motion.rig_rest_t", "motion.rig_rest_a", "motion.rig_rest_anatomical"}, kRests);
         draw_turned(editor, column);
         const Rect mirror = column.property("Options");
         if (checkbox(editor, "motion.mirror", mirror, "Mirror", mirrored)) run(editor, "motion.mirror");
