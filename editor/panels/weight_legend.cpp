@@ -14,7 +14,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kWidth = 322, kHeight = 56, kMargin = 8, kNeeded = 480;
+constexpr float kWidth = 322, kHeight = 56, kMargin = 8, kNeeded = 460;
 
 Colour colour_of(const glm::vec3& srgb) { return rgb(srgb.r, srgb.g, srgb.b); }
 

@@ -281,6 +281,47 @@ TEST_CASE("weights: another bone, display or contours follow no ray again, and t
   CHECK(view.rays_followed() == followed);
 }
 
+TEST_CASE("weights: of a picture at rest, what a brush changes is drawn anew where it is, and the rest stays as fine as it was") {
+  Studio studio;
+  const Block block({80, 40, 40}, [](const glm::ivec3& v) { return 800 * v.x; });
+  Scene scene = block.scene();
+  const Camera camera = camera_of(block.volume->grid, Projection::Orthographic);
+  double now = 0;
+  const auto rest = [&](View3D& picture) {
+    do picture.draw(scene, camera, kSize, now += 0.2); while (!picture.complete());
+    return picture.read();
+  };
+  View3D view(studio.renderer);
+  const Image before = rest(view);
+  const std::int64_t followed = view.rays_followed();
+  SkinWeights changed = *block.weights;
+  for (std::int64_t b = 0; b < changed.chunk_count(); ++b) {
+    const glm::ivec3 corner = block.tissue->bricks()[b].corner;
+    if (corner.x != 40) continue;
+    SkinWeights::Chunk chunk = changed.chunk(b);
+    for (Influence& influence : chunk) influence = rigid_influence(1);
+    changed.set_chunk(b, chunk);
+  }
+  scene.weights->weights = std::make_shared<const SkinWeights>(changed);
+  view.draw(scene, camera, kSize, now += 0.01);
+  CHECK(view.rays_followed() == followed);
+  const Image after = view.read();
+  const double millimetres = 2 * camera.distance * std::tan(camera.field_of_view / 2) / kSize.y;
+  int inside = 0, outside = 0;
+  for (int y = 0; y < kSize.y; ++y)
+    for (int x = 0; x < kSize.x; ++x) {
+      const double at = camera.centre.x + (x + 0.5 - kSize.x / 2) * millimetres;  // voxels
+      const bool differs = apart(test::pixel_of(before, {x, y}), glm::ivec3(test::pixel_of(after, {x, y}))) > 0;
+      if (at > 35 && at < 53) inside += differs;
+      else outside += differs;
+    }
+  CHECK(inside > 200);
+  CHECK(outside == 0);
+  // Once refined, as weights that were there from the beginning.
+  View3D fresh(studio.renderer);
+  CHECK(difference(rest(view), rest(fresh)).mean < 0.5);
+}
+
 TEST_CASE("weights: in small textures, and where the volume is drawn coarser, the picture is the same but for its steps") {
   const Block block({70, 60, 80}, [](const glm::ivec3& v) { return v.z < 20 ? 0 : std::min(kFullWeight, 1500 * (v.z - 20)); });
   Scene scene = block.scene();
