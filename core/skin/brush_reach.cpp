@@ -666,13 +666,12 @@ const Reached& BrushReach::dab(const glm::dvec3& centre, double radius, BrushDis
   if (!(radius > 0) || (geodesic && !find_start()) || !place_window(radius, geodesic)) return reached_;
   if (filtered_) need_allowed();
 
-  std::int64_t most = kBrick;
-  for (const int brick : bricks_)
-    most += (brick + 1 < std::ssize(tissue_.bricks()) ? tissue_.bricks()[brick + 1].first : tissue_.size()) - tissue_.bricks()[brick].first;
+  place_ball(radius, ball_);
+  std::int64_t most = kBrick;  // a row is written whole
+  for (const Span& row : ball_) most += std::max(row.last - row.first + 1, 0);
   reached_.at.resize(most);
   reached_.cell.resize(most);
   reached_.distance.resize(most);
-  place_ball(radius, ball_);
   if (geodesic) {
     const glm::dvec3 spacing = volume_.grid.spacing;
     place_ball(radius + std::max({spacing.x, spacing.y, spacing.z}) + glm::length((glm::dvec3(start_) - centre_) * spacing), grown_ball_);

@@ -160,11 +160,12 @@ void share_out(std::span<const double> share, int total, std::span<int> out) {
     if (share[i] > share[largest]) largest = i;
   }
   if (!(sum > 0)) throw std::logic_error("share_out: nothing to share by");
+  const double factor = total / sum;
   for (const double half : {0.5, 0.0}) {
     int left = total;
     for (std::size_t i = 0; i < share.size(); ++i) {
       if (i == largest) continue;
-      out[i] = static_cast<int>(share[i] / sum * total + half);
+      out[i] = static_cast<int>(share[i] * factor + half);
       left -= out[i];
     }
     out[largest] = left;
@@ -272,11 +273,12 @@ WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight)
     sum += influence.weight[i];
     if (largest < 0 || influence.weight[i] > influence.weight[largest]) largest = i;
   }
+  const double factor = others / double(sum);
   for (const double half : {0.5, 0.0}) {
     int left = others;
     for (int i = 0; i < count; ++i) {
       if (i == slot || i == largest) continue;
-      shared[i] = static_cast<int>(double(influence.weight[i]) / sum * others + half);
+      shared[i] = static_cast<int>(influence.weight[i] * factor + half);
       left -= shared[i];
     }
     shared[largest] = left;

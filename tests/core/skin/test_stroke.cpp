@@ -348,3 +348,23 @@ TEST_CASE("stroke: it says which bricks changed, when nothing did, and which loc
   settings.bones = {2};
   CHECK_THROWS_AS(Stroke(painted.stroke_body(), painted.weights, settings), std::logic_error);
 }
+
+TEST_CASE("stroke: on a whole body one of 200 dabs takes less than 5 MB, and leaves all bricks but its own shared") {
+  const Phantom phantom = make_body_phantom(8);
+  Painted painted({phantom.volume, phantom.tissues, phantom.armature});
+  StrokeSettings settings = brush_of(BrushKind::Add, 16 * 8.0, 2);
+  settings.brush.falloff = FalloffShape::Smooth;
+  settings.brush.spacing = 0.1;
+  Stroke stroke(painted.stroke_body(), painted.weights, settings);
+  const Bone& bone = phantom.armature.bones[2];
+  for (int i = 0; stroke.dab_count() < 200; ++i) stroke.to(i % 2 ? bone.tail : bone.head);
+  MESSAGE("of ", painted.tissue.size(), " voxels of tissue: ", stroke.memory_bytes() / 1000, " kB");
+  CHECK(stroke.memory_bytes() < 5'000'000);
+  const std::vector<int> dirty = stroke.take_dirty();
+  CHECK(dirty.size() > 20);
+  const SkinWeights after = stroke.finish();
+  std::size_t own = 0;
+  for (std::int64_t b = 0; b < after.chunk_count(); ++b) own += after.shared_chunk(b) != painted.weights->shared_chunk(b);
+  CHECK(own == dirty.size());
+  CHECK(own < painted.tissue.bricks().size() / 2);
+}
