@@ -15,6 +15,7 @@
 #include "editor/panels/panels.h"
 #include "editor/project.h"
 #include "editor/sitting.h"
+#include "editor/painting.h"
 #include "editor/skin_display.h"
 #include "editor/timeline.h"
 #include "editor/tooltip.h"
@@ -163,6 +164,7 @@ void Editor::draw_views() {
     ended(*this, place.id == ViewId::Body ? "body" : "slice");
   }
   hover_views(*this);
+  follow_brush(*this);
   ended(*this, "hover");
 }
 

@@ -26,6 +26,10 @@ inline constexpr char kSelect[] = "\uf245", kMove[] = "\uf047", kRotate[] = "\uf
                       kReach[] = "\uf1e0", kExtrude[] = "\uf08e", kSnap[] = "\uf076", kBreakdown[] = "\uf1de", kMirror[] = "\uf0ec", kLinkViews[] = "\uf0c1",
                       kLock[] = "\uf023", kUnlocked[] = "\uf13e";
 
+// Brushes
+inline constexpr char kBrushAdd[] = "\uf067", kBrushSubtract[] = "\uf068", kBrushSet[] = "\uf192", kBrushMultiply[] = "\uf069", kBrushSmooth[] = "\uf043",
+                      kBrushSharpen[] = "\uf0e7", kBrushAverage[] = "\uf24e", kBrushSmear[] = "\uf25a", kBrushCapsule[] = "\uf1cd";
+
 // Time
 inline constexpr char kFirst[] = "\uf049", kBack[] = "\uf048", kPlay[] = "\uf04b", kPause[] = "\uf04c", kForward[] = "\uf051", kLast[] = "\uf050",
                       kLoop[] = "\uf079", kKey[] = "\uf084", kMarker[] = "\uf02e", kOnionSkin[] = "\uf24d";

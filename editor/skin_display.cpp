@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "editor/painting.h"
 #include "editor/project.h"
 #include "render/weight_colours.h"
 
@@ -62,6 +63,9 @@ void show_regions(Editor& editor, const std::shared_ptr<const SkinWeights>& weig
 }
 
 }  // namespace
+
+SkinDisplay::SkinDisplay() : painting(std::make_unique<Painting>()) {}
+SkinDisplay::~SkinDisplay() = default;
 
 WeightShares::Counted WeightShares::count(const std::shared_ptr<const SkinWeights>& weights) {
   constexpr std::int64_t kGrain = 512;  // bricks

@@ -34,7 +34,12 @@ class WeightShares {
   std::future<Counted> counting_;
 };
 
+struct Painting;
+
 struct SkinDisplay {
+  SkinDisplay();
+  ~SkinDisplay();
+
   std::optional<render::WeightDisplay> display = render::WeightDisplay::Active;  // nothing: the tissues
   bool contours = true;
   std::set<std::string> hidden;  // bones whose regions are hidden
@@ -43,6 +48,8 @@ struct SkinDisplay {
   std::string search;  // of the list of bones
   bool searching = false, focus_search = false;
   std::optional<int> revealed;  // the active bone that the list came to last
+
+  std::unique_ptr<Painting> painting;  // of painting.h; never null
 
   WeightShares shares;
   // The volume without the hidden regions, and what it was made of.

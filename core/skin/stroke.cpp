@@ -28,6 +28,7 @@ class Stroke::Work {
   Work(const StrokeBody& body, std::shared_ptr<const SkinWeights> weights, StrokeSettings settings);
 
   void to(const glm::dvec3& point, double pressure);
+  void lift();
   void dab(const glm::dvec3& centre, double pressure);
   const SkinWeights::Chunk& chunk(std::int64_t brick) const {
     const int slot = slot_of_[brick];
@@ -214,6 +215,12 @@ void Stroke::Work::to(const glm::dvec3& point, double pressure) {
   since_dab_ = length - (at - step);
   last_point_ = point;
   last_pressure_ = pressure;
+}
+
+void Stroke::Work::lift() {
+  last_point_.reset();
+  last_dab_.reset();
+  since_dab_ = 0;
 }
 
 void Stroke::Work::dab(const glm::dvec3& centre, double pressure) {
@@ -543,6 +550,7 @@ Stroke::Stroke(Stroke&&) noexcept = default;
 Stroke& Stroke::operator=(Stroke&&) noexcept = default;
 
 void Stroke::to(const glm::dvec3& point, double pressure) { work_->to(point, pressure); }
+void Stroke::lift() { work_->lift(); }
 void Stroke::dab(const glm::dvec3& centre, double pressure) { work_->dab(centre, pressure); }
 const SkinWeights::Chunk& Stroke::chunk(std::int64_t brick) const { return work_->chunk(brick); }
 const SkinWeights& Stroke::original() const { return work_->original(); }

@@ -77,6 +77,8 @@ class Stroke {
   //   pressure  [0, 1] of the strength, between dabs as on the way
   void to(const glm::dvec3& point, double pressure = 1);
 
+  // The brush has left the body: the next place is a beginning again.
+  void lift();
   // A single dab, whatever the spacing.
   void dab(const glm::dvec3& centre, double pressure = 1);
 

@@ -40,6 +40,7 @@ std::vector<Operator> preferences_operators();
 std::vector<Operator> prepare_operators();
 std::vector<Operator> rig_fit_operators();
 std::vector<Operator> skin_operators();
+std::vector<Operator> paint_operators();
 std::vector<Operator> skin_display_operators();
 std::vector<Operator> rig_operators();
 std::vector<Operator> pose_operators();

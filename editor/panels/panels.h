@@ -42,6 +42,7 @@ void draw_display(Editor& editor, Column& column);
 void draw_clipping(Editor& editor, Column& column);
 void draw_under_cursor(Editor& editor, Column& column);
 void draw_motion(Editor& editor, Column& column);
+void draw_brush_section(Editor& editor, Column& column);
 void draw_history(Editor& editor, Column& column);
 void draw_live_volume(Editor& editor, Column& column);
 void draw_steps(Editor& editor, Column& column);

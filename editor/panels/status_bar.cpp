@@ -9,7 +9,9 @@
 #include "editor/icons.h"
 #include "editor/live_pose.h"
 #include "editor/panels/change.h"
+#include "editor/painting.h"
 #include "editor/panels/panels.h"
+#include "editor/skin_display.h"
 #include "editor/tissues.h"
 
 namespace limber::editor {
@@ -47,15 +49,16 @@ std::vector<KeyHint> hints(const Editor& editor) {
   if (!(editor.input.modifiers() == Modifiers{}) && !editor.dialog) return held_hints(editor);
   std::vector<std::pair<const char*, const char*>> operators;
   const ViewPlace* view = hovered_view(editor);
-  if (view && view->id != ViewId::Body)
+  if (view && editor.workspace == Workspace::Skin && why_not_paint(editor).empty())
+    operators = {{"skin.paint", name_of(editor.skin->painting->kind)}, {"skin.paint_subtract", "Take away"}, {"skin.paint_smooth", "Smooth"}, {"skin.radius", "Radius"}, {"skin.strength", "Strength"},
+                 {"skin.pick_bone", "Pick bone"}, {"skin.lock_pie", "Lock"}, {"skin.display_pie", "Display"}};
+  else if (view && view->id != ViewId::Body)
     operators = {{"select.pick", editor.tool == Tool::CrossHair ? "Move cross-hair" : "Select"}, {"slice.step", "Slice"}, {"slice.zoom", "Zoom"}, {"slice.pan", "Shift"},
                  {"view.place_cross_hair", "Cross-hair"}, {"slice.outline", "Outline"}, {"view.maximize", "Maximize"}};
   else if (!editor.document().volume || editor.start_screen)
     operators = {{"file.open", "Open"}, {"file.new", "New"}, {"search.commands", "Search"}, {"help.guide", "Help"}, {"file.quit", "Quit"}};
   else if (editor.workspace == Workspace::Rig && editor.selection.bone)
     operators = {{"rig.move", "Move"}, {"rig.rotate", "Rotate"}, {"rig.extrude", "Extrude"}, {"rig.delete", "Delete"}, {"view.orbit", "Turn"}, {"view.xray", "X-ray"}, {"select.all", "All bones"}};
-  else if (editor.workspace == Workspace::Skin && editor.document().weights)
-    operators = {{"skin.pick_bone", "Pick bone"}, {"skin.display_pie", "Display"}, {"skin.lock_pie", "Lock"}, {"view.orbit", "Turn"}, {"view.zoom_step", "Zoom"}, {"view.xray", "X-ray"}, {"view.frame_all", "Frame all"}};
   else if (editor.workspace == Workspace::Pose && editor.selection.bone)
     operators = {{"pose.rotate", "Rotate"}, {"pose.move", "Move"}, {"pose.clear_rotation", "Clear"}, {"view.orbit", "Turn"}, {"view.xray", "X-ray"}, {"select.all", "All bones"}};
   else

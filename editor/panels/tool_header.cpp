@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Below the top bar: how the body is shown, what is clipped, the layout of the views.
+#include "editor/fields.h"
 #include "editor/icons.h"
+#include "editor/painting.h"
 #include "editor/panels/panels.h"
+#include "editor/skin_display.h"
 
 namespace limber::editor {
 
@@ -53,6 +56,15 @@ class Header {
     pop_path(editor_);
     editor_.place.region = Region::ToolHeader;
     ImGui::EndPopup();
+  }
+
+  // A number of the brush, dragged or typed.
+  void number(const char* name, double& value, double low, double high, const char* format, const char* unit, float width) {
+    label(name);
+    const float height = px(24), y = std::round(bar_.centre().y - height / 2);
+    bool committed = false;
+    if (drawn_) number_field(editor_, name, {{x_, y}, {x_ + px(width), y + height}}, value, low, high, format, unit, true, committed);
+    x_ += px(width + 10);
   }
 
   // What the workspace is for.
@@ -134,8 +146,11 @@ class Header {
 void put_options(Editor& editor, Header& header) {
   header.layouts();
   header.to_left();
-  header.segments({"view.solid", "view.xray_display", "view.tissue"});
-  header.line();
+  const bool paints = editor.workspace == Workspace::Skin && editor.document().weights;
+  if (!paints) {
+    header.segments({"view.solid", "view.xray_display", "view.tissue"});
+    header.line();
+  }
   if (editor.workspace == Workspace::Rig) {
     header.action("rig.auto_fit");
     if (header.fits(110, {"rig.templates"})) header.plain("rig.templates");
@@ -147,10 +162,23 @@ void put_options(Editor& editor, Header& header) {
     if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"})) header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
     header.line();
   }
-  if (editor.workspace == Workspace::Skin && editor.document().weights) {
+  if (paints) {
+    Painting& painting = *editor.skin->painting;
+    if (header.fits(140, {"skin.radius"})) header.number("Radius", painting.radius, Painting::kLeastRadius, Painting::kMostRadius, "%.1f", "mm", 80);
+    if (header.fits(140, {"skin.strength"})) header.number("Strength", painting.strength, 0, 1, "%.2f", "", 64);
+    const bool takes_value = painting.kind == BrushKind::Set || painting.kind == BrushKind::Multiply;
+    if (takes_value && header.fits(130, {"skin.value"})) header.number("Value", painting.value, 0, 1, "%.2f", "", 64);
+    header.line();
     const auto kDisplays = {"skin.show_active", "skin.show_dominant", "skin.show_mixed", "skin.show_count", "skin.show_tissues"};
-    if (header.fits(190, kDisplays)) header.choice("Weight display", kDisplays);
+    if (header.fits(140, kDisplays)) header.choice("Weight display", kDisplays);
+    if (header.fits(130, {"skin.reach_surface", "skin.reach_depth", "skin.reach_through"})) header.choice("Reach", {"skin.reach_surface", "skin.reach_depth", "skin.reach_through"});
+    if (header.fits(90, {"skin.along_tissue"})) header.toggle("skin.along_tissue");
+    if (header.fits(140, {"skin.paint_all", "skin.paint_soft", "skin.paint_chosen", "skin.paint_visible"})) header.choice("Painted tissue", {"skin.paint_all", "skin.paint_soft", "skin.paint_chosen", "skin.paint_visible"});
+    if (header.fits(180, {"skin.normalize_unlocked", "skin.normalize_all"})) header.choice("Normalize", {"skin.normalize_unlocked", "skin.normalize_all"});
+    if (header.fits(header.toggle_width(110), {"edit.x_mirror"})) header.toggle("edit.x_mirror");
     if (header.fits(90, {"skin.contours"})) header.toggle("skin.contours");
+    const auto kBodies = {"view.solid", "view.xray_display", "view.tissue"};
+    if (header.fits(200, kBodies)) header.segments(kBodies);
     header.line();
   }
   if (editor.workspace == Workspace::Pose) {

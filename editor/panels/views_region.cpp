@@ -11,6 +11,7 @@
 #include "editor/menus.h"
 #include "editor/panels/panels.h"
 #include "editor/results.h"
+#include "editor/painting.h"
 #include "editor/skin_display.h"
 #include "editor/tissues.h"
 #include "editor/wipe.h"
@@ -222,6 +223,7 @@ void draw_views_region(Editor& editor) {
     if (place.id == ViewId::Body) draw_body_overlay(editor, place.rect);
     else draw_slice_overlay(editor, place.id, place.rect);
     draw_gizmo(editor, place);
+    draw_brush(editor, place);
     draw_wipe(editor, place.rect);
     if (editor.layout.view_places.size() > 1 && place.id == editor.views->active) outline(place.rect, look.theme.accent, 0, 2 * look.line());
     ImGui::PopClipRect();

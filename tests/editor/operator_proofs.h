@@ -69,6 +69,7 @@ std::vector<Proof> proofs_of_work();
 std::vector<Proof> proofs_of_files();
 std::vector<Proof> proofs_of_pages();
 std::vector<Proof> proofs_of_posing();
+std::vector<Proof> proofs_of_painting();
 std::vector<Proof> proofs_of_comparing();
 std::vector<Proof> proofs_of_motion();
 std::vector<Proof> proofs_of_clips();

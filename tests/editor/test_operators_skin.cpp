@@ -85,7 +85,7 @@ std::vector<Proof> proofs_of_skin() {
       {"skin.show_count", "click \"View/Weights/Number of influences\"", shows("count"), Shows::InSlice},
       {"skin.show_tissues", "click \"View/Weights/Tissues\"", shows("none"), Shows::InSlice},
       {"skin.show_active", "click \"View/Weights/Active bone\"", shows("active"), Shows::InBody},
-      {"skin.contours", "click \"header/skin.contours\"", [](Stage& s, const Seen&) { return !s.editor().skin->contours; }, Shows::InBody},
+      {"skin.contours", "click \"View/Weights/Contours\"", [](Stage& s, const Seen&) { return !s.editor().skin->contours; }, Shows::InBody},
       {"skin.display_pie", "key D", popup("Weight display"), Shows::Nothing, "", ready},
       {"skin.lock_pie", "key K", popup("Locks"), Shows::Nothing, "", ready},
       {"skin.lock", "key K\n click \"Lock bone\"", locked({"Fore"}, "Lock Fore"), Shows::Nothing, "", ready},
@@ -251,7 +251,7 @@ TEST_CASE("skin: saved and opened again, bones are locked and the display is as 
     replace_project(sitting.editor(), opened);
     sitting.test.player.settle();
     weigh(sitting.editor());
-    sitting.play("key Ctrl+2\n wait-idle\n move \"3D view/view\"\n key D\n click \"Dominant bones\"\n click header/skin.contours\n click Bones/Fore/lock\n wait-idle");
+    sitting.play("key Ctrl+2\n wait-idle\n move \"3D view/view\"\n key D\n click \"Dominant bones\"\n click View/Weights/Contours\n click Bones/Fore/lock\n wait-idle");
     CHECK(sitting.test.fact("locked") == "1");
     sitting.play("key Ctrl+S\n type limb\n key Return\n wait-job\n expect unsaved no\n expect name limb.limber");
   }

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Painting weights: brushes, how they are set, what they may reach.
+#include <algorithm>
+#include <cmath>
+
+#include "editor/icons.h"
+#include "editor/painting.h"
+#include "editor/skin_display.h"
+#include "editor/tools/brush_tools.h"
+#include "editor/tools/transform_tool.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kGrowth = 1.15, kStep = 0.05;  // of the radius; of the strength
+
+std::string needs_paint_below(const Editor& editor) {
+  if (std::string why = why_not_paint(editor); !why.empty()) return why;
+  return editor.views->hover.view ? "" : "Put the pointer on the body";
+}
+
+void begin_number(Editor& editor, BrushNumber which) {
+  editor.modal = begin_brush_number(editor, which);
+  editor.modal_wrap = {};
+}
+
+Operator brush(const char* id, const char* icon, BrushKind kind, const char* sentence) {
+  return {id, name_of(kind), icon, "Brush", sentence, [kind](Editor& e) { e.skin->painting->kind = kind; }, nullptr, [kind](const Editor& e) { return e.skin->painting->kind == kind; }};
+}
+
+// One of several settings.
+template <class Value>
+Operator setting(const char* id, const char* label, const char* sentence, Value Painting::*member, Value value) {
+  return {id, label, "", "Brush", sentence, [=](Editor& e) { (*e.skin->painting).*member = value; }, nullptr, [=](const Editor& e) { return (*e.skin->painting).*member == value; }};
+}
+
+void scale_radius(Editor& editor, double by) { editor.skin->painting->radius = std::clamp(editor.skin->painting->radius * by, Painting::kLeastRadius, Painting::kMostRadius); }
+void add_strength(Editor& editor, double step) { editor.skin->painting->strength = std::clamp(std::round((editor.skin->painting->strength + step) / kStep) * kStep, 0.0, 1.0); }
+
+// The active bone's weight under the pointer becomes the value of the brush.
+void sample(Editor& editor) {
+  const std::string& name = editor.document().armature->bones[*skin_bone(editor)].name;
+  double value = 0;
+  for (const BoneWeight& weight : editor.views->hover.weights)
+    if (weight.bone == name) value = weight.value;
+  editor.skin->painting->value = value;
+  editor.messages.info("Value " + text_of_number("%.3f", value), name);
+}
+
+}  // namespace
+
+std::vector<Operator> paint_operators() {
+  return {
+      {"skin.paint", "Paint", icon::kSkin, "Brush", "Paints the active bone's weight with the brush, until the button is let go.", [](Editor& e) { begin_stroke(e, e.skin->painting->kind); }, needs_paint_below},
+      {"skin.paint_subtract", "Paint less", "", "Brush", "Takes weight away with the brush, or adds where the brush takes away.",
+       [](Editor& e) { begin_stroke(e, e.skin->painting->kind == BrushKind::Subtract ? BrushKind::Add : BrushKind::Subtract); }, needs_paint_below},
+      {"skin.paint_smooth", "Paint smooth", "", "Brush", "Smooths weights with the brush.", [](Editor& e) { begin_stroke(e, BrushKind::Smooth); }, needs_paint_below},
+      brush("skin.brush_add", icon::kBrushAdd, BrushKind::Add, "Adds to the active bone's weight."),
+      brush("skin.brush_subtract", icon::kBrushSubtract, BrushKind::Subtract, "Takes from the active bone's weight."),
+      brush("skin.brush_set", icon::kBrushSet, BrushKind::Set, "Sets the active bone's weight to the brush's value."),
+      brush("skin.brush_multiply", icon::kBrushMultiply, BrushKind::Multiply, "Multiplies the active bone's weight by the brush's value."),
+      brush("skin.brush_smooth", icon::kBrushSmooth, BrushKind::Smooth, "Draws weights towards those around."),
+      brush("skin.brush_sharpen", icon::kBrushSharpen, BrushKind::Sharpen, "Draws weights away from those around."),
+      brush("skin.brush_average", icon::kBrushAverage, BrushKind::Average, "Draws weights towards the mean under the brush."),
+      brush("skin.brush_smear", icon::kBrushSmear, BrushKind::Smear, "Drags weights along."),
+      brush("skin.brush_capsule", icon::kBrushCapsule, BrushKind::JointCapsule, "Blends the active bone with its parent over so many mm about their joint."),
+      {"skin.brush_pie", "Brushes", icon::kSkin, "Brush", "Lists the brushes at the pointer.", [](Editor& e) { e.open_popup = "Brushes"; }},
+      {"skin.radius", "Radius", "", "Brush", "Sets the brush's radius with the pointer.", [](Editor& e) { begin_number(e, BrushNumber::Radius); }, why_not_paint},
+      {"skin.strength", "Strength", "", "Brush", "Sets the brush's strength with the pointer.", [](Editor& e) { begin_number(e, BrushNumber::Strength); }, why_not_paint},
+      {"skin.value", "Value", "", "Brush", "Sets the brush's value with the pointer.", [](Editor& e) { begin_number(e, BrushNumber::Value); }, why_not_paint},
+      {"skin.radius_down", "Smaller", "", "Brush", "Makes the brush smaller.", [](Editor& e) { scale_radius(e, 1 / kGrowth); }},
+      {"skin.radius_up", "Larger", "", "Brush", "Makes the brush larger.", [](Editor& e) { scale_radius(e, kGrowth); }},
+      {"skin.strength_down", "Weaker", "", "Brush", "Makes the brush weaker.", [](Editor& e) { add_strength(e, -kStep); }},
+      {"skin.strength_up", "Stronger", "", "Brush", "Makes the brush stronger.", [](Editor& e) { add_strength(e, kStep); }},
+      {"skin.sample", "Sample value", icon::kPick, "Brush", "The active bone's weight under the pointer becomes the value of the brush.", sample,
+       [](const Editor& e) { return !why_not_paint(e).empty() ? why_not_paint(e) : e.views->hover.weights.empty() ? std::string("Put the pointer on the body") : std::string(); }},
+      setting("skin.reach_surface", "Surface", "Only the outermost tissue is painted.", &Painting::depth, BrushDepth::Surface),
+      setting("skin.reach_depth", "To a depth", "Tissue down to a depth below the air is painted.", &Painting::depth, BrushDepth::ToDepth),
+      setting("skin.reach_through", "Through", "All tissue within the radius is painted.", &Painting::depth, BrushDepth::Through),
+      {"skin.along_tissue", "Geodesic", "", "Brush", "Distances go inside the tissue, so that the brush never crosses air to the next finger.",
+       [](Editor& e) { e.skin->painting->distance = e.skin->painting->distance == BrushDistance::Geodesic ? BrushDistance::Euclidean : BrushDistance::Geodesic; }, nullptr,
+       [](const Editor& e) { return e.skin->painting->distance == BrushDistance::Geodesic; }},
+      setting("skin.paint_all", "All tissue", "Every tissue is painted.", &Painting::tissue, PaintedTissue::All),
+      setting("skin.paint_soft", "Soft tissue", "Everything but bone is painted.", &Painting::tissue, PaintedTissue::Soft),
+      setting("skin.paint_chosen", "Chosen tissue", "The tissues that are chosen in the list are painted.", &Painting::tissue, PaintedTissue::Chosen),
+      setting("skin.paint_visible", "Visible tissue", "Tissues that are shown are painted.", &Painting::tissue, PaintedTissue::Visible),
+      setting("skin.normalize_unlocked", "Normalize: unlocked", "Other unlocked bones make room for what is painted.", &Painting::normalize, Normalize::Unlocked),
+      setting("skin.normalize_all", "Normalize: all", "All unlocked bones are scaled alike, the painted one too.", &Painting::normalize, Normalize::All),
+      {"skin.accumulate", "Accumulate", "", "Brush", "A stroke adds up where it comes over a place again.", [](Editor& e) { e.skin->painting->accumulate = !e.skin->painting->accumulate; }, nullptr,
+       [](const Editor& e) { return e.skin->painting->accumulate; }},
+      setting("skin.falloff_smooth", "Smooth falloff", "The brush fades in an S.", &Painting::falloff, FalloffShape::Smooth),
+      setting("skin.falloff_sphere", "Sphere falloff", "The brush fades as a ball's side does.", &Painting::falloff, FalloffShape::Sphere),
+      setting("skin.falloff_root", "Root falloff", "The brush fades late.", &Painting::falloff, FalloffShape::Root),
+      setting("skin.falloff_sharp", "Sharp falloff", "The brush fades early.", &Painting::falloff, FalloffShape::Sharp),
+      setting("skin.falloff_linear", "Linear falloff", "The brush fades evenly.", &Painting::falloff, FalloffShape::Linear),
+      setting("skin.falloff_constant", "Constant falloff", "The brush does not fade.", &Painting::falloff, FalloffShape::Constant),
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/painting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/rig/mirror.h"
+#include "editor/dispatch.h"
+#include "editor/editor.h"
+#include "editor/gizmo_painter.h"
+#include "editor/handling.h"
+#include "editor/skin_display.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr int kRingPoints = 64;
+constexpr double kStepOfRadius = 0.5;  // of the radius as it is seen, that the pointer is followed by
+constexpr int kMostSteps = 24;         // of one movement
+
+// The same place on the other side; where the stroke dabs too.
+glm::dvec3 mirrored(const Armature& armature, const glm::dvec3& point) { return mirror_plane(armature).place(point); }
+
+// The vertical extent of a ring on the screen stays readable when it is seen from its edge.
+Ring ring_at(const BrushPlace& place, const glm::dvec3& centre, double radius) {
+  const glm::dvec3 axis = glm::normalize(place.normal), other = std::abs(axis.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  return {centre, axis, glm::normalize(glm::cross(axis, other)), radius};
+}
+
+}  // namespace
+
+struct Painting::Running {
+  // What the stroke refers to.
+  Document document;
+  std::shared_ptr<const TissueVoxels> tissue;
+  std::unique_ptr<Stroke> stroke;
+  ViewPlace view;
+  std::string label;
+  glm::vec2 pixel{0};  // where the pointer was
+};
+
+Painting::Painting() = default;
+Painting::~Painting() = default;
+
+const char* name_of(BrushKind kind) {
+  constexpr const char* kNames[] = {"Add", "Subtract", "Set", "Multiply", "Smooth", "Sharpen", "Average", "Smear", "Joint capsule"};
+  return kNames[static_cast<int>(kind)];
+}
+
+std::optional<BrushPlace> brush_place(Editor& editor, const ViewPlace& view, const glm::vec2& pixel) {
+  const render::Scene& scene = editor.views->scene;
+  if (!scene.volume || !is_of_document(editor, scene.volume)) return std::nullopt;
+  const AffineTransform to_world = world_from_voxel(scene.volume->grid);
+  if (view.id == ViewId::Body) {
+    const auto hit = editor.views->body.picture->pick(glm::ivec2(pixel - view.rect.low));
+    if (!hit) return std::nullopt;
+    const glm::dvec3 normal = glm::dot(hit->normal, hit->normal) > 0 ? hit->normal : SeenFrom(editor, view).direction_to_eye(hit->point);
+    return BrushPlace{view.id, hit->point, normal, scene.pose ? to_world * glm::dvec3(hit->voxel) : hit->point};
+  }
+  const SeenFrom seen(editor, view);
+  const glm::dvec3 point = world_of(slice_of(*editor.views, view.id).camera, pixel - view.rect.low, view.rect.size());
+  const auto voxel = voxel_shown_at(scene, point);
+  if (!voxel || scene.volume->at_or_air(*voxel) == 0) return std::nullopt;
+  return BrushPlace{view.id, point, seen.towards_eye, scene.pose ? to_world * glm::dvec3(*voxel) : point};
+}
+
+std::string why_not_paint(const Editor& editor) {
+  const Document& document = editor.document();
+  if (!document.volume || !document.armature) return "Open a volume with a rig first";
+  if (!document.weights) return "There are no weights yet: compute them first";
+  const auto bone = skin_bone(editor);
+  if (!bone || weights_bone(*document.weights, document.armature->bones[*bone].name) < 0) return "The weights belong to another rig";
+  return "";
+}
+
+StrokeSettings stroke_settings(const Editor& editor, BrushKind kind) {
+  const Painting& painting = *editor.skin->painting;
+  const Document& document = editor.document();
+  StrokeSettings settings;
+  Brush& brush = settings.brush;
+  brush.kind = kind;
+  brush.radius = painting.radius;
+  brush.strength = painting.strength;
+  brush.value = painting.value;
+  brush.falloff = Falloff(painting.falloff);
+  brush.spacing = painting.spacing;
+  brush.accumulate = painting.accumulate;
+  brush.distance = painting.distance;
+  brush.blend_mm = painting.blend_mm;
+
+  const SkinWeights& weights = *document.weights;
+  const auto add = [&](int bone) {
+    const int index = weights_bone(weights, document.armature->bones[bone].name);
+    if (index >= 0 && std::find(settings.bones.begin(), settings.bones.end(), index) == settings.bones.end()) settings.bones.push_back(index);
+  };
+  add(*skin_bone(editor));
+  if (kind != BrushKind::JointCapsule)
+    for (const int bone : editor.selection.bones) add(bone);
+  settings.locked.assign(weights.bones().size(), 0);
+  for (std::size_t bone = 0; bone < settings.locked.size(); ++bone) settings.locked[bone] = is_locked(document, weights.bones()[bone]);
+  settings.normalize = painting.normalize;
+
+  BrushFilter& filter = settings.filter;
+  filter.depth = painting.depth;
+  filter.depth_mm = painting.depth_mm;
+  if (painting.tissue != PaintedTissue::All) {
+    filter.labels.assign(65536, 0);
+    for (const Tissue& tissue : document.tissues->tissues) {
+      const bool visible = !editor.views->scene.looks || (*editor.views->scene.looks)[tissue.label].visible;
+      const bool allowed = painting.tissue == PaintedTissue::Visible  ? visible
+                           : painting.tissue == PaintedTissue::Chosen ? editor.selection.tissues.contains(tissue.label)
+                                                                      : !is_bone(tissue.kind);
+      filter.labels[tissue.label] = allowed;
+    }
+  }
+  if (const Visibility* visibility = document.visibility.get()) {
+    if (visibility->clip_box.enabled) filter.box = BrushFilter::Box{visibility->clip_box.low, visibility->clip_box.high};
+    if (visibility->clip_plane.enabled) filter.plane = BrushFilter::Plane{visibility->clip_plane.point, visibility->clip_plane.normal};
+  }
+  if (editor.handling->x_mirror) settings.mirror = mirror_plane(*document.armature);
+  return settings;
+}
+
+namespace {
+
+void show_stroke(Editor& editor, Painting::Running& running) {
+  if (running.stroke->take_dirty().empty()) return;
+  editor.views->preview_weights = std::make_shared<const SkinWeights>(running.stroke->weights());
+  editor.touch();
+}
+
+void drop_stroke(Editor& editor) {
+  editor.skin->painting->running.reset();
+  editor.views->preview_weights.reset();
+  editor.touch();
+}
+
+// Dabs at what lies under the pixels on the pointer's way.
+void paint_to(Editor& editor, const glm::vec2& pixel) {
+  Painting& painting = *editor.skin->painting;
+  Painting::Running& running = *painting.running;
+  const SeenFrom seen(editor, running.view);
+  const glm::dvec3 reference = painting.place ? painting.place->seen : editor.views->cross_hair;
+  const double radius_seen = painting.radius / std::max(seen.millimetres_per_pixel(reference), 1e-6);
+  const int steps = std::clamp(static_cast<int>(std::ceil(glm::distance(pixel, running.pixel) / std::max(kStepOfRadius * radius_seen, 1.0))), 1, kMostSteps);
+  for (int step = 1; step <= steps; ++step) {
+    const auto place = brush_place(editor, running.view, glm::mix(running.pixel, pixel, float(step) / float(steps)));
+    painting.place = place;
+    if (place) running.stroke->to(place->rest);
+    else running.stroke->lift();
+  }
+  running.pixel = pixel;
+  show_stroke(editor, running);
+}
+
+void end_stroke(Editor& editor) {
+  const std::shared_ptr<Painting::Running> running = editor.skin->painting->running;
+  Stroke& stroke = *running->stroke;
+  const bool empty = stroke.empty();
+  const int lock = stroke.blocked_count() > 0 ? stroke.blocked_by() : -1;
+  if (!empty) {
+    Document next = editor.document();
+    next.weights = std::make_shared<const SkinWeights>(stroke.finish());
+    editor.history.commit(running->label, std::move(next));
+  }
+  drop_stroke(editor);
+  if (empty && lock >= 0) editor.messages.toast_error(lock_message(*running->document.armature, lock), "Nothing else can take or give the weight here", "skin.unlock_all");
+}
+
+}  // namespace
+
+void begin_stroke(Editor& editor, BrushKind kind) {
+  const ViewPlace* view = hovered_view(editor);
+  if (!view || !why_not_paint(editor).empty()) return;
+  auto running = std::make_shared<Painting::Running>();
+  running->document = editor.document();
+  running->tissue = tissue_voxels(*editor.views, editor.document());
+  running->view = *view;
+  running->pixel = editor.input.pointer;
+  const Document& document = running->document;
+  const int bone = *skin_bone(editor);
+  running->label = std::string(name_of(kind)) + " " + document.armature->bones[bone].name;
+  running->stroke = std::make_unique<Stroke>(StrokeBody{*document.volume, *running->tissue, *document.tissues, *document.armature}, document.weights, stroke_settings(editor, kind));
+  editor.skin->painting->running = running;
+  paint_to(editor, editor.input.pointer);
+  editor.drag = Drag{MouseButton::Left, [](Editor& e, const glm::vec2&) { paint_to(e, e.input.pointer); }, end_stroke, drop_stroke};
+}
+
+void follow_brush(Editor& editor) {
+  Painting& painting = *editor.skin->painting;
+  editor.skin->ring = 0;
+  if (!painting.running) {
+    painting.place.reset();
+    const ViewPlace* view = hovered_view(editor);
+    if (editor.workspace != Workspace::Skin || !view || editor.drag || editor.dialog || !why_not_paint(editor).empty()) return;
+    painting.place = brush_place(editor, *view, editor.input.pointer);
+  }
+  if (!painting.place) return;
+  for (const ViewPlace& view : editor.layout.view_places)
+    if (view.id == painting.place->view) editor.skin->ring = static_cast<float>(painting.radius / SeenFrom(editor, view).millimetres_per_pixel(painting.place->seen));
+}
+
+void draw_brush(Editor& editor, const ViewPlace& view) {
+  const Painting& painting = *editor.skin->painting;
+  if (!painting.place || painting.place->view != view.id || editor.modal) return;
+  const SeenFrom seen(editor, view);
+  const GizmoPainter painter(editor, seen);
+  const BrushPlace& place = *painting.place;
+  const auto ring = [&](const glm::dvec3& centre, float alpha) {
+    const Ring rim = ring_at(place, centre, painting.radius), half = ring_at(place, centre, painting.radius / 2);
+    painter.ring(rim, with_alpha(0xFF000000, 0.55f * alpha), 3.6f, GizmoPainter::Part::Whole);
+    painter.ring(rim, with_alpha(0xFFFFFFFF, alpha), 2, GizmoPainter::Part::Whole);
+    for (int i = 0; i < kRingPoints; i += 4) painter.arc(half, i * 2 * M_PI / kRingPoints, 2 * 2 * M_PI / kRingPoints, with_alpha(0xFFFFFFFF, 0.7f * alpha), 1.2f);
+  };
+  ring(place.seen, 1);
+  painter.dot(place.seen, 0xFFFFFFFF, with_alpha(0xFF000000, 0.55f), 2.5f);
+  if (view.id == ViewId::Body) painter.line(place.seen, place.seen + place.normal * (22.0 * editor.look.scale * seen.millimetres_per_pixel(place.seen)), with_alpha(0xFFFFFFFF, 0.8f), 1.5f);
+  if (editor.handling->x_mirror && !editor.views->scene.pose) {
+    const glm::dvec3 other = mirrored(*editor.document().armature, place.seen);
+    if (seen.shows(other)) ring(other, 0.5f);
+  }
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The brushes of the Skin workspace: how they are set, where the pointer puts them, and the stroke that is being painted.
+// A stroke shows its weights in the document's place (Views::preview_weights) and becomes one edit when the button is let
+// go; Escape drops it. How brushes are set is no part of the document.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/skin/stroke.h"
+#include "editor/seen_from.h"
+
+namespace limber::editor {
+
+struct Editor;
+
+// Tissues that a brush may change.
+enum class PaintedTissue { All, Soft, Chosen, Visible };
+
+// Where a brush stands: on the body in 3D, in the plane of a slice.
+struct BrushPlace {
+  ViewId view = ViewId::Body;
+  glm::dvec3 seen{0}, normal{0};  // world, mm: where it is drawn; unit
+  glm::dvec3 rest{0};             // where it paints
+};
+
+struct Painting {
+  static constexpr double kLeastRadius = 0.5, kMostRadius = 300;  // mm
+
+  BrushKind kind = BrushKind::Add;
+  double radius = 20;     // mm
+  double strength = 0.75;  // [0, 1]
+  double value = 1;       // [0, 1], of Set and Multiply
+  FalloffShape falloff = FalloffShape::Smooth;
+  double spacing = 0.2;   // of the radius
+  double blend_mm = 40;   // of the joint capsule
+  bool accumulate = false;
+  BrushDistance distance = BrushDistance::Geodesic;
+  BrushDepth depth = BrushDepth::ToDepth;
+  double depth_mm = 25;
+  PaintedTissue tissue = PaintedTissue::All;
+  Normalize normalize = Normalize::Unlocked;
+
+  std::optional<BrushPlace> place;  // under the pointer, by the last frame
+
+  // While a button paints.
+  struct Running;
+  std::shared_ptr<Running> running;
+
+  Painting();
+  ~Painting();
+};
+
+// Where a brush at this pixel would paint; nothing beside the body.
+std::optional<BrushPlace> brush_place(Editor& editor, const ViewPlace& view, const glm::vec2& pixel);
+
+// Why nothing can be painted now: "There are no weights"; "" when it can.
+std::string why_not_paint(const Editor& editor);
+// Paints with that brush from the pointer on, until the button is let go.
+void begin_stroke(Editor& editor, BrushKind kind);
+// Once a frame.
+void follow_brush(Editor& editor);
+// Over a view: the ring of the brush, and of the one that mirrors it.
+void draw_brush(Editor& editor, const ViewPlace& view);
+
+// What the brushes may change, and the bones they paint, as set now.
+StrokeSettings stroke_settings(const Editor& editor, BrushKind kind);
+const char* name_of(BrushKind kind);  // "Add"
+
+}  // namespace limber::editor

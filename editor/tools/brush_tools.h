@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The radius, strength or value of the brush set by the pointer, as in Blender: the ring stays where it is, the pointer's
+// distance from its middle is the size. Or typed. The left button or Enter keeps it, Escape or the right button gives it up.
+#pragma once
+
+#include <memory>
+
+#include "editor/modal.h"
+
+namespace limber::editor {
+
+enum class BrushNumber { Radius, Strength, Value };
+
+std::unique_ptr<Modal> begin_brush_number(Editor& editor, BrushNumber which);
+
+}  // namespace limber::editor

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/painting.h"
+
+#include <cmath>
+
+#include "core/rig/mirror.h"
+#include "editor/handling.h"
+#include "editor/skin_display.h"
+#include "tests/editor/small_limb.h"
+
+using namespace limber;
+using namespace limber::editor;
+using limber::test::LimbEditor;
+
+namespace {
+
+// The ball, of which the upper half follows the upper bone wholly; seen from the front.
+struct PaintEditor : LimbEditor {
+  explicit PaintEditor(float scale = 1, bool parallel = false) : LimbEditor(scale > 1 ? glm::ivec2(2000, 1200) : glm::ivec2(1000, 600), preferences_of(scale)) {
+    Document next = editor->document();
+    const TissueVoxels tissue(*next.volume);
+    SkinWeights weights({"Upper", "Fore"}, tissue);
+    const AffineTransform world = world_from_voxel(next.volume->grid);
+    for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
+      SkinWeights::Chunk chunk = weights.chunk(brick);
+      tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) { chunk[place - tissue.bricks()[brick].first] = rigid_influence((world * glm::dvec3(voxel)).z < 0); });
+      weights.set_chunk(brick, chunk);
+    }
+    next.weights = std::make_shared<const SkinWeights>(weights);
+    editor->history.reset(next, "Open weighted limb");
+    editor->preferences.reduce_motion = true;
+    play("key N\nkey Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-idle");
+    if (parallel) play("key Num5\nwait-idle");
+    choose(1);
+    editor->skin->painting->strength = 1;
+    editor->skin->painting->radius = 12;
+    editor->skin->painting->depth = BrushDepth::Through;
+    editor->skin->painting->falloff = FalloffShape::Constant;
+  }
+  static Preferences preferences_of(float scale) {
+    Preferences preferences;
+    preferences.scale = scale;
+    return preferences;
+  }
+
+  void choose(int bone) {
+    editor->selection.bone = bone;
+    editor->selection.bones = {bone};
+    play("wait-idle");
+  }
+  // A point of the ball's front, where the 3D view shows it; pixels at scale 1.
+  std::string pixel_of(const glm::dvec3& point) const {
+    const glm::dvec2 pixel = body_seen(*editor)->pixel_of(point).value() / double(editor->look.scale);
+    char line[80];
+    std::snprintf(line, sizeof line, "%.4f %.4f", pixel.x, pixel.y);
+    return line;
+  }
+  std::string at(double x, double z) const { return pixel_of({x, -std::sqrt(1600 - x * x - z * z), z}); }
+  void press(MouseButton button = MouseButton::Left) {
+    host->events.push(ButtonChanged{button, true});
+    player.settle();
+  }
+  void release(MouseButton button = MouseButton::Left) {
+    host->events.push(ButtonChanged{button, false});
+    player.settle();
+  }
+  void stroke(const std::string& from, const std::string& to) {
+    play("move " + from);
+    press();
+    play("move " + to);
+    release();
+  }
+  const SkinWeights& weights() const { return *editor->document().weights; }
+  int steps() const { return static_cast<int>(editor->history.position()); }
+  std::string last_edit() const { return editor->history.steps()[editor->history.position()].label; }
+  // Of the tissue voxels.
+  template <class Body>
+  void for_each(const Body& body) const {
+    const TissueVoxels tissue(*editor->document().volume);
+    const AffineTransform world = world_from_voxel(editor->document().volume->grid);
+    for (std::int64_t brick = 0; brick < weights().chunk_count(); ++brick)
+      tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) { body(world * glm::dvec3(voxel), voxel, weights().chunk(brick)[place - tissue.bricks()[brick].first]); });
+  }
+  // Voxels with some weight of the bone where it had none, and the furthest of them from a point.
+  std::pair<int, double> painted(int bone, const glm::dvec3& from, bool upper) const {
+    int count = 0;
+    double furthest = 0;
+    for_each([&](const glm::dvec3& p, const glm::ivec3&, const Influence& influence) {
+      if ((p.z >= 0) != upper || influence.of(bone) == 0) return;
+      ++count;
+      furthest = std::max(furthest, glm::distance(p, from));
+    });
+    return {count, furthest};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("painting: a stroke lands where the pointer is, in both projections and at twice the size, and is one edit") {
+  for (const float scale : {1.0f, 2.0f})
+    for (const bool parallel : {false, true}) {
+      PaintEditor test(scale, parallel);
+      const auto before = test.editor->document().weights;
+      const int steps = test.steps();
+      const glm::dvec3 centre(0, -std::sqrt(1600 - 400), 20);
+      test.stroke(test.at(0, 20), test.at(0, 20));
+      INFO("scale ", scale, ", parallel ", parallel);
+      CHECK(test.steps() == steps + 1);
+      CHECK(test.last_edit() == "Add Fore");
+      const auto [count, furthest] = test.painted(1, centre, true);
+      CHECK(count > 20);
+      CHECK(furthest < 12 + 6);  // the radius, and a voxel's diagonal for where the surface lies
+      // Constant at full strength: wholly, not nearly; and every sum is exact.
+      test.for_each([&](const glm::dvec3& p, const glm::ivec3&, const Influence& i) {
+        CHECK(i.weight[0] + i.weight[1] + i.weight[2] + i.weight[3] == kFullWeight);
+        if (glm::distance(p, centre) < 5) CHECK(i == rigid_influence(1));
+      });
+      CHECK(!test.editor->views->preview_weights);
+      test.play("key Ctrl+Z");
+      CHECK(test.editor->document().weights == before);
+    }
+}
+
+TEST_CASE("painting: it is seen while the button is down, Escape drops it, and a stroke that changes nothing is no edit") {
+  PaintEditor test;
+  const auto before = test.editor->document().weights;
+  const int steps = test.steps();
+  test.play("move " + test.at(0, 20));
+  test.press();
+  REQUIRE(test.editor->views->preview_weights);
+  CHECK(test.editor->views->scene.weights->weights == test.editor->views->preview_weights);
+  test.play("move " + test.at(12, 20));
+  test.play("key Escape\nwait-idle");
+  CHECK(!test.editor->views->preview_weights);
+  CHECK(!test.editor->skin->painting->running);
+  test.release();
+  CHECK(test.editor->document().weights == before);
+  CHECK(test.steps() == steps);
+
+  test.stroke(test.at(0, -20), test.at(0, -25));  // there already
+  CHECK(test.steps() == steps);
+  test.stroke("300 90", "310 90");  // beside the body
+  CHECK(test.steps() == steps);
+  CHECK(test.editor->messages.toasts.empty());
+}
+
+TEST_CASE("painting: where a lock is in the way nothing changes by one bit, it is named, and one click undoes it") {
+  PaintEditor test;
+  toggle_lock(*test.editor, 0);
+  const auto before = test.editor->document().weights;
+  const int steps = test.steps();
+  test.stroke(test.at(0, 20), test.at(10, 20));
+  CHECK(test.editor->document().weights == before);
+  CHECK(test.steps() == steps);
+  REQUIRE(test.editor->messages.toasts.size() == 1);
+  CHECK(test.editor->messages.toasts[0].line == "Upper is locked");
+  CHECK(test.editor->messages.toasts[0].action == "skin.unlock_all");
+  run(*test.editor, "skin.unlock_all");
+  test.stroke(test.at(0, 20), test.at(10, 20));
+  CHECK(test.editor->document().weights != before);
+}
+
+TEST_CASE("painting: Ctrl takes away, Shift smooths, whatever the brush; the other bone gets what is taken") {
+  PaintEditor test;
+  test.play("key-down Ctrl");
+  test.stroke(test.at(0, -20), test.at(0, -20));
+  test.play("key-up Ctrl");
+  CHECK(test.last_edit() == "Subtract Fore");
+  CHECK(test.painted(0, {0, 0, 0}, false).first > 20);
+
+  test.editor->skin->painting->strength = 0.5;
+  test.play("key-down Shift");
+  test.stroke(test.at(0, 0), test.at(10, 0));
+  test.play("key-up Shift");
+  CHECK(test.last_edit() == "Smooth Fore");
+  int blended = 0;
+  test.for_each([&](const glm::dvec3&, const glm::ivec3&, const Influence& i) { blended += i.of(1) > 0 && i.of(1) < 1; });
+  CHECK(blended > 10);
+}
+
+TEST_CASE("painting: in a slice the brush is the ball that the circle shows, and bone follows its bone still") {
+  PaintEditor test;
+  test.editor->skin->painting->distance = BrushDistance::Euclidean;
+  test.play("click \"header/view.four\"\nwait-idle");
+  const ViewPlace* slice = nullptr;
+  for (const ViewPlace& place : test.editor->layout.view_places)
+    if (place.id != ViewId::Body && axis_of(place.id) == render::SliceAxis::Axial) slice = &place;
+  REQUIRE(slice);
+  test.editor->views->cross_hair = {0, 0, 15};
+  slice_of(*test.editor->views, slice->id).fitted = false;
+  test.play("wait-idle");
+  const SeenFrom seen(*test.editor, *slice);
+  const glm::dvec3 point(18, 0, glm::dot(seen.slice.centre, glm::dvec3(0, 0, 1)));
+  const glm::dvec2 pixel = seen.pixel_of(point).value();
+  const int steps = test.steps();
+  char line[80];
+  std::snprintf(line, sizeof line, "%.4f %.4f", pixel.x, pixel.y);
+  test.stroke(line, line);
+  CHECK(test.steps() == steps + 1);
+  int wrong = 0, inside = 0;
+  const Document& document = test.editor->document();
+  test.for_each([&](const glm::dvec3& p, const glm::ivec3& voxel, const Influence& i) {
+    if (p.z < 0) return;
+    const double off = glm::distance(p, point);
+    const bool bone = document.volume->at(voxel) == 111;
+    if (off < 11.5) ++inside, wrong += (i.of(1) == 1) == bone;
+    if (off > 12.5) wrong += i.of(1) != 0;
+  });
+  CHECK(inside > 30);
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("painting: radius, strength and value are set with the pointer, typed, or given up") {
+  PaintEditor test;
+  Painting& painting = *test.editor->skin->painting;
+  test.play("move " + test.at(0, 10) + "\nwait-idle\nkey F");
+  REQUIRE(test.editor->modal);
+  test.play("key 2\nkey 5\nkey Return");
+  CHECK(!test.editor->modal);
+  CHECK(painting.radius == 25);
+  // The pointer goes a radius further from the middle: twice as large.
+  const double millimetres = body_seen(*test.editor)->millimetres_per_pixel({0, -38.7, 10});
+  test.play("key F");
+  const glm::vec2 from = test.editor->input.pointer;
+  char line[80];
+  std::snprintf(line, sizeof line, "move %.3f %.3f", from.x + 10 / millimetres, from.y);
+  test.play(line);
+  CHECK(painting.radius == doctest::Approx(35).epsilon(0.02));
+  test.play("key Escape");
+  CHECK(painting.radius == 25);
+  test.play("key [");
+  CHECK(painting.radius == doctest::Approx(25 / 1.15));
+  test.play("key ]");
+  CHECK(painting.radius == doctest::Approx(25));
+  test.play("key Shift+F\nkey .\nkey 3\nkey Return");
+  CHECK(painting.strength == doctest::Approx(0.3));
+  test.play("key Ctrl+F\nkey .\nkey 2\nkey 5\nkey Return");
+  CHECK(painting.value == doctest::Approx(0.25));
+  test.play("key Shift+]");
+  CHECK(painting.strength == doctest::Approx(0.35));
+  test.play("key F\nkey 0\nkey Return");
+  CHECK(painting.radius == Painting::kLeastRadius);
+}
+
+TEST_CASE("painting: only the tissue that the filter lets through changes") {
+  PaintEditor test;
+  test.editor->skin->painting->tissue = PaintedTissue::Chosen;
+  test.editor->selection.tissues = {143};
+  test.stroke(test.at(0, 20), test.at(5, 20));
+  int skin = 0, others = 0;
+  const Document& document = test.editor->document();
+  test.for_each([&](const glm::dvec3& p, const glm::ivec3& voxel, const Influence& i) {
+    if (p.z < 0 || i.of(1) == 0) return;
+    (document.volume->at(voxel) == 143 ? skin : others) += 1;
+  });
+  CHECK(skin > 10);
+  CHECK(others == 0);
+}
