@@ -33,11 +33,11 @@ TEST_CASE("importing a motion: its dialog shows the take, its rotation orders an
   SmallEditor test({1280, 720}, {}, false);
   test.editor->history.reset(small_limb(), "Open limb");
   import_motion(*test.editor, folder / "take.bvh");
-  test.play("wait-job\n wait-idle\n expect dialog yes\n expect \"text:Frame 0 of 5\"");
+  test.play("wait-job\n wait-idle\n expect dialog yes\n expect \"text:Frame 0 / 4\"");
   bool told = false;
   for (const std::string& text : test.editor->widgets.texts()) told |= text.find("; differs in 1 joint: " + motion.joints[2].name) != std::string::npos;
   CHECK(told);
-  test.play("drag dialog/preview 119 0\n wait-idle\n expect \"text:Frame 4 of 5\"");
+  test.play("drag dialog/preview 119 0\n wait-idle\n expect \"text:Frame 4 / 4\"");
   test.play("move \"Frame rate/value\"\n double-click \"Frame rate/value\"\n type \"-5\"\n wait-idle\n expect \"text:From 1 to 1000 fps.\"\n key Return\n wait-idle\n expect dialog yes");
   CHECK(test.editor->document().clips.empty());
   test.play("double-click \"Frame rate/value\"\n type \"25\"\n key Return\n key Return\n wait-idle\n expect dialog no");
