@@ -169,23 +169,25 @@ class Pieces {
   // Gives every piece its rig bone. A piece that lies along a bone follows that bone. One that lies further from its
   // nearest bone than the piece along it does by half again (a rib beside the hanging arm, the breastbone between two
   // collarbones) must touch bones that are joined to its nearest, or it follows what it touches: of a chain of bones the
-  // nearest, of several chains the bone they spring from.
+  // nearest, of several chains the bone they spring from. So it does where it lies three times as far and does not touch its
+  // nearest itself, but for one of about the size of the piece along it that hangs on the same bone (a toe beside a toe).
   void settle(const Armature& armature) {
     const auto count = static_cast<std::int32_t>(cluster_.size());
     bone_.assign(count, -1);
-    std::vector<double> claim(bones_, 0), own_distance(bones_, 0);
+    std::vector<double> claim(bones_, 0);
+    own_.assign(bones_, {});
     auto is_piece = [&](std::int32_t p) { return cluster_[p].parent == p && cluster_[p].voxels > 0; };
     for (std::int32_t p = 0; p < count; ++p) {
       if (!is_piece(p)) continue;
       const int b = best(cluster_[p]);
       const double d = std::max(1e-3, double(cluster_[p].distance[b]));
-      if (const double c = cluster_[p].voxels / (d * d); c > claim[b]) claim[b] = c, own_distance[b] = d;
+      if (const double c = cluster_[p].voxels / (d * d); c > claim[b]) claim[b] = c, own_[b] = {d, cluster_[p].voxels};
     }
     std::vector<std::int32_t> waiting;
     for (std::int32_t p = 0; p < count; ++p) {
       if (!is_piece(p)) continue;
       const int b = best(cluster_[p]);
-      if (cluster_[p].distance[b] <= 1.5 * own_distance[b])
+      if (cluster_[p].distance[b] <= 1.5 * own_[b].distance)
         bone_[p] = b;
       else
         waiting.push_back(p);
@@ -205,6 +207,7 @@ class Pieces {
   // A pass this much lower than the summit is a joint, not a waist. Marrow runs through a bone and never across a joint,
   // so its raised passes tell a condyle's own shaft from the bone it rolls on also where voxels are coarse.
   static constexpr float kWeakestContact = 0.35f;
+  static constexpr double kFar = 3, kSmall = 4;  // times the distance of the piece along a bone; so much smaller than it
 
   struct Cluster {
     std::int32_t parent = 0;
@@ -227,7 +230,12 @@ class Pieces {
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
     const int own = best(cluster_[p]);
     auto joined = [&](int b) { return b == own || armature.bones[b].parent == own || armature.bones[own].parent == b; };
-    if (std::all_of(touched.begin(), touched.end(), joined)) return own;
+    const auto beside = [&](int b) { return armature.bones[own].parent == b; };
+    const Own& along = own_[own];
+    const bool is_far = cluster_[p].distance[own] > kFar * along.distance &&
+                        (kSmall * double(cluster_[p].voxels) < double(along.voxels) || std::none_of(touched.begin(), touched.end(), beside));
+    const bool touches_own = std::binary_search(touched.begin(), touched.end(), own);
+    if ((touches_own || !is_far) && std::all_of(touched.begin(), touched.end(), joined)) return own;
     bool chain = true;
     for (size_t k = 1; k < touched.size(); ++k) chain &= above(armature, touched[k - 1], touched[k]);
     int nearest = touched[0];
@@ -284,10 +292,17 @@ class Pieces {
     cluster_[b].parent = a;
   }
 
+  // The piece along a rig bone.
+  struct Own {
+    double distance = 0;  // mean, mm
+    std::int64_t voxels = 0;
+  };
+
   int bones_;
   float surface_;  // mm: depths are counted to the next voxel's centre, which lies this much outside the bone
   std::vector<Cluster> cluster_;
   std::vector<int> bone_;  // by cluster
+  std::vector<Own> own_;   // by rig bone
 };
 
 // The rig bone of every basin. A piece that touches none with a bone takes that of the bone voxel nearest to it through

@@ -44,7 +44,60 @@ SmallBody two_touching_bones() {
   body.armature.bones = {bone_between("Upper", -1, {15, 15, 0}, {15, 15, 45.5}), bone_between("Lower", 0, {15, 15, 45.5}, {15, 15, 91})};
   return body;
 }
+
+// Muscle, to draw tubes of bone into.
+SmallBody muscle_block(const glm::ivec3& size) {
+  SmallBody body;
+  body.volume.grid.size = size;
+  body.volume.voxels.assign(body.volume.grid.voxel_count(), kMuscle);
+  body.tissues = muscle_and_bone();
+  return body;
+}
+// Pointed at its beginning, where it may touch another one.
+void draw_tube(SmallBody& body, const glm::dvec3& from, const glm::dvec3& to, double radius) {
+  const glm::dvec3 along = glm::normalize(to - from);
+  const glm::ivec3 size = body.volume.grid.size;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
+        const glm::dvec3 off = glm::dvec3(x, y, z) - from;
+        const double t = glm::dot(off, along);
+        if (t < -0.5 || t > glm::length(to - from)) continue;
+        if (glm::length(off - t * along) <= (t < 2.5 ? 1.0 : radius)) body.volume.at({x, y, z}) = kBone;
+      }
+}
+std::string bone_at(const SmallBody& body, const BoneParts& parts, const TissueVoxels& tissue, const glm::ivec3& voxel) {
+  return body.armature.bones[parts.parts[parts.part_of[tissue.index_of(voxel)] - 1].bone].name;
+}
 }  // namespace
+
+TEST_CASE("bone parts: a rib beside the arm that hangs on the collarbone follows that, not the arm") {
+  SmallBody body = muscle_block({56, 24, 72});
+  draw_tube(body, {4, 12, 60}, {36, 12, 60}, 4);    // collarbone
+  draw_tube(body, {42, 12, 62}, {42, 12, 2}, 4);    // arm
+  draw_tube(body, {28, 12, 55.5}, {28, 12, 24}, 2.5);  // rib, nearer to the arm
+  body.armature.bones = {bone_between("Collarbone", -1, {4, 12, 60}, {40, 12, 60}), bone_between("Arm", 0, {40, 12, 60}, {42, 12, 0})};
+  const TissueVoxels tissue(body.volume);
+  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
+  CHECK(bone_at(body, parts, tissue, {42, 12, 30}) == "Arm");
+  CHECK(bone_at(body, parts, tissue, {20, 12, 60}) == "Collarbone");
+  CHECK(bone_at(body, parts, tissue, {28, 12, 30}) == "Collarbone");
+}
+
+TEST_CASE("bone parts: a toe beside the toe that the rig bone runs along is a toe") {
+  SmallBody body = muscle_block({64, 44, 24});
+  draw_tube(body, {2, 12, 12}, {36, 12, 12}, 4);   // foot, two bones wide
+  draw_tube(body, {2, 32, 12}, {36, 32, 12}, 4);
+  draw_tube(body, {18, 15, 12}, {18, 29, 12}, 4);
+  draw_tube(body, {37, 12, 12}, {58, 12, 12}, 3);  // toes
+  draw_tube(body, {37, 32, 12}, {58, 32, 12}, 3);
+  body.armature.bones = {bone_between("Foot", -1, {2, 12, 12}, {38, 12, 12}), bone_between("Toes", 0, {38, 12, 12}, {60, 12, 12})};
+  const TissueVoxels tissue(body.volume);
+  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
+  CHECK(bone_at(body, parts, tissue, {10, 32, 12}) == "Foot");
+  CHECK(bone_at(body, parts, tissue, {50, 12, 12}) == "Toes");
+  CHECK(bone_at(body, parts, tissue, {50, 32, 12}) == "Toes");
+}
 
 TEST_CASE("bone parts: two bones that touch part where they touch, shafts stay with their balls") {
   const SmallBody body = two_touching_bones();
