@@ -153,6 +153,7 @@ void Editor::take_input() {
 
 void Editor::draw_views() {
   update_scene(*views, document(), selection, preferences.theme == "dark");
+  views->scene.line_scale = look.scale;
   live->follow(*this);
   show_posed(*this);
   show_weights(*this);

@@ -113,6 +113,8 @@ std::vector<Projected> projected_bones(const Scene& scene, const Camera& camera,
 
 class Shapes {
  public:
+  explicit Shapes(float scale) : scale_(scale) {}  // of widths and radii
+
   std::vector<Vertex> vertices;
 
   void triangle(const Corner& a, const Corner& b, const Corner& c, const glm::vec4& colour) {
@@ -122,14 +124,15 @@ class Shapes {
     const glm::vec2 along = b.pixel - a.pixel;
     const float length = glm::length(along);
     if (length < 1e-3f) return;
-    const float reach = width / 2;
+    const float reach = scale_ * width / 2;
     const glm::vec2 across = glm::vec2(-along.y, along.x) / length * (reach + 1), more = along / length * 0.5f;
     const auto at = [&](const Corner& corner, float end, float side) {
       return Vertex{corner.pixel + more * end + across * side, corner.depth, {0, side * (reach + 1)}, reach, colour};
     };
     quad(at(a, -1, -1), at(b, 1, -1), at(b, 1, 1), at(a, -1, 1));
   }
-  void disc(const Corner& middle, float radius, const glm::vec4& colour) {
+  void disc(const Corner& middle, float radius_at_one, const glm::vec4& colour) {
+    const float radius = scale_ * radius_at_one;
     const auto at = [&](float x, float y) {
       const glm::vec2 local = glm::vec2(x, y) * (radius + 1);
       return Vertex{middle.pixel + local, middle.depth, local, radius, colour};
@@ -139,6 +142,8 @@ class Shapes {
 
  private:
   void quad(const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& d) { vertices.insert(vertices.end(), {a, b, c, a, c, d}); }
+
+  float scale_;
 };
 
 struct EdgeStyle {
@@ -214,7 +219,7 @@ void ArmaturePass::draw(const Scene& scene, const Camera& camera, const glm::ive
   const auto rank = [&](size_t b) { return std::pair(bones[b].look.active ? 2 : bones[b].look.selected ? 1 : 0, -bones[b].depth); };
   std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return rank(a) < rank(b); });
 
-  Shapes shapes;
+  Shapes shapes(scene.line_scale);
   for (const size_t b : order) {
     if (!bones[b].drawable()) continue;
     if (const BoneSolid* solid = solid_of(scene.bone_shape)) add_solid(shapes, bones[b], *solid, camera.projection == Projection::Perspective);
@@ -249,8 +254,8 @@ std::vector<BoneHit> bones_at(const Scene& scene, const Camera& camera, const gl
     const glm::dvec2 head = from.pixel, along = glm::dvec2(to.pixel) - head;
     const double squared_length = glm::dot(along, along);
     const double t = squared_length > 0 ? std::clamp(glm::dot(pixel - head, along) / squared_length, 0.0, 1.0) : 0;
-    constexpr double kNear = 5;  // pixels
-    const double off = glm::length(pixel - head - along * t) / (std::sqrt(squared_length) * half_width_at(scene.bone_shape, t) + kNear);
+    constexpr double kNear = 5;  // pixels at scale 1
+    const double off = glm::length(pixel - head - along * t) / (std::sqrt(squared_length) * half_width_at(scene.bone_shape, t) + kNear * scene.line_scale);
     if (off < 1) hits.push_back({static_cast<int>(b), off, glm::mix<double>(from.depth, to.depth, t)});
   }
   return hits;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bones over the body: octahedra, cylinders or sticks with joints, smooth edges of even width in pixels whatever the distance. What
-// lies behind the body's surface shows at 45 %, unless bones are drawn in front.
+// Bones over the body: octahedra, cylinders or sticks with joints, smooth edges of even width in pixels (by the scene's scale
+// of lines) whatever the distance. What lies behind the body's surface shows at 45 %, unless bones are drawn in front.
 #pragma once
 
 #include <optional>

@@ -33,13 +33,14 @@ in vec2 ndc;
 uniform usampler2D u_label;
 uniform uint u_outlined;
 uniform vec2 u_scale;       // buffer pixels a picture pixel
+uniform float u_line;       // picture pixels a line's pixel
 layout(location = 0) out vec4 colour;
 bool shows(vec2 pixel) { return texelFetch(u_label, clamp(ivec2(pixel * u_scale), ivec2(0), textureSize(u_label, 0) - 1), 0).r == u_outlined; }
 void main() {
   vec2 at = gl_FragCoord.xy;
   float share = 0.0;
   for (int y = -2; y <= 2; ++y)
-    for (int x = -2; x <= 2; ++x) share += shows(at + vec2(x, y)) ? 1.0 : 0.0;
+    for (int x = -2; x <= 2; ++x) share += shows(at + vec2(x, y) * u_line) ? 1.0 : 0.0;
   // Strongest where half of the neighbourhood shows the tissue.
   float edge = clamp(1.6 - abs(share - 12.5) / 12.5 * 1.8, 0.0, 1.0);
   if (share == 0.0 || share == 25.0) edge = 0.0;
@@ -61,12 +62,12 @@ void main() {
 const char* const kGridFragment = R"(
 in vec2 place;
 uniform vec2 u_offset;   // of the middle from the nearest line
-uniform float u_reach, u_step;
+uniform float u_reach, u_step, u_line;
 layout(location = 0) out vec4 colour;
 float line(vec2 at, float width) {
   vec2 slope = max(fwidth(at), vec2(1e-6));
   vec2 near = abs(fract(at - 0.5) - 0.5) / slope;
-  vec2 strength = clamp(width - near + 0.5, 0.0, 1.0) * clamp(0.7 - slope * 2.0, 0.0, 1.0);
+  vec2 strength = clamp(width * u_line - near + 0.5, 0.0, 1.0) * clamp(0.7 - slope * 2.0, 0.0, 1.0);
   return max(strength.x, strength.y);
 }
 void main() {
@@ -117,7 +118,7 @@ void ComposePass::background(Background background, const glm::ivec2& size) {
   cover(size, {{0, 0}, size});
 }
 
-void ComposePass::grid(const Camera& camera, const glm::ivec2& size, const glm::dvec3& middle, double height, double reach) {
+void ComposePass::grid(const Camera& camera, const glm::ivec2& size, const glm::dvec3& middle, double height, double reach, float line_scale) {
   constexpr double kStep = 100;  // mm
   const glm::dvec3 ground(middle.x, middle.y, height);
   const glm::dmat4 clip = clip_from_view(camera, double(size.x) / size.y, ground, reach * 1.5) * view_from_world(camera);
@@ -130,6 +131,7 @@ void ComposePass::grid(const Camera& camera, const glm::ivec2& size, const glm::
   grid_.use();
   grid_.set("u_clip", glm::mat4(moved));
   grid_.set("u_middle", glm::vec3(0));
+  grid_.set("u_line", line_scale);
   grid_.set("u_reach", static_cast<float>(reach));
   grid_.set("u_step", static_cast<float>(kStep));
   grid_.set("u_offset", glm::vec2(glm::mod(glm::dvec2(middle), kStep * 5)));
@@ -145,9 +147,10 @@ void ComposePass::body(const gl::Texture& picture, const glm::ivec2& size, const
   cover(size, rect);
 }
 
-void ComposePass::outline(const GBuffer& buffer, Label label, const glm::ivec2& size, const PixelRect& rect) {
+void ComposePass::outline(const GBuffer& buffer, Label label, const glm::ivec2& size, const PixelRect& rect, float line_scale) {
   blend_premultiplied();
   outline_.use();
+  outline_.set("u_line", line_scale);
   outline_.set_texture("u_label", 0, GL_TEXTURE_2D, buffer.label.name());
   outline_.set("u_outlined", static_cast<unsigned>(label));
   outline_.set("u_scale", glm::vec2(buffer.size()) / glm::vec2(size));

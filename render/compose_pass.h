@@ -19,11 +19,11 @@ class ComposePass {
   // All into the framebuffer that is bound, of `size` pixels.
   void background(Background background, const glm::ivec2& size);
   // Lines every 100 mm on the plane z = height, fading out `reach` mm from the middle.
-  void grid(const Camera& camera, const glm::ivec2& size, const glm::dvec3& middle, double height, double reach);
+  void grid(const Camera& camera, const glm::ivec2& size, const glm::dvec3& middle, double height, double reach, float line_scale);
   // `picture`, premultiplied, stretched over the framebuffer.
   void body(const gl::Texture& picture, const glm::ivec2& size, const PixelRect& rect);
-  // Two pixels about the places where `label` is shown.
-  void outline(const GBuffer& buffer, Label label, const glm::ivec2& size, const PixelRect& rect);
+  // Two pixels, or line_scale times as many, about the places where `label` is shown.
+  void outline(const GBuffer& buffer, Label label, const glm::ivec2& size, const PixelRect& rect, float line_scale);
   // accumulated = mix(accumulated, picture, weight), into the framebuffer that is bound
   void accumulate(const gl::Texture& picture, const glm::ivec2& size, float weight, const PixelRect& rect);
 

@@ -99,6 +99,7 @@ struct Scene {
   std::vector<BoneLook> bones;                  // #bones; empty: none selected
   BoneShape bone_shape = BoneShape::Octahedron;
   bool bones_in_front = false;                  // X-ray: drawn on top
+  float line_scale = 1;                         // the picture's pixels for one of a line's width or a joint's radius
 
   bool grid = true;                             // ground grid
   bool dark_background = true;                  // the dark theme's gradient, else the light theme's

@@ -131,7 +131,7 @@ bool same_looks(const std::vector<BoneLook>& a, const std::vector<BoneLook>& b) 
 }
 bool same_overlay(const Scene& a, const Scene& b) {
   return a.armature == b.armature && same_pose(a.posed_from_rest, b.posed_from_rest) && same_looks(a.bones, b.bones) && a.bone_shape == b.bone_shape &&
-         a.bones_in_front == b.bones_in_front && a.grid == b.grid && a.dark_background == b.dark_background &&
+         a.bones_in_front == b.bones_in_front && a.line_scale == b.line_scale && a.grid == b.grid && a.dark_background == b.dark_background &&
          a.transparent_background == b.transparent_background && a.outlined == b.outlined;
 }
 
@@ -340,7 +340,7 @@ struct View3D::Impl {
 
   // What the body can cover in the output, with a margin for outlines and for stretched pixels.
   PixelRect shown_rect() const {
-    const int margin = shown_scale + 3;
+    const int margin = shown_scale + 1 + static_cast<int>(std::ceil(2 * scene.line_scale));
     return intersection({{0, 0}, key.size}, {rect.low * shown_scale - margin, rect.high * shown_scale + margin});
   }
 
@@ -350,10 +350,10 @@ struct View3D::Impl {
     parts.compose.background(background, key.size);
     const auto [low, high] = box_of(scene);
     if (scene.grid && !scene.transparent_background)
-      parts.compose.grid(key.camera, key.size, (low + high) / 2.0, low.z, std::max(600.0, glm::length(high - low) * 1.5));
+      parts.compose.grid(key.camera, key.size, (low + high) / 2.0, low.z, std::max(600.0, glm::length(high - low) * 1.5), scene.line_scale);
     const bool has_body = shown_scale > 0;
     if (has_body) parts.compose.body(sample > 0 ? average.texture() : body.texture(), key.size, shown_rect());
-    if (has_body && scene.outlined) parts.compose.outline(shown[0], *scene.outlined, key.size, shown_rect());
+    if (has_body && scene.outlined) parts.compose.outline(shown[0], *scene.outlined, key.size, shown_rect(), scene.line_scale);
     parts.armature.draw(scene, key.camera, key.size, has_body && scene.display != Display::XRay ? &shown[0].depth : nullptr);
     gl::check_gl("drawing a picture");
   }

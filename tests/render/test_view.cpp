@@ -475,6 +475,42 @@ TEST_CASE("view: a cylinder is as wide at the head as at the tail, an octahedron
   CHECK(width(octahedron, 0.2) > 3 * width(octahedron, 0.85));
 }
 
+TEST_CASE("view: at twice the scale bones' lines and joints are twice as wide, and picked as far beside") {
+  Studio studio;
+  auto armature = std::make_shared<Armature>();
+  armature->bones.push_back({.name = "Bone", .head = {0, 0, 0}, .tail = {0, 0, 100}});
+  Scene scene{.grid = false, .transparent_background = true};
+  scene.armature = armature;
+  scene.bone_shape = BoneShape::Stick;
+  const Camera camera = framing(looking_from(StandardView::Front, {}), {-20, -20, -10}, {20, 20, 110}, 1);
+  View3D view(studio.renderer);
+  glm::dvec2 head, tail;
+  REQUIRE(project(camera, {0, 0, 0}, kSize, head));
+  REQUIRE(project(camera, {0, 0, 100}, kSize, tail));
+  struct Seen {
+    double line = 0, joint = 0;  // pixels that are covered across the middle and the head
+    int beside = 0;              // pixels from the line within which the bone is picked
+  };
+  const auto seen = [&](float scale) {
+    scene.line_scale = scale;
+    const Image image = draw(view, scene, camera, kSize);
+    const auto width = [&](double y) {
+      double sum = 0;
+      for (int x = 0; x < kSize.x; ++x) sum += image.rgba[(static_cast<size_t>(std::lround(y)) * kSize.x + x) * 4 + 3] > 0;
+      return sum;
+    };
+    const glm::ivec2 middle(glm::mix(head, tail, 0.5));
+    Seen found{width(middle.y), width(head.y)};
+    while (found.beside < 200 && view.pick_bone(middle + glm::ivec2(found.beside, 0))) ++found.beside;
+    return found;
+  };
+  const Seen one = seen(1), two = seen(2);
+  CHECK(std::abs(two.line - 2 * one.line) <= 2);
+  CHECK(std::abs(two.joint - 2 * one.joint) <= 2);
+  CHECK(std::abs(two.beside - 2 * one.beside) <= 2);
+  CHECK(one.beside > 2);
+}
+
 TEST_CASE("view: all bones under a pixel are found, each with its depth") {
   Studio studio;
   auto armature = std::make_shared<Armature>();
