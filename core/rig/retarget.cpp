@@ -343,7 +343,9 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
     while (above > thigh->second) above = armature.bones[above].parent;
     if (above != thigh->second) continue;
     const double length = glm::length(armature.bones[foot->second].head - armature.bones[thigh->second].head);
-    legs_.push_back({thigh->second, foot->second, kMostSwing * length});
+    const auto toes = rig.joint.find({BodyPart::Toes, side});
+    const bool has_toes = toes != rig.joint.end() && joint_of_bone_[toes->second] >= 0 && armature.bones[toes->second].parent == foot->second;
+    legs_.push_back({thigh->second, foot->second, has_toes ? toes->second : -1, kMostSwing * length});
   }
   if (settings.travel != Travel::Locked && !legs_.empty() && !same) follow_the_feet();
 }
@@ -373,7 +375,8 @@ Retarget::FootPlaces Retarget::foot_places() const {
   for (int joint = lead_; joint >= 0; joint = motion_->joints[joint].parent) joint_matters[joint] = true;
   for (const Leg& leg : legs_) {
     matters(leg.foot);
-    for (int bone = armature_->bones[leg.foot].parent; bone >= 0; bone = armature_->bones[bone].parent) {
+    matters(leg.toes);
+    for (int bone = leg.toes >= 0 ? leg.foot : armature_->bones[leg.foot].parent; bone >= 0; bone = armature_->bones[bone].parent) {
       bone_matters[bone] = true;
       for (const int mover : {bone, between_[bone].below, between_[bone].above}) matters(mover);
     }
@@ -381,7 +384,8 @@ Retarget::FootPlaces Retarget::foot_places() const {
 
   const int frames = motion_->frame_count;
   const std::size_t count = legs_.size();
-  FootPlaces feet{std::vector<glm::dvec3>(frames * count), std::vector<glm::dvec3>(frames * count)};
+  FootPlaces feet;
+  for (auto* places : {&feet.source, &feet.rig}) places->fill(std::vector<glm::dvec3>(frames * count));
   parallel_for(frames, 64, [&](std::int64_t begin, std::int64_t end) {
     std::vector<RigidTransform> joints(motion_->joints.size());
     std::vector<glm::dquat> turn(armature_->bones.size());
@@ -400,8 +404,11 @@ Retarget::FootPlaces Retarget::foot_places() const {
         turn[bone] = turned(bone, joints, above < 0 ? glm::dquat(1, 0, 0, 0) : turn[above]);
       }
       for (std::size_t i = 0; i < count; ++i) {
-        feet.source[frame * count + i] = scale_ * lps_from_bvh(joints[joint_of_bone_[legs_[i].foot]].translation);
-        feet.rig[frame * count + i] = place(legs_[i].foot);
+        for (const int point : {0, 1}) {
+          const int bone = point == 1 && legs_[i].toes >= 0 ? legs_[i].toes : legs_[i].foot;
+          feet.source[point][frame * count + i] = scale_ * lps_from_bvh(joints[joint_of_bone_[bone]].translation);
+          feet.rig[point][frame * count + i] = place(bone);
+        }
       }
     }
   });
@@ -411,17 +418,21 @@ Retarget::FootPlaces Retarget::foot_places() const {
 // Legs of other proportions take steps of other lengths and bend to other heights, so that a body that travels as the
 // source's hips do slides and floats. From frame to frame, what its feet that stand moved more than the source's is taken
 // off the travel, the stiller one's first; where two that stand want different things, each leg swings a little from the hip, and
-// slowly lets go once its foot is lifted. Low feet are as high above where they rest as the source's above their lowest place.
+// slowly lets go once its foot is lifted. A foot stands by its ankle, or where that is lifted or moves, by its toes. Low feet are as high above where they rest as the source's above their lowest place.
 void Retarget::follow_the_feet() {
   constexpr double kStanding = 200, kStill = 20;  // mm/s: slower feet stand; slower ones are alike
   constexpr double kLifted = 60;                  // mm above its lowest place
   constexpr double kInTheAir = 0.02;              // what a foot that is lifted counts for the height
+  constexpr double kOfToes = 0.1;                 // what toes count for the travel beside an ankle
   constexpr double kRelease = 0.2;                // s in which a lifted leg's swing is let go, and that of all legs becomes travel
   const int frames = motion_->frame_count;
   const std::size_t count = legs_.size();
   const auto [source, rig] = foot_places();
-  std::vector<double> ground(count, 1e300);
-  for (std::size_t k = 0; k < source.size(); ++k) ground[k % count] = std::min(ground[k % count], source[k].z);
+  std::array<std::vector<double>, 2> ground;  // the lowest places
+  for (const int point : {0, 1}) {
+    ground[point].assign(count, 1e300);
+    for (std::size_t k = 0; k < source[point].size(); ++k) ground[point][k % count] = std::min(ground[point][k % count], source[point][k].z);
+  }
   feet_.assign(frames, glm::dvec3(0));
   if (settings_.travel == Travel::Free) swing_.assign(frames * count, glm::dvec2(0));
   const double release = std::min(1.0, motion_->frame_time / kRelease);
@@ -432,16 +443,24 @@ void Retarget::follow_the_feet() {
     double weights = 0, standing = 0, all_stand = 0, lift = 0, lift_weights = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t now = frame * count + i, before = frame > 0 ? now - count : now;
-      const glm::dvec2 moved = source[now] - source[before];
-      slid_by[i] = glm::dvec2(rig[now] - rig[before]) - moved;
-      const double speed = glm::length(moved) / motion_->frame_time, height = source[now].z - ground[i];
-      const double low = std::clamp(2 - height / kLifted, 0.0, 1.0);
-      stands[i] = low * std::clamp(2 - speed / kStanding, 0.0, 1.0);
-      const double weight = stands[i] / (speed * speed + kStill * kStill);
+      double weight = 0;
+      slid_by[i] = glm::dvec2(0);
+      stands[i] = 0;
+      for (const int point : {0, 1}) {
+        const glm::dvec2 moved = source[point][now] - source[point][before];
+        const double speed = glm::length(moved) / motion_->frame_time;
+        const double stays = std::clamp(2 - (source[point][now].z - ground[point][i]) / kLifted, 0.0, 1.0) * std::clamp(2 - speed / kStanding, 0.0, 1.0);
+        const double counts = std::max(point == 1 ? kOfToes * stays * (1 - stands[i]) : stays, 1e-9) / (speed * speed + kStill * kStill);
+        slid_by[i] += counts * (glm::dvec2(rig[point][now] - rig[point][before]) - moved);
+        weight += counts;
+        stands[i] = std::max(stands[i], stays);
+      }
+      slid_by[i] /= weight;
       slid += weight * slid_by[i];
       weights += weight;
       standing = std::max(standing, stands[i]);
-      lift += (low + kInTheAir) * (height - (rig[now].z - armature_->bones[legs_[i].foot].head.z));
+      const double height = source[0][now].z - ground[0][i], low = std::clamp(2 - height / kLifted, 0.0, 1.0);
+      lift += (low + kInTheAir) * (height - (rig[0][now].z - armature_->bones[legs_[i].foot].head.z));
       lift_weights += low + kInTheAir;
       if (swing_.empty()) continue;
       shared += stands[i] * swing_[before];

@@ -102,10 +102,12 @@ class Retarget {
   glm::dvec3 travelled(const std::vector<RigidTransform>& source) const;
   struct Leg {
     int thigh, foot;  // bones
+    int toes;         // -1 where none are matched
     double farthest;  // mm that its foot may be swung
   };
   struct FootPlaces {
-    std::vector<glm::dvec3> source, rig;  // by frame and leg, mm
+    // By frame and leg, mm: of the ankle, and where the toes begin (of the ankle again where they are not matched).
+    std::array<std::vector<glm::dvec3>, 2> source, rig;
   };
   FootPlaces foot_places() const;
   void follow_the_feet();
