@@ -3,6 +3,7 @@
 #include "editor/painting.h"
 #include "editor/skin_display.h"
 #include "tests/editor/operator_proofs.h"
+#include "tests/editor/weighed_limb.h"
 
 namespace limber::test {
 
@@ -13,15 +14,7 @@ namespace {
 // The lower half follows the second bone, which is the active one.
 void weigh(Stage& s) {
   Document next = s.document();
-  const TissueVoxels tissue(*next.volume);
-  SkinWeights weights({"Upper", "Fore"}, tissue);
-  const AffineTransform world = world_from_voxel(next.volume->grid);
-  for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
-    SkinWeights::Chunk chunk = weights.chunk(brick);
-    tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) { chunk[place - tissue.bricks()[brick].first] = rigid_influence((world * glm::dvec3(voxel)).z < 0); });
-    weights.set_chunk(brick, chunk);
-  }
-  next.weights = std::make_shared<const SkinWeights>(weights);
+  next.weights = test::half_weights(*next.volume);
   s.editor().history.commit("Weigh", next);
   s.editor().selection.bone = 1;
   s.editor().selection.bones = {1};

@@ -6,7 +6,7 @@
 #include "core/rig/mirror.h"
 #include "editor/handling.h"
 #include "editor/skin_display.h"
-#include "tests/editor/small_limb.h"
+#include "tests/editor/weighed_limb.h"
 
 using namespace limber;
 using namespace limber::editor;
@@ -18,15 +18,7 @@ namespace {
 struct PaintEditor : LimbEditor {
   explicit PaintEditor(float scale = 1, bool parallel = false) : LimbEditor(scale > 1 ? glm::ivec2(2000, 1200) : glm::ivec2(1000, 600), preferences_of(scale)) {
     Document next = editor->document();
-    const TissueVoxels tissue(*next.volume);
-    SkinWeights weights({"Upper", "Fore"}, tissue);
-    const AffineTransform world = world_from_voxel(next.volume->grid);
-    for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
-      SkinWeights::Chunk chunk = weights.chunk(brick);
-      tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) { chunk[place - tissue.bricks()[brick].first] = rigid_influence((world * glm::dvec3(voxel)).z < 0); });
-      weights.set_chunk(brick, chunk);
-    }
-    next.weights = std::make_shared<const SkinWeights>(weights);
+    next.weights = test::half_weights(*next.volume);
     editor->history.reset(next, "Open weighted limb");
     editor->preferences.reduce_motion = true;
     play("key N\nkey Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-idle");
