@@ -16,7 +16,26 @@ namespace limber {
 
 namespace {
 constexpr BodySide kSides[] = {BodySide::Left, BodySide::Right};
-constexpr double kMostSwing = 0.026;  // radians by which a leg leaves its source's direction for its foot's sake
+constexpr double kMostTurn = 0.034;  // radians by which a leg or foot leaves its source's direction lest a foot slides
+
+bool hangs_from(const Armature& armature, int bone, int ancestor) {
+  while (bone > ancestor) bone = armature.bones[bone].parent;
+  return bone == ancestor;
+}
+
+glm::dquat turn_by(const glm::dvec3& rotation) {
+  const double angle = glm::length(rotation);
+  return angle > 1e-12 ? glm::angleAxis(angle, rotation / angle) : glm::dquat(1, 0, 0, 0);
+}
+
+// The turn, at most kMostTurn, after which the end of `way` stands aside in the plane of the ground.
+glm::dquat turn_aside(const glm::dvec3& way, const glm::dvec2& aside) {
+  const glm::dvec2 flat = glm::dvec2(way) + aside;
+  const double squared_height = glm::dot(way, way) - glm::dot(flat, flat);
+  const glm::dvec3 wanted(flat, squared_height > 0 ? std::copysign(std::sqrt(squared_height), way.z) : way.z);
+  const glm::dquat turn = shortest_turn(way, wanted);
+  return glm::angle(turn) > kMostTurn ? glm::angleAxis(kMostTurn, glm::axis(turn)) : turn;
+}
 
 bool is_trunk(BodyPart part) {
   return part == BodyPart::Pelvis || part == BodyPart::Spine || part == BodyPart::Neck || part == BodyPart::Head;
@@ -339,15 +358,14 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
   for (BodySide side : kSides) {
     const auto thigh = rig.joint.find({BodyPart::Thigh, side}), foot = rig.joint.find({BodyPart::Foot, side});
     if (thigh == rig.joint.end() || foot == rig.joint.end() || joint_of_bone_[foot->second] < 0) continue;
-    int above = foot->second;
-    while (above > thigh->second) above = armature.bones[above].parent;
-    if (above != thigh->second) continue;
-    const double length = glm::length(armature.bones[foot->second].head - armature.bones[thigh->second].head);
+    if (!hangs_from(armature, foot->second, thigh->second)) continue;
     const auto toes = rig.joint.find({BodyPart::Toes, side});
     const bool has_toes = toes != rig.joint.end() && joint_of_bone_[toes->second] >= 0 && armature.bones[toes->second].parent == foot->second;
-    legs_.push_back({thigh->second, foot->second, has_toes ? toes->second : -1, kMostSwing * length});
+    const auto shank = rig.joint.find({BodyPart::Shank, side});
+    const bool has_shank = shank != rig.joint.end() && shank->second > thigh->second && hangs_from(armature, foot->second, shank->second);
+    legs_.push_back({thigh->second, has_shank ? shank->second : foot->second, foot->second, has_toes ? toes->second : -1});
   }
-  if (settings.travel != Travel::Locked && !legs_.empty() && !same) follow_the_feet();
+  if (settings.travel != Travel::Locked && !legs_.empty() && !same) feet_ = mend_sliding(foot_tracks(), motion.frame_time, settings.travel == Travel::Free);
 }
 
 RetargetMap Retarget::map() const {
@@ -361,13 +379,16 @@ Pose Retarget::at(int frame) const {
   if (frame < 0 || frame >= motion_->frame_count)
     throw Error("the motion has no frame " + std::to_string(frame), "--frame", "choose one from 0 to " + std::to_string(motion_->frame_count - 1));
   Pose pose = carried_over(forward_kinematics(*motion_, frame));
-  if (!feet_.empty()) pose.root_translation += feet_[frame];
-  for (std::size_t i = 0; i < legs_.size() && !swing_.empty(); ++i) swing(pose, legs_[i], swing_[frame * legs_.size() + i]);
+  if (!feet_.travel.empty()) pose.root_translation += feet_.travel[frame];
+  for (std::size_t i = 0; i < feet_.ankle_aside.size(); ++i) move_foot(pose, legs_[i], feet_.ankle_aside[i][frame], feet_.toes_aside[i][frame]);
   return settings_.mirror ? flipped(pose, *armature_) : pose;
 }
 
+// -1 where it has none.
+int Retarget::bone_of(const Leg& leg, int point) { return point == FootTrack::Toes ? leg.toes : leg.foot; }
+
 // Only what the feet hang on is moved: of many-jointed takes a few joints.
-Retarget::FootPlaces Retarget::foot_places() const {
+std::vector<FootTrack> Retarget::foot_tracks() const {
   std::vector<bool> bone_matters(armature_->bones.size(), false), joint_matters(motion_->joints.size(), false);
   const auto matters = [&](int bone) {
     for (int joint = bone < 0 ? -1 : joint_of_bone_[bone]; joint >= 0 && !joint_matters[joint]; joint = motion_->joints[joint].parent) joint_matters[joint] = true;
@@ -384,8 +405,14 @@ Retarget::FootPlaces Retarget::foot_places() const {
 
   const int frames = motion_->frame_count;
   const std::size_t count = legs_.size();
-  FootPlaces feet;
-  for (auto* places : {&feet.source, &feet.rig}) places->fill(std::vector<glm::dvec3>(frames * count));
+  std::vector<FootTrack> feet(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    feet[i].rest_height = armature_->bones[legs_[i].foot].head.z;
+    feet[i].most_turn = kMostTurn;
+    feet[i].hip.resize(frames), feet[i].knee.resize(frames);
+    for (const int point : {FootTrack::Ankle, FootTrack::Toes})
+      if (bone_of(legs_[i], point) >= 0) feet[i].source[point].resize(frames), feet[i].body[point].resize(frames);
+  }
   parallel_for(frames, 64, [&](std::int64_t begin, std::int64_t end) {
     std::vector<RigidTransform> joints(motion_->joints.size());
     std::vector<glm::dquat> turn(armature_->bones.size());
@@ -404,98 +431,38 @@ Retarget::FootPlaces Retarget::foot_places() const {
         turn[bone] = turned(bone, joints, above < 0 ? glm::dquat(1, 0, 0, 0) : turn[above]);
       }
       for (std::size_t i = 0; i < count; ++i) {
-        for (const int point : {0, 1}) {
-          const int bone = point == 1 && legs_[i].toes >= 0 ? legs_[i].toes : legs_[i].foot;
-          feet.source[point][frame * count + i] = scale_ * lps_from_bvh(joints[joint_of_bone_[bone]].translation);
-          feet.rig[point][frame * count + i] = place(bone);
+        for (const int point : {FootTrack::Ankle, FootTrack::Toes}) {
+          const int bone = bone_of(legs_[i], point);
+          if (bone < 0) continue;
+          feet[i].source[point][frame] = scale_ * lps_from_bvh(joints[joint_of_bone_[bone]].translation);
+          feet[i].body[point][frame] = place(bone);
         }
+        feet[i].hip[frame] = head[legs_[i].thigh];
+        feet[i].knee[frame] = place(legs_[i].shank);
       }
     }
   });
   return feet;
 }
 
-// Legs of other proportions take steps of other lengths and bend to other heights, so that a body that travels as the
-// source's hips do slides and floats. From frame to frame, what its feet that stand moved more than the source's is taken
-// off the travel, the stiller one's first; where two that stand want different things, each leg swings a little from the hip, and
-// slowly lets go once its foot is lifted. A foot stands by its ankle, or where that is lifted or moves, by its toes. Low feet are as high above where they rest as the source's above their lowest place.
-void Retarget::follow_the_feet() {
-  constexpr double kStanding = 200, kStill = 20;  // mm/s: slower feet stand; slower ones are alike
-  constexpr double kLifted = 60;                  // mm above its lowest place
-  constexpr double kInTheAir = 0.02;              // what a foot that is lifted counts for the height
-  constexpr double kOfToes = 0.1;                 // what toes count for the travel beside an ankle
-  constexpr double kRelease = 0.2;                // s in which a lifted leg's swing is let go, and that of all legs becomes travel
-  const int frames = motion_->frame_count;
-  const std::size_t count = legs_.size();
-  const auto [source, rig] = foot_places();
-  std::array<std::vector<double>, 2> ground;  // the lowest places
-  for (const int point : {0, 1}) {
-    ground[point].assign(count, 1e300);
-    for (std::size_t k = 0; k < source[point].size(); ++k) ground[point][k % count] = std::min(ground[point][k % count], source[point][k].z);
-  }
-  feet_.assign(frames, glm::dvec3(0));
-  if (settings_.travel == Travel::Free) swing_.assign(frames * count, glm::dvec2(0));
-  const double release = std::min(1.0, motion_->frame_time / kRelease);
-  std::vector<glm::dvec2> slid_by(count);
-  std::vector<double> stands(count);
-  for (int frame = 0; frame < frames; ++frame) {
-    glm::dvec2 slid(0), shared(0);
-    double weights = 0, standing = 0, all_stand = 0, lift = 0, lift_weights = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t now = frame * count + i, before = frame > 0 ? now - count : now;
-      double weight = 0;
-      slid_by[i] = glm::dvec2(0);
-      stands[i] = 0;
-      for (const int point : {0, 1}) {
-        const glm::dvec2 moved = source[point][now] - source[point][before];
-        const double speed = glm::length(moved) / motion_->frame_time;
-        const double stays = std::clamp(2 - (source[point][now].z - ground[point][i]) / kLifted, 0.0, 1.0) * std::clamp(2 - speed / kStanding, 0.0, 1.0);
-        const double counts = std::max(point == 1 ? kOfToes * stays * (1 - stands[i]) : stays, 1e-9) / (speed * speed + kStill * kStill);
-        slid_by[i] += counts * (glm::dvec2(rig[point][now] - rig[point][before]) - moved);
-        weight += counts;
-        stands[i] = std::max(stands[i], stays);
-      }
-      slid_by[i] /= weight;
-      slid += weight * slid_by[i];
-      weights += weight;
-      standing = std::max(standing, stands[i]);
-      const double height = source[0][now].z - ground[0][i], low = std::clamp(2 - height / kLifted, 0.0, 1.0);
-      lift += (low + kInTheAir) * (height - (rig[0][now].z - armature_->bones[legs_[i].foot].head.z));
-      lift_weights += low + kInTheAir;
-      if (swing_.empty()) continue;
-      shared += stands[i] * swing_[before];
-      all_stand += stands[i];
-    }
-    feet_[frame].z = lift / lift_weights;
-    if (settings_.travel != Travel::Free || frame == 0) continue;
-    if (weights > 0) slid *= standing / weights;
-    if (all_stand > 0) slid -= shared * (release / std::max(all_stand, 1.0));
-    feet_[frame] += glm::dvec3(glm::dvec2(feet_[frame - 1]) - slid, 0);
-    for (std::size_t i = 0; i < count; ++i) {
-      const glm::dvec2 last = swing_[(frame - 1) * count + i];
-      const glm::dvec2 wanted = last - stands[i] * (slid_by[i] - slid) - (1 - stands[i]) * release * last;
-      swing_[frame * count + i] = wanted * std::min(1.0, legs_[i].farthest / std::max(glm::length(wanted), 1e-300));
-    }
-  }
-}
-
-// Turns a leg at the hip until its foot, which keeps its direction, stands `aside` in the plane of the ground.
-void Retarget::swing(Pose& pose, const Leg& leg, const glm::dvec2& aside) const {
+// Turns thigh and shank until the ankle stands aside in the plane of the ground, and the foot, which else keeps its direction, until its
+// toes stand aside further.
+void Retarget::move_foot(Pose& pose, const Leg& leg, const glm::dvec2& ankle_aside, const glm::dvec2& toes_aside) const {
   const auto posed = posed_from_rest(*armature_, pose);
-  const glm::dvec3 hip = posed[leg.thigh] * armature_->bones[leg.thigh].head, way = posed[leg.foot] * armature_->bones[leg.foot].head - hip;
-  const glm::dvec2 flat = glm::dvec2(way) + aside;
-  const double squared_height = glm::dot(way, way) - glm::dot(flat, flat);
-  const glm::dvec3 wanted(flat, squared_height > 0 ? std::copysign(std::sqrt(squared_height), way.z) : way.z);
-  glm::dquat turn = shortest_turn(way, wanted);
-  if (glm::angle(turn) > kMostSwing) turn = glm::angleAxis(kMostSwing, glm::axis(turn));
+  const auto place = [&](int bone) { return posed[bone] * armature_->bones[bone].head; };
   const auto turned_before = [&](int bone, const glm::dquat& world) {
     const int parent = armature_->bones[bone].parent;
     const glm::dquat carried = parent < 0 ? glm::dquat(1, 0, 0, 0) : posed[parent].rotation;
     pose.rotation[bone] = glm::normalize(glm::conjugate(carried) * world * carried * pose.rotation[bone]);
   };
-  turned_before(leg.thigh, turn);
-  // The foot's parent carries the turn by now, by which the foot turns back.
-  turned_before(leg.foot, glm::conjugate(turn));
+  TurnsOfLeg turns = turns_of_leg(place(leg.shank) - place(leg.thigh), place(leg.foot) - place(leg.shank), ankle_aside);
+  const double may = std::min(1.0, kMostTurn / std::max(turns.most(), 1e-300));
+  const glm::dquat thigh = turn_by(may * turns.thigh), shank = leg.shank == leg.foot ? thigh : turn_by(may * turns.shank);
+  const glm::dquat foot = leg.toes < 0 ? glm::dquat(1, 0, 0, 0) : turn_aside(place(leg.toes) - place(leg.foot), toes_aside);
+  // What hangs from a bone is carried by its turn, and turns back.
+  turned_before(leg.thigh, thigh);
+  if (leg.shank != leg.foot) turned_before(leg.shank, glm::conjugate(thigh) * shank);
+  turned_before(leg.foot, glm::conjugate(shank) * foot);
 }
 
 Pose Retarget::carried_over(const std::vector<RigidTransform>& source) const {

@@ -23,6 +23,7 @@
 
 #include "core/pose/pose.h"
 #include "core/rig/bvh.h"
+#include "core/rig/foot_sliding.h"
 #include "core/rig/rest_stance.h"
 
 namespace limber {
@@ -67,7 +68,7 @@ enum class Travel {
   Locked,   // stays where it rests
   InPlace,  // goes up and down, so that its feet on the ground stand as high as at rest, and nowhere else
   Free,     // up and down likewise; and as the source does since frame 0, so that its feet slide no further than the source's:
-            // legs turn at the hip by up to a degree and a half for it
+            // thighs, shanks and feet turn by up to 1.95 degrees for it (foot_sliding.h)
 };
 
 // The moment at which the source stands as the rig rests.
@@ -101,17 +102,12 @@ class Retarget {
   glm::dquat turned(int bone, const std::vector<RigidTransform>& source, const glm::dquat& carried) const;
   glm::dvec3 travelled(const std::vector<RigidTransform>& source) const;
   struct Leg {
-    int thigh, foot;  // bones
-    int toes;         // -1 where none are matched
-    double farthest;  // mm that its foot may be swung
+    int thigh, shank, foot;  // bones; without a shank it is the foot
+    int toes;                // -1 where none are matched
   };
-  struct FootPlaces {
-    // By frame and leg, mm: of the ankle, and where the toes begin (of the ankle again where they are not matched).
-    std::array<std::vector<glm::dvec3>, 2> source, rig;
-  };
-  FootPlaces foot_places() const;
-  void follow_the_feet();
-  void swing(Pose& pose, const Leg& leg, const glm::dvec2& aside) const;
+  static int bone_of(const Leg& leg, int point);
+  std::vector<FootTrack> foot_tracks() const;
+  void move_foot(Pose& pose, const Leg& leg, const glm::dvec2& ankle_aside, const glm::dvec2& toes_aside) const;
 
   const Motion* motion_;
   const Armature* armature_;
@@ -130,8 +126,7 @@ class Retarget {
   int lead_ = -1;                 // the joint that the body travels with
   glm::dvec3 start_{0};           // where it is at frame 0, in the file's axes
   std::vector<Leg> legs_;         // with feet that are matched
-  std::vector<glm::dvec3> feet_;  // by frame, where the body travels: added to its place
-  std::vector<glm::dvec2> swing_; // by frame and leg, where it travels freely: mm that its foot stands aside
+  FootMending feet_;              // where the body travels
 };
 
 }  // namespace limber
