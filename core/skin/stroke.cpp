@@ -52,6 +52,7 @@ class Stroke::Work {
     // #chunk: the most any dab has covered each voxel so far, in 1/65535, for either side; empty where dabs accumulate.
     std::array<std::vector<std::uint16_t>, 2> cover;
     bool dirty = false;
+    std::vector<std::uint64_t> blocked;  // a bit per voxel that a lock kept from changing; empty until there is one
   };
   // What is painted on one side of the body.
   struct Side {
@@ -64,7 +65,9 @@ class Stroke::Work {
   };
   struct Blocked {
     std::vector<std::pair<int, std::int64_t>> by;
-    void add(int bone);
+    Brick* brick = nullptr;  // of the voxel at hand, and its place there
+    int at = 0;
+    void add(int bone);  // once for each voxel of a stroke
   };
 
   BrushFilter filter_of(const StrokeBody& body, const StrokeSettings& settings) const;
@@ -106,6 +109,12 @@ class Stroke::Work {
 };
 
 void Stroke::Work::Blocked::add(int bone) {
+  constexpr std::size_t kWords = kBrick * kBrick * kBrick / 64;
+  if (brick->blocked.empty()) brick->blocked.assign(kWords, 0);
+  std::uint64_t& word = brick->blocked[static_cast<std::size_t>(at) / 64];
+  const std::uint64_t bit = std::uint64_t{1} << (at % 64);
+  if (word & bit) return;
+  word |= bit;
   for (auto& [other, count] : by)
     if (other == bone) {
       ++count;
@@ -243,7 +252,7 @@ void Stroke::Work::touch(const Reached& reached, int plane) {
     std::int32_t& slot = slot_of_[part.brick];
     if (slot < 0) {
       slot = static_cast<std::int32_t>(bricks_.size());
-      bricks_.push_back({part.brick, {}, {}, false});
+      bricks_.push_back({part.brick, {}, {}, false, {}});
     }
     auto& cover = bricks_[slot].cover[plane];
     if (!accumulate_ && cover.empty()) cover.assign(weights_->chunk(part.brick).size(), 0);
@@ -320,7 +329,11 @@ void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& p
     const double cover = covered / double(kFullWeight), to = before + (before * (factor - 1) + added) * cover;
     const int whole = static_cast<int>(std::clamp(to, 0.0, double(kFullWeight)) + 0.5);
     const WeightChange change = rules_.set(made, bone, whole);
-    if (!change.changed && change.blocked_by >= 0) blocked_here.add(change.blocked_by);
+    if (!change.changed && change.blocked_by >= 0) {
+      blocked_here.brick = &brick;
+      blocked_here.at = at;
+      blocked_here.add(change.blocked_by);
+    }
     // By halves, as they were written: the whole would have to wait for both.
     const auto bones = std::bit_cast<std::uint64_t>(made.bone), weights = std::bit_cast<std::uint64_t>(made.weight);
     if (bones == std::bit_cast<std::uint64_t>(now.bone) && weights == std::bit_cast<std::uint64_t>(now.weight)) continue;
@@ -346,6 +359,8 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
     const int at = reached.at[i], cell = reached.cell[i];
     const Influence& now = brick.now.empty() ? original[at] : brick.now[at];
     if (next) next[i] = now;
+    blocked_here.brick = &brick;
+    blocked_here.at = at;
     float cover = strength * brush_.falloff(std::min(reached.distance[i] * per_radius, 1.0f));
     const glm::ivec3 voxel = tissue.corner + glm::ivec3(cell & 7, cell >> 3 & 7, cell >> 6);
     Influence made = now;
@@ -539,7 +554,7 @@ std::int64_t Stroke::Work::memory_bytes() const {
   std::int64_t bytes = reach_.memory_bytes() + std::ssize(slot_of_) * 4 + static_cast<std::int64_t>(bricks_.capacity() * sizeof(Brick)) +
                        static_cast<std::int64_t>(next_.capacity() * sizeof(Influence));
   for (const Brick& brick : bricks_)
-    bytes += static_cast<std::int64_t>(brick.now.capacity() * sizeof(Influence) + 2 * (brick.cover[0].capacity() + brick.cover[1].capacity()));
+    bytes += static_cast<std::int64_t>(brick.now.capacity() * sizeof(Influence) + 2 * (brick.cover[0].capacity() + brick.cover[1].capacity()) + 8 * brick.blocked.capacity());
   return bytes;
 }
 

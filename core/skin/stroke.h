@@ -89,7 +89,7 @@ class Stroke {
   std::vector<int> take_dirty();
   // Nothing differs from the original.
   bool empty() const;
-  // How often a lock kept a voxel from changing, and the locked bone that did so most often (-1: none).
+  // Voxels that a lock kept from changing in some dab, and the locked bone that did so for most of them (-1: none).
   std::int64_t blocked_count() const;
   int blocked_by() const;
   int dab_count() const;
