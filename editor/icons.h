@@ -28,7 +28,7 @@ inline constexpr char kSelect[] = "\uf245", kMove[] = "\uf047", kRotate[] = "\uf
 
 // Brushes
 inline constexpr char kBrushAdd[] = "\uf067", kBrushSubtract[] = "\uf068", kBrushSet[] = "\uf192", kBrushMultiply[] = "\uf069", kBrushSmooth[] = "\uf043",
-                      kBrushSharpen[] = "\uf0e7", kBrushAverage[] = "\uf24e", kBrushSmear[] = "\uf25a", kBrushCapsule[] = "\uf1cd";
+                      kBrushSharpen[] = "\uf0e7", kBrushAverage[] = "\uf24e", kBrushSmear[] = "\uf25a", kBrushCapsule[] = "\uf1cd", kGradient[] = "\uf1fe", kRegion[] = "\uf096";
 
 // Time
 inline constexpr char kFirst[] = "\uf049", kBack[] = "\uf048", kPlay[] = "\uf04b", kPause[] = "\uf04c", kForward[] = "\uf051", kLast[] = "\uf050",

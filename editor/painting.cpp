@@ -75,6 +75,27 @@ std::string why_not_paint(const Editor& editor) {
   return "";
 }
 
+std::string why_brush_reaches_nothing(const Editor& editor) {
+  if (editor.skin->painting->tissue == PaintedTissue::Chosen && editor.selection.tissues.empty()) return "No tissue is chosen: choose one in the list, or paint all tissue";
+  return "";
+}
+
+namespace {
+
+// The bone, the one that it hangs on, and all below it; of the weights' bones.
+BoneSet bones_about(const Armature& armature, int bone, const SkinWeights& weights) {
+  BoneSet set(weights.bones().size(), 0);
+  for (int b = 0; b < std::ssize(armature.bones); ++b) {
+    int above = b;
+    while (above >= 0 && above != bone) above = armature.bones[above].parent;
+    if (above < 0 && b != armature.bones[bone].parent) continue;
+    if (const int place = weights_bone(weights, armature.bones[b].name); place >= 0) set[place] = 1;
+  }
+  return set;
+}
+
+}  // namespace
+
 StrokeSettings stroke_settings(const Editor& editor, BrushKind kind) {
   const Painting& painting = *editor.skin->painting;
   const Document& document = editor.document();
@@ -119,6 +140,14 @@ StrokeSettings stroke_settings(const Editor& editor, BrushKind kind) {
     if (visibility->clip_box.enabled) filter.box = BrushFilter::Box{visibility->clip_box.low, visibility->clip_box.high};
     if (visibility->clip_plane.enabled) filter.plane = BrushFilter::Plane{visibility->clip_plane.point, visibility->clip_plane.normal};
   }
+  const auto region = painted_region(editor);
+  if (painting.subtree && editor.views->tissue_voxels) {
+    filter.allows = [region, weights = document.weights, tissue = editor.views->tissue_voxels, own = bones_about(*document.armature, *skin_bone(editor), *document.weights)](std::int64_t place, const glm::ivec3& voxel) {
+      if (region && (*region)[static_cast<std::size_t>(place)] == 0) return false;
+      const int brick = tissue->brick_at(voxel);
+      return own[weights->chunk(brick)[static_cast<std::size_t>(place - tissue->bricks()[static_cast<std::size_t>(brick)].first)].bone[0]] != 0;
+    };
+  } else if (region) filter.allows = [region](std::int64_t place, const glm::ivec3&) { return (*region)[static_cast<std::size_t>(place)] != 0; };
   if (editor.handling->x_mirror) settings.mirror = mirror_plane(*document.armature);
   return settings;
 }

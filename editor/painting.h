@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/skin/stroke.h"
+#include "editor/painted_region.h"
 #include "editor/seen_from.h"
 
 namespace limber::editor {
@@ -42,9 +43,16 @@ struct Painting {
   BrushDepth depth = BrushDepth::ToDepth;
   double depth_mm = 25;
   PaintedTissue tissue = PaintedTissue::All;
+  bool subtree = false;   // only where the active bone, the one it hangs on or one below it has most of the weight
   Normalize normalize = Normalize::Unlocked;
 
   std::optional<BrushPlace> place;  // under the pointer, by the last frame
+
+  // Of edits of the whole body (weight_editing.h)
+  std::int64_t edited_at_once = 300'000;  // voxels: some ten milliseconds; an edit of more is a job
+  std::optional<int> edit_job;            // at work
+  PaintedRegion region;                   // that brushes keep to as well
+  std::vector<std::int64_t> unmatched;    // places of tissue that the last mirror found nothing for
 
   // While a button paints.
   struct Running;
@@ -59,6 +67,8 @@ std::optional<BrushPlace> brush_place(Editor& editor, const ViewPlace& view, con
 
 // Why nothing can be painted now: "There are no weights"; "" when it can.
 std::string why_not_paint(const Editor& editor);
+// Why a brush would reach no tissue, as it is set; "" when it would.
+std::string why_brush_reaches_nothing(const Editor& editor);
 // Paints with that brush from the pointer on, until the button is let go.
 void begin_stroke(Editor& editor, BrushKind kind);
 // Once a frame.

@@ -167,6 +167,7 @@ void show_weights(Editor& editor) {
                                        .display = *editor.skin->display,
                                        .bone = weights_bone(*weights, editor.document().armature->bones[static_cast<std::size_t>(*bone)].name),
                                        .swatches = swatches(editor, *weights),
+                                       .region = painted_region(editor),
                                        .contours = editor.skin->contours};
 }
 

@@ -78,6 +78,7 @@ struct ShownWeights {
   WeightDisplay display = WeightDisplay::Active;
   int bone = -1;  // of the weights' bones, the active one; -1: none
   std::shared_ptr<const std::vector<glm::vec3>> swatches;  // #bones of the weights, sRGB
+  std::shared_ptr<const std::vector<std::uint8_t>> region;  // a byte per voxel of `tissue`: where it is 0 colours are dull; null: none are
   bool contours = true;  // lines where the active bone's weight passes a quarter, a half, three quarters; else between colours
 
   bool operator==(const ShownWeights&) const = default;

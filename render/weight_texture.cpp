@@ -132,7 +132,9 @@ std::vector<glm::u8vec4> texels_of_tissue(const Box& box, const ShownWeights& sh
         tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
           const glm::ivec3 at = (voxel >> halvings) + kPad - box.low;
           if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, size))) return;
-          result[(static_cast<std::size_t>(at.z) * size.y + at.y) * size.x + at.x] = texels.of(chunk[static_cast<std::size_t>(place - first)]);
+          glm::u8vec4& texel = result[(static_cast<std::size_t>(at.z) * size.y + at.y) * size.x + at.x];
+          texel = texels.of(chunk[static_cast<std::size_t>(place - first)]);
+          if (shown.region && (*shown.region)[static_cast<std::size_t>(place)]) texel = glm::u8vec4((glm::ivec4(texel) + 1) / 2);
         });
       }
   return result;
@@ -177,6 +179,16 @@ WeightTexture::WeightTexture(const VolumeTexture& volume) {
   }
 }
 
+bool WeightTexture::region_differs(const ShownWeights& shown, std::int64_t brick) const {
+  if (shown.region == shown_->region) return false;
+  const std::int64_t first = shown.tissue->bricks()[static_cast<std::size_t>(brick)].first, end = first + std::ssize(shown.weights->chunk(brick));
+  for (std::int64_t place = first; place < end; ++place) {
+    const std::size_t at = static_cast<std::size_t>(place);
+    if ((shown.region && (*shown.region)[at]) != (shown_->region && (*shown_->region)[at])) return true;
+  }
+  return false;
+}
+
 std::vector<std::uint8_t> WeightTexture::changed_bricks(const ShownWeights& shown) const {
   const std::int64_t bricks = std::ssize(shown.tissue->bricks());
   std::vector<std::uint8_t> changed(static_cast<std::size_t>(bricks), 1);
@@ -185,7 +197,7 @@ std::vector<std::uint8_t> WeightTexture::changed_bricks(const ShownWeights& show
   parallel_for(bricks, 256, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t b = begin; b < end; ++b)
       changed[static_cast<std::size_t>(b)] =
-          shown.weights->shared_chunk(b) != shown_->weights->shared_chunk(b) || (other_bone && holds(shown.weights->chunk(b), shown.bone, shown_->bone));
+          shown.weights->shared_chunk(b) != shown_->weights->shared_chunk(b) || region_differs(shown, b) || (other_bone && holds(shown.weights->chunk(b), shown.bone, shown_->bone));
   });
   return changed;
 }
@@ -197,6 +209,7 @@ void WeightTexture::update(const VolumeTexture& volume, const ShownWeights& show
   if (shown_ == now) return;
   if (shown.weights->size() != shown.tissue->size() || shown.weights->chunk_count() != std::ssize(shown.tissue->bricks()))
     throw std::logic_error("the weights are another volume's");
+  if (shown.region && std::ssize(*shown.region) != shown.tissue->size()) throw std::logic_error("the region is another volume's");
   const BlockLayout& layout = volume.layout();
   std::vector<Part> parts = parts_of(layout, *shown.tissue, changed_bricks(shown), volume.halvings());
   if (change_.count == 0) {  // nothing is there yet
@@ -234,6 +247,7 @@ int WeightTexture::bind(const VolumeTexture& volume, gl::Program& program, int f
   program.set_texture("u_weight_index", first++, GL_TEXTURE_3D, volume.index().name());
   program.set("u_weight_texel", 1.0f / glm::vec3(volume.layout().slots * kSlot));
   program.set("u_weight_blocks", volume.layout().blocks);
+  program.set("u_weight_region", shown_->region ? 1 : 0);
   return first;
 }
 
@@ -253,7 +267,7 @@ std::string weight_functions(int atlases, WeightReading reading) {
   };
   std::string text = reading == WeightReading::Ramp ? "#define RAMP\n" : reading == WeightReading::Filtered ? "#define FILTERED\n" : "#define VOXELS\n";
   for (int a = 0; a < atlases; ++a) text += "uniform sampler3D u_weights" + std::to_string(a) + ";\n";
-  text += "uniform usampler3D u_weight_index;\nuniform vec3 u_weight_texel;\nuniform ivec3 u_weight_blocks;\n"
+  text += "uniform usampler3D u_weight_index;\nuniform vec3 u_weight_texel;\nuniform ivec3 u_weight_blocks;\nuniform int u_weight_region;\n"
           "vec4 weights_filtered(uint atlas, vec3 at) {\n" + choose("textureLod(u_weights@, at * u_weight_texel, 0.0)") + "}\n"
           "vec4 weights_fetched(uint atlas, ivec3 at) {\n" + choose("texelFetch(u_weights@, at, 0)") + "}\n"
           "const float kSlotSize = " + std::to_string(kSlot) + ".0, kBlockSize = " + std::to_string(kBlock) + ".0, kApronSize = " + std::to_string(kApron) + ".0;\n"
@@ -283,6 +297,7 @@ vec4 weight_colour(vec4 texel) {
   vec3 colour = read;
   const float range = 1.0;
 #endif
+  if (u_weight_region != 0 && texel.a > 0.75) colour = mix(vec3(dot(colour, vec3(0.3, 0.6, 0.1))), colour, 0.35) * 0.55;  // outside of it
   return texel.a < 0.004 ? vec4(0.0) : vec4(colour, range / 255.0);
 }
 )";

@@ -5,7 +5,8 @@
 // A texel holds what the display asks for, worked out here from the whole numbers: of the active bone its weight in 8 bits,
 // whether that is exactly 0, whether it is exactly 1; else a colour. The last channel says that there is tissue, so that
 // what is filtered counts tissue alone: (weight, is 0, is 1, 1) or (colour, 1), and zeros in air; air beside tissue is
-// coloured like it, for what is read on the surface. The arm of 646 912 tissue voxels takes twice as much as its labels.
+// coloured like it, for what is read on the surface. Within a region all four are half of that, so that outside of it colours
+// can be dull while only the bricks of the region are uploaded. The arm of 646 912 tissue voxels takes twice as much as its labels.
 //
 // Weights share the bricks that are equal in both, and only bricks that differ from what is there are uploaded; another
 // active bone uploads the bricks in which the old or the new one occurs.
@@ -51,6 +52,7 @@ class WeightTexture {
 
  private:
   std::vector<std::uint8_t> changed_bricks(const ShownWeights& shown) const;
+  bool region_differs(const ShownWeights& shown, std::int64_t brick) const;
 
   std::vector<gl::Texture> atlases_;
   std::optional<ShownWeights> shown_;  // what is there

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 constexpr std::int64_t kBricksAtOnce = 16;
+constexpr std::int64_t kBricksOfStep = 2048;  // between two looks at the progress: some ten milliseconds
 
 void check(const StrokeBody& body, const SkinWeights& weights, const EditScope& scope) {
   if (weights.size() != body.tissue.size() || weights.bones().size() != body.armature.bones.size())
@@ -82,15 +83,20 @@ struct Tally {
   }
 };
 
+// The part of the whole work that an edit is.
+struct Share {
+  double from = 0, to = 1;
+};
+
 template <class Change>
-WeightEdit edited_voxels(const StrokeBody& body, const SkinWeights& weights, const EditScope& scope, const Change& change) {
+WeightEdit edited_voxels(const StrokeBody& body, const SkinWeights& weights, const EditScope& scope, const Change& change, const Share& share = {}) {
   check(body, weights, scope);
   const WeightRules rules = rules_of(body, weights, scope);
   const LabelSet bone = bone_labels(body);
   const std::int64_t bricks = std::ssize(body.tissue.bricks());
   std::vector<SkinWeights::Chunk> made(bricks);
   std::vector<Tally> tallies((bricks + kBricksAtOnce - 1) / kBricksAtOnce);
-  parallel_for(bricks, kBricksAtOnce, [&](std::int64_t begin, std::int64_t end) {
+  const auto edit_bricks = [&](std::int64_t begin, std::int64_t end) {
     for (auto b = begin; b < end; ++b) {
       const std::int64_t first = body.tissue.bricks()[b].first;
       const SkinWeights::Chunk& before = weights.chunk(b);
@@ -106,7 +112,11 @@ WeightEdit edited_voxels(const StrokeBody& body, const SkinWeights& weights, con
         made[b][place - first] = influence;
       });
     }
-  });
+  };
+  for (std::int64_t step = 0; step < bricks; step += kBricksOfStep) {
+    if (scope.progress) scope.progress->update("weights", share.from + (share.to - share.from) * double(step) / double(bricks));
+    parallel_for(std::min(kBricksOfStep, bricks - step), kBricksAtOnce, [&](std::int64_t begin, std::int64_t end) { edit_bricks(step + begin, step + end); });
+  }
   WeightEdit edit{weights};
   for (std::int64_t b = 0; b < bricks; ++b)
     if (!made[b].empty()) edit.weights.set_chunk(b, std::move(made[b]));
@@ -209,7 +219,7 @@ WeightEdit with_gradient(const StrokeBody& body, const SkinWeights& weights, std
 WeightEdit smoothed(const StrokeBody& body, const SkinWeights& weights, int passes, double amount, const EditScope& scope, Progress& progress) {
   WeightEdit all{weights};
   for (int pass = 0; pass < passes; ++pass) {
-    progress.update("smoothing", double(pass) / passes);
+    if (!scope.progress) progress.update("smoothing", double(pass) / passes);
     const auto towards_mean = [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3& voxel,
                                   const WeightsAround& around) {
       std::array<const Influence*, 6> beside;
@@ -221,7 +231,7 @@ WeightEdit smoothed(const StrokeBody& body, const SkinWeights& weights, int pass
       for (int i = 0; i < count; ++i) add_to(mean, *beside[i], 1);
       return rules.blend(influence, mean, amount);
     };
-    WeightEdit once = edited_voxels(body, all.weights, scope, towards_mean);
+    WeightEdit once = edited_voxels(body, all.weights, scope, towards_mean, {double(pass) / passes, double(pass + 1) / passes});
     all = std::move(once);
   }
   // Changed is what differs in the end, not in the last pass.

@@ -20,6 +20,7 @@ struct EditScope {
   Normalize normalize = Normalize::Unlocked;
   bool rigid_bone_tissue = true;  // bone tissue is not changed
   TissueRegion region;            // empty: everywhere
+  Progress* progress = nullptr;   // told how far an edit is, and ends it when it is cancelled
 };
 
 struct WeightEdit {

@@ -41,6 +41,8 @@ std::vector<Operator> prepare_operators();
 std::vector<Operator> rig_fit_operators();
 std::vector<Operator> skin_operators();
 std::vector<Operator> paint_operators();
+std::vector<Operator> weight_edit_operators();
+std::vector<Operator> region_operators();
 std::vector<Operator> skin_display_operators();
 std::vector<Operator> rig_operators();
 std::vector<Operator> pose_operators();

@@ -16,7 +16,8 @@ namespace {
 constexpr double kGrowth = 1.15, kStep = 0.05;  // of the radius; of the strength
 
 std::string needs_paint_below(const Editor& editor) {
-  if (std::string why = why_not_paint(editor); !why.empty()) return why;
+  for (const auto& why_not : {why_not_paint, why_brush_reaches_nothing})
+    if (std::string why = why_not(editor); !why.empty()) return why;
   return editor.views->hover.view ? "" : "Put the pointer on the body";
 }
 
@@ -85,6 +86,8 @@ std::vector<Operator> paint_operators() {
       setting("skin.paint_soft", "Soft tissue", "Everything but bone is painted.", &Painting::tissue, PaintedTissue::Soft),
       setting("skin.paint_chosen", "Chosen tissue", "The tissues that are chosen in the list are painted.", &Painting::tissue, PaintedTissue::Chosen),
       setting("skin.paint_visible", "Visible tissue", "Tissues that are shown are painted.", &Painting::tissue, PaintedTissue::Visible),
+      {"skin.subtree", "Below the bone", "", "Brush", "Only where the active bone, the one it hangs on or one below it has most of the weight is painted.", [](Editor& e) { e.skin->painting->subtree = !e.skin->painting->subtree; }, nullptr,
+       [](const Editor& e) { return e.skin->painting->subtree; }},
       setting("skin.normalize_unlocked", "Normalize: unlocked", "Other unlocked bones make room for what is painted.", &Painting::normalize, Normalize::Unlocked),
       setting("skin.normalize_all", "Normalize: all", "All unlocked bones are scaled alike, the painted one too.", &Painting::normalize, Normalize::All),
       {"skin.accumulate", "Accumulate", "", "Brush", "A stroke adds up where it comes over a place again.", [](Editor& e) { e.skin->painting->accumulate = !e.skin->painting->accumulate; }, nullptr,

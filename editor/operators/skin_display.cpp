@@ -55,9 +55,9 @@ void pick_bone(Editor& editor, bool added) {
   const std::string& name = editor.views->hover.weights[0].bone;
   const auto bone = editor.document().armature->find(name);
   if (!bone) return editor.messages.warn("Pick bone", name + " is not a bone of this rig");
-  const std::set<int> before = added ? editor.selection.bones : std::set<int>{};
-  choose_bone(editor, *bone);
-  editor.selection.bones.insert(before.begin(), before.end());
+  if (!added) editor.selection.bones.clear();  // chosen tissues stay: brushes may be kept to them
+  editor.selection.bone = *bone;
+  editor.selection.bones.insert(*bone);
 }
 
 void lock_chosen(Editor& editor) {

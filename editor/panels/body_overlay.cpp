@@ -8,6 +8,7 @@
 #include "editor/clip_handles.h"
 #include "editor/live_pose.h"
 #include "editor/onion_skin.h"
+#include "editor/painting.h"
 #include "editor/panels/panels.h"
 #include "editor/prepare.h"
 #include "editor/results.h"
@@ -74,7 +75,7 @@ void draw_axis_ball(Editor& editor, const Rect& rect) {
 std::string state_of(const Editor& editor) {
   if (editor.modal && !editor.modal->title().empty()) return editor.modal->title();
   if (!editor.document().volume) return "";
-  if (editor.views->scene.weights) return std::string(name_of(editor.skin->display)) + " \u00b7 " + grouped(editor.views->scene.weights->weights->size()) + " tissue voxels";
+  if (editor.views->scene.weights) return std::string(name_of(editor.skin->display)) + " \u00b7 " + grouped(editor.views->scene.weights->weights->size()) + " tissue voxels" + (painted_region(editor) ? " \u00b7 region of " + grouped(painted_region_voxels(editor)) : "");
   std::string state = editor.views->display == render::Display::Solid ? "Solid" : editor.views->display == render::Display::XRay ? "X-ray" : "Tissue";
   if (const auto posed = shown_result(editor); posed && !wiping(editor)) state += " \u00b7 " + posed->name;
   if (const PreviewMap* map = editor.views->scene.pose.get())

@@ -60,10 +60,8 @@ void draw_eye(Editor& editor, const Rect& rect, const std::string& name) {
 
 void choose(Editor& editor, int bone, bool extended) {
   Selection& selection = editor.selection;
-  const std::set<int> before = extended ? selection.bones : std::set<int>{};
-  selection = {};
+  if (!extended) selection.bones.clear();  // chosen tissues stay: brushes may be kept to them
   selection.bone = bone;
-  selection.bones = before;
   selection.bones.insert(bone);
   editor.skin->revealed = bone;
 }

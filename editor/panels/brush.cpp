@@ -52,6 +52,7 @@ void draw_brush_section(Editor& editor, Column& column) {
   painting.spacing = spacing / 100;
   if (painting.depth == BrushDepth::ToDepth) number("Depth", painting.depth_mm, 0.5, 200, "%.1f", "mm");
   if (painting.kind == BrushKind::JointCapsule) number("Blend", painting.blend_mm, 1, 300, "%.1f", "mm");
+  checkbox(editor, "Below the bone", column.property("Only"), "Below the bone", painting.subtree);
   checkbox(editor, "Accumulate", column.property(""), "Accumulate", painting.accumulate);
   column.space(6);
   column.end_section();

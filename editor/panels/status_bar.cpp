@@ -50,8 +50,8 @@ std::vector<KeyHint> hints(const Editor& editor) {
   std::vector<std::pair<const char*, const char*>> operators;
   const ViewPlace* view = hovered_view(editor);
   if (view && editor.workspace == Workspace::Skin && why_not_paint(editor).empty())
-    operators = {{"skin.paint", name_of(editor.skin->painting->kind)}, {"skin.paint_subtract", "Take away"}, {"skin.paint_smooth", "Smooth"}, {"skin.radius", "Radius"}, {"skin.strength", "Strength"},
-                 {"skin.pick_bone", "Pick bone"}, {"skin.lock_pie", "Lock"}, {"skin.display_pie", "Display"}};
+    operators = {{"skin.paint", name_of(editor.skin->painting->kind)}, {"skin.paint_subtract", "Take away"}, {"skin.paint_smooth", "Smooth"}, {"skin.radius", "Radius"},
+                 painted_region(editor) ? std::pair{"skin.region_clear", "Clear region"} : std::pair{"skin.strength", "Strength"}, {"skin.pick_bone", "Pick bone"}, {"skin.flood", "Flood"}, {"skin.display_pie", "Display"}};
   else if (view && view->id != ViewId::Body)
     operators = {{"select.pick", editor.tool == Tool::CrossHair ? "Move cross-hair" : "Select"}, {"slice.step", "Slice"}, {"slice.zoom", "Zoom"}, {"slice.pan", "Shift"},
                  {"view.place_cross_hair", "Cross-hair"}, {"slice.outline", "Outline"}, {"view.maximize", "Maximize"}};

@@ -2,6 +2,7 @@
 // Below the top bar: how the body is shown, what is clipped, the layout of the views.
 #include "editor/fields.h"
 #include "editor/icons.h"
+#include "editor/menus.h"
 #include "editor/painting.h"
 #include "editor/panels/panels.h"
 #include "editor/skin_display.h"
@@ -53,6 +54,21 @@ class Header {
     editor_.place.region = Region::Popup;
     push_path(editor_, name);
     for (const char* id : ids) operator_menu_item(editor_, id);
+    pop_path(editor_);
+    editor_.place.region = Region::ToolHeader;
+    ImGui::EndPopup();
+  }
+
+  // A list of commands behind a word.
+  void menu(const char* name, const char* word) {
+    const float width = width_of_button(editor_, {"", word}), height = px(26), y = std::round(bar_.centre().y - height / 2), x = x_;
+    x_ += width + px(8);
+    if (!drawn_) return;
+    if (button(editor_, name, {{x, y}, {x + width, y + height}}, {"", word})) ImGui::OpenPopup(name);
+    if (!ImGui::BeginPopup(name, ImGuiWindowFlags_NoMove)) return;
+    editor_.place.region = Region::Popup;
+    push_path(editor_, name);
+    draw_menu(editor_, pointer_menu(name, ViewId::Body));
     pop_path(editor_);
     editor_.place.region = Region::ToolHeader;
     ImGui::EndPopup();
@@ -164,6 +180,7 @@ void put_options(Editor& editor, Header& header) {
   }
   if (paints) {
     Painting& painting = *editor.skin->painting;
+    header.menu("Edit weights", "Weights");
     if (header.fits(140, {"skin.radius"})) header.number("Radius", painting.radius, Painting::kLeastRadius, Painting::kMostRadius, "%.1f", "mm", 80);
     if (header.fits(140, {"skin.strength"})) header.number("Strength", painting.strength, 0, 1, "%.2f", "", 64);
     const bool takes_value = painting.kind == BrushKind::Set || painting.kind == BrushKind::Multiply;

@@ -13,4 +13,8 @@ enum class BrushNumber { Radius, Strength, Value };
 
 std::unique_ptr<Modal> begin_brush_number(Editor& editor, BrushNumber which);
 
+// A line that is drawn with the left button, from full weight to none; R makes it a ball around its beginning. Escape or the
+// right button gives it up.
+std::unique_ptr<Modal> begin_gradient(Editor& editor);
+
 }  // namespace limber::editor

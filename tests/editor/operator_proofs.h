@@ -70,6 +70,8 @@ std::vector<Proof> proofs_of_files();
 std::vector<Proof> proofs_of_pages();
 std::vector<Proof> proofs_of_posing();
 std::vector<Proof> proofs_of_painting();
+std::vector<Proof> proofs_of_weight_edits();
+std::vector<Proof> proofs_of_regions();
 std::vector<Proof> proofs_of_comparing();
 std::vector<Proof> proofs_of_motion();
 std::vector<Proof> proofs_of_clips();
