@@ -56,10 +56,25 @@ void show_regions(Editor& editor, const std::shared_ptr<const SkinWeights>& weig
   render::Scene& scene = editor.views->scene;
   auto& region = skin.region;
   if (skin.hidden.empty()) return void(region = {});
-  // As the weights were when the region was chosen: what is painted stays in sight.
-  if (region.from != scene.volume || region.hidden != skin.hidden)
-    region = {scene.volume, without_regions(*scene.volume, *tissue_voxels(*editor.views, editor.document()), *weights, skin.hidden), weights, skin.hidden};
-  scene.volume = region.volume;
+  const auto volume = scene.volume;
+  // As the document's weights are: what a stroke paints stays in sight until it ends.
+  const bool stale = region.from != volume || region.hidden != skin.hidden || region.weights != weights;
+  if (stale && !(skin.region_task && editor.tasks.contains(*skin.region_task))) {
+    const auto make = [volume, weights, hidden = skin.hidden, tissue = tissue_voxels(*editor.views, editor.document()), old = region.from == volume ? region.volume : nullptr] {
+      auto made = without_regions(*volume, *tissue, *weights, hidden);
+      return old && old->voxels == made->voxels ? old : made;  // the same need not be uploaded again
+    };
+    const auto keep = [volume, weights, hidden = skin.hidden](Editor& e, std::shared_ptr<const LabelVolume> made) {
+      if (!e.skin->hidden.empty()) e.skin->region = {volume, std::move(made), weights, hidden};
+      e.touch();
+    };
+    if (weights->size() <= skin.painting->edited_at_once) keep(editor, make());
+    else
+      skin.region_task = start_task(editor, "", [make, keep](Progress&) -> Finish {
+        return [keep, made = make()](Editor& e) { keep(e, made); };
+      });
+  }
+  if (region.from == volume) scene.volume = region.volume;
 }
 
 }  // namespace
@@ -159,7 +174,7 @@ void show_weights(Editor& editor) {
   if (editor.skin->shares.busy()) editor.touch();
   if (!weights || !bone || scene.volume != editor.document().volume) return;
   if (tissue_voxels(*editor.views, editor.document())->size() != weights->size()) return;
-  show_regions(editor, weights);
+  if (editor.document().weights) show_regions(editor, editor.document().weights);
   if (!editor.skin->display) return;
   scene.outlined.reset();  // the weights are what is chosen here
   scene.weights = render::ShownWeights{.weights = weights,

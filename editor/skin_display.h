@@ -58,6 +58,7 @@ struct SkinDisplay {
     std::shared_ptr<const SkinWeights> weights;
     std::set<std::string> hidden;
   } region;
+  std::optional<int> region_task;  // makes it anew for a large body; the old one is seen meanwhile
   // The colours of the weights' bones, and what they were made for.
   struct {
     std::shared_ptr<const Armature> armature;

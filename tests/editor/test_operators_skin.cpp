@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How skin weights are shown, which bones they are about, and their locks.
 #include "core/skin/skin_weights.h"
+#include "editor/painting.h"
 #include "editor/skin_display.h"
 #include "editor/views.h"
 #include "tests/editor/operator_proofs.h"
@@ -234,6 +235,25 @@ TEST_CASE("skin: an isolated region is all that rays, slices and the pointer fin
   CHECK(tissue_shown() == fore);
   CHECK(fore < all);
   CHECK(test.fact("weights") == "active");
+  // Later edits change what it is, beside the window where the body is large.
+  const auto shown_of_large = [&](std::int64_t at_once) {
+    test.editor->skin->painting->edited_at_once = at_once;
+    Document next = test.editor->document();
+    SkinWeights other = *next.weights;
+    SkinWeights::Chunk chunk(other.chunk(0).size(), rigid_influence(other.chunk(0)[0].bone[0] == 1 ? 0 : 1));
+    other.set_chunk(0, chunk);
+    next.weights = std::make_shared<const SkinWeights>(other);
+    test.editor->history.commit("One brick", next);
+    test.play("wait-idle");
+    std::int64_t count = 0;
+    for (std::int64_t b = 0; b < other.chunk_count(); ++b)
+      for (const Influence& influence : other.chunk(b)) count += influence.bone[0] == 1;
+    CHECK(tissue_shown() == count);
+  };
+  shown_of_large(1'000'000);
+  shown_of_large(0);
+  test.play("key Ctrl+Z\n key Ctrl+Z\n wait-idle");
+  CHECK(tissue_shown() == fore);
   test.play("click Bones/Fore/eye Ctrl\n wait-idle");
   CHECK(tissue_shown() == all);
   test.play("click Bones/Upper/eye\n wait-idle");
