@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/rig/mirror.h"
+#include "editor/brush_ring.h"
 #include "editor/dispatch.h"
 #include "editor/editor.h"
 #include "editor/gizmo_painter.h"
@@ -237,7 +238,25 @@ void draw_brush(Editor& editor, const ViewPlace& view) {
   const SeenFrom seen(editor, view);
   const GizmoPainter painter(editor, seen);
   const BrushPlace& place = *painting.place;
+  // Upon the body, where the part that finds none of it is faint; in a slice a circle.
+  const auto line = [&](const std::vector<RingPoint>& points, float alpha, float width, bool dashed) {
+    for (const bool under : {true, false})
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const RingPoint &from = points[i], &to = points[(i + 1) % points.size()];
+        const float seen_so = alpha * (from.on_body && to.on_body ? 1.0f : 0.4f);
+        if (dashed && (under || i % 4 >= 2)) continue;
+        painter.line(from.at, to.at, under ? with_alpha(0xFF000000, 0.55f * seen_so) : with_alpha(0xFFFFFFFF, seen_so), under ? width + 1.6f : width);
+      }
+  };
   const auto ring = [&](const glm::dvec3& centre, float alpha) {
+    if (view.id == ViewId::Body) {
+      BrushPlace there = place;
+      if (centre != place.seen) there.normal = mirror_plane(*editor.document().armature).direction(place.normal);
+      there.seen = centre;
+      line(ring_on_body(editor, there, painting.radius, kRingPoints), alpha, 2, false);
+      line(ring_on_body(editor, there, painting.radius / 2, kRingPoints), 0.7f * alpha, 1.2f, true);
+      return;
+    }
     const Ring rim = ring_at(place, centre, painting.radius), half = ring_at(place, centre, painting.radius / 2);
     painter.ring(rim, with_alpha(0xFF000000, 0.55f * alpha), 3.6f, GizmoPainter::Part::Whole);
     painter.ring(rim, with_alpha(0xFFFFFFFF, alpha), 2, GizmoPainter::Part::Whole);

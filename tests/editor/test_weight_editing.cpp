@@ -2,6 +2,7 @@
 #include "editor/weight_editing.h"
 
 #include "core/rig/mirror.h"
+#include "editor/brush_ring.h"
 #include "editor/painting.h"
 #include "editor/skin_display.h"
 #include "tests/editor/weighed_limb.h"
@@ -327,6 +328,24 @@ TEST_CASE("weight editing: a mirror tells what it found no match for, and that c
     const bool stays = (*region)[place++] != 0 || p.x >= -1e-9;
     CHECK(influence == rigid_influence(stays ? 0 : 1));
   });
+}
+
+TEST_CASE("brush ring: it lies on the skin of a ball, and is flat where the ball has ended") {
+  EditEditor test;
+  BrushPlace place;
+  place.seen = place.rest = {0, -40, 0};
+  place.normal = {0, -1, 0};
+  for (const RingPoint& point : ring_on_body(*test.editor, place, 20, 64)) {
+    CHECK(point.on_body);
+    CHECK(std::abs(glm::length(point.at) - 40) < 4);  // voxels of 4 x 5 x 3 mm
+    CHECK(std::hypot(point.at.x, point.at.z) == doctest::Approx(20));
+  }
+  int lost = 0;
+  for (const RingPoint& point : ring_on_body(*test.editor, place, 50, 64)) {
+    lost += !point.on_body;
+    if (!point.on_body) CHECK(point.at.y == doctest::Approx(-40));
+  }
+  CHECK(lost == 64);
 }
 
 TEST_CASE("painting: below the bone a brush changes nothing where other bones have most") {
