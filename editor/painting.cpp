@@ -50,6 +50,17 @@ const char* name_of(BrushKind kind) {
   return kNames[static_cast<int>(kind)];
 }
 
+Falloff falloff_of(const Painting& painting) {
+  return painting.falloff_curve.empty() ? Falloff(painting.falloff) : Falloff(std::span<const glm::dvec2>(painting.falloff_curve));
+}
+
+void begin_falloff_curve(Painting& painting) {
+  constexpr int kParts = 4;
+  const Falloff shape = falloff_of(painting);
+  painting.falloff_curve.clear();
+  for (int i = 0; i <= kParts; ++i) painting.falloff_curve.emplace_back(double(i) / kParts, shape(float(i) / kParts));
+}
+
 std::optional<BrushPlace> brush_place(Editor& editor, const ViewPlace& view, const glm::vec2& pixel) {
   const render::Scene& scene = editor.views->scene;
   if (!scene.volume || !is_of_document(editor, scene.volume)) return std::nullopt;
@@ -106,7 +117,7 @@ StrokeSettings stroke_settings(const Editor& editor, BrushKind kind) {
   brush.radius = painting.radius;
   brush.strength = painting.strength;
   brush.value = painting.value;
-  brush.falloff = Falloff(painting.falloff);
+  brush.falloff = falloff_of(painting);
   brush.spacing = painting.spacing;
   brush.accumulate = painting.accumulate;
   brush.distance = painting.distance;

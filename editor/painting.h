@@ -36,6 +36,7 @@ struct Painting {
   double strength = 0.75;  // [0, 1]
   double value = 1;       // [0, 1], of Set and Multiply
   FalloffShape falloff = FalloffShape::Smooth;
+  std::vector<glm::dvec2> falloff_curve;  // (share of the radius, cover), distances growing, in place of the shape; empty: none
   double spacing = 0.2;   // of the radius
   double blend_mm = 40;   // of the joint capsule
   bool accumulate = false;
@@ -46,6 +47,7 @@ struct Painting {
   bool subtree = false;   // only where the active bone, the one it hangs on or one below it has most of the weight
   Normalize normalize = Normalize::Unlocked;
 
+  int dragged_point = -1;           // of the falloff's curve
   std::optional<BrushPlace> place;  // under the pointer, by the last frame
 
   // Of edits of the whole body (weight_editing.h)
@@ -78,6 +80,9 @@ void draw_brush(Editor& editor, const ViewPlace& view);
 
 // What the brushes may change, and the bones they paint, as set now.
 StrokeSettings stroke_settings(const Editor& editor, BrushKind kind);
+Falloff falloff_of(const Painting& painting);
+// A curve of its own that begins as the shape is.
+void begin_falloff_curve(Painting& painting);
 const char* name_of(BrushKind kind);  // "Add"
 
 }  // namespace limber::editor

@@ -36,6 +36,15 @@ Operator setting(const char* id, const char* label, const char* sentence, Value 
   return {id, label, "", "Brush", sentence, [=](Editor& e) { (*e.skin->painting).*member = value; }, nullptr, [=](const Editor& e) { return (*e.skin->painting).*member == value; }};
 }
 
+Operator shape(const char* id, const char* label, const char* sentence, FalloffShape falloff) {
+  return {id, label, "", "Brush", sentence,
+          [falloff](Editor& e) {
+            e.skin->painting->falloff = falloff;
+            e.skin->painting->falloff_curve.clear();
+          },
+          nullptr, [falloff](const Editor& e) { return e.skin->painting->falloff_curve.empty() && e.skin->painting->falloff == falloff; }};
+}
+
 void scale_radius(Editor& editor, double by) { editor.skin->painting->radius = std::clamp(editor.skin->painting->radius * by, Painting::kLeastRadius, Painting::kMostRadius); }
 void add_strength(Editor& editor, double step) { editor.skin->painting->strength = std::clamp(std::round((editor.skin->painting->strength + step) / kStep) * kStep, 0.0, 1.0); }
 
@@ -92,12 +101,17 @@ std::vector<Operator> paint_operators() {
       setting("skin.normalize_all", "Normalize: all", "All unlocked bones are scaled alike, the painted one too.", &Painting::normalize, Normalize::All),
       {"skin.accumulate", "Accumulate", "", "Brush", "A stroke adds up where it comes over a place again.", [](Editor& e) { e.skin->painting->accumulate = !e.skin->painting->accumulate; }, nullptr,
        [](const Editor& e) { return e.skin->painting->accumulate; }},
-      setting("skin.falloff_smooth", "Smooth falloff", "The brush fades in an S.", &Painting::falloff, FalloffShape::Smooth),
-      setting("skin.falloff_sphere", "Sphere falloff", "The brush fades as a ball's side does.", &Painting::falloff, FalloffShape::Sphere),
-      setting("skin.falloff_root", "Root falloff", "The brush fades late.", &Painting::falloff, FalloffShape::Root),
-      setting("skin.falloff_sharp", "Sharp falloff", "The brush fades early.", &Painting::falloff, FalloffShape::Sharp),
-      setting("skin.falloff_linear", "Linear falloff", "The brush fades evenly.", &Painting::falloff, FalloffShape::Linear),
-      setting("skin.falloff_constant", "Constant falloff", "The brush does not fade.", &Painting::falloff, FalloffShape::Constant),
+      shape("skin.falloff_smooth", "Smooth falloff", "The brush fades in an S.", FalloffShape::Smooth),
+      shape("skin.falloff_sphere", "Sphere falloff", "The brush fades as a ball's side does.", FalloffShape::Sphere),
+      shape("skin.falloff_root", "Root falloff", "The brush fades late.", FalloffShape::Root),
+      shape("skin.falloff_sharp", "Sharp falloff", "The brush fades early.", FalloffShape::Sharp),
+      shape("skin.falloff_linear", "Linear falloff", "The brush fades evenly.", FalloffShape::Linear),
+      shape("skin.falloff_constant", "Constant falloff", "The brush does not fade.", FalloffShape::Constant),
+      {"skin.falloff_own", "Own falloff", "", "Brush", "The brush fades by a curve whose points are dragged in the sidebar; a click adds one, the right button takes it away.",
+       [](Editor& e) {
+         if (e.skin->painting->falloff_curve.empty()) begin_falloff_curve(*e.skin->painting);
+       },
+       nullptr, [](const Editor& e) { return !e.skin->painting->falloff_curve.empty(); }},
   };
 }
 

@@ -14,6 +14,9 @@ namespace {
 
 constexpr float kCurveHeight = 56;
 constexpr int kCurvePoints = 48;
+constexpr int kMostPoints = 16;      // of a curve of the user's own
+constexpr double kPointGap = 0.02;   // between two of them, of the radius
+constexpr float kPointReach = 8;
 
 // How the brush fades from its middle, at the left, to its rim.
 void draw_curve(const Editor& editor, const Rect& rect, const Falloff& falloff) {
@@ -28,6 +31,37 @@ void draw_curve(const Editor& editor, const Rect& rect, const Falloff& falloff) 
   ImGui::GetWindowDrawList()->AddPolyline(line.data(), static_cast<int>(line.size()), look.theme.accent_text, 0, 1.5f * look.scale);
 }
 
+// Points of a curve of the user's own: dragged, added by a click beside them, taken away by the right button.
+void edit_curve(Editor& editor, const Rect& rect, Painting& painting) {
+  const Look& look = editor.look;
+  const Rect inside{rect.low + look.px(6), rect.high - look.px(6)};
+  std::vector<glm::dvec2>& points = painting.falloff_curve;
+  const auto pixel_of = [&](const glm::dvec2& point) { return glm::vec2(glm::mix(inside.low.x, inside.high.x, float(point.x)), glm::mix(inside.high.y, inside.low.y, float(point.y))); };
+  const glm::dvec2 at = glm::clamp(glm::dvec2((editor.input.pointer.x - inside.low.x) / inside.width(), (inside.high.y - editor.input.pointer.y) / inside.height()), 0.0, 1.0);
+  const Pressed pressed = press_area(editor, "curve", rect);
+  int nearest = 0;
+  for (int i = 1; i < std::ssize(points); ++i)
+    if (glm::distance(pixel_of(points[i]), editor.input.pointer) < glm::distance(pixel_of(points[nearest]), editor.input.pointer)) nearest = i;
+  const bool near = glm::distance(pixel_of(points[nearest]), editor.input.pointer) < look.px(kPointReach);
+  if (pressed.activated) {
+    const auto after = std::lower_bound(points.begin(), points.end(), at.x, [](const glm::dvec2& point, double x) { return point.x < x; });
+    const bool room = (after == points.begin() || at.x - std::prev(after)->x >= kPointGap) && (after == points.end() || after->x - at.x >= kPointGap);
+    if (!near && room && std::ssize(points) < kMostPoints) nearest = static_cast<int>(points.insert(after, at) - points.begin());
+    editor.skin->painting->dragged_point = nearest;
+  }
+  const int dragged = painting.dragged_point;
+  if (pressed.held && dragged >= 0 && dragged < std::ssize(points)) {
+    const double low = dragged > 0 ? points[dragged - 1].x + kPointGap : 0, high = dragged + 1 < std::ssize(points) ? points[dragged + 1].x - kPointGap : 1;
+    points[dragged] = {std::clamp(at.x, std::min(low, high), std::max(low, high)), at.y};
+    editor.touch();
+  }
+  if (!pressed.held) painting.dragged_point = -1;
+  if (pressed.right_clicked && near && std::ssize(points) > 2) points.erase(points.begin() + nearest);
+  for (int i = 0; i < std::ssize(points); ++i)
+    ImGui::GetWindowDrawList()->AddCircleFilled(im(pixel_of(points[i])), look.px(i == painting.dragged_point || (pressed.hovered && near && i == nearest) ? 4.5f : 3.5f), look.theme.text, 16);
+  if (pressed.hovered && !pressed.held) operator_tooltip(editor, *find_operator(editor, "skin.falloff_own"), rect);
+}
+
 }  // namespace
 
 void draw_brush_section(Editor& editor, Column& column) {
@@ -38,20 +72,35 @@ void draw_brush_section(Editor& editor, Column& column) {
   const auto number = [&](const char* label, double& value, double low, double high, const char* format, const char* unit) {
     number_field(editor, label, column.property(label), value, low, high, format, unit, true, committed);
   };
-  int shape = static_cast<int>(painting.falloff);
+  constexpr int kOwn = 6;
+  int shape = painting.falloff_curve.empty() ? static_cast<int>(painting.falloff) : kOwn;
   const Rect choice = column.property("Falloff");
   push_path(editor, "Falloff");
-  if (choice_field(editor, choice, {"Smooth", "Sphere", "Root", "Sharp", "Linear", "Constant"}, shape)) painting.falloff = static_cast<FalloffShape>(shape);
+  if (choice_field(editor, choice, {"Smooth", "Sphere", "Root", "Sharp", "Linear", "Constant", "Own curve"}, shape)) {
+    if (shape == kOwn) {
+      begin_falloff_curve(painting);
+    } else {
+      painting.falloff = static_cast<FalloffShape>(shape);
+      painting.falloff_curve.clear();
+    }
+  }
   pop_path(editor);
   Rect curve = column.row(kCurveHeight + 6);
   curve.low.x = choice.low.x;
   curve.high = {choice.high.x, curve.low.y + editor.look.px(kCurveHeight)};
-  draw_curve(editor, curve, Falloff(painting.falloff));
+  draw_curve(editor, curve, falloff_of(painting));
+  if (!painting.falloff_curve.empty()) edit_curve(editor, curve, painting);
   double spacing = 100 * painting.spacing;
   number("Spacing", spacing, 5, 200, "%.0f", "%");
   painting.spacing = spacing / 100;
   if (painting.depth == BrushDepth::ToDepth) number("Depth", painting.depth_mm, 0.5, 200, "%.1f", "mm");
   if (painting.kind == BrushKind::JointCapsule) number("Blend", painting.blend_mm, 1, 300, "%.1f", "mm");
+  int normalize = static_cast<int>(painting.normalize);
+  const Rect room = column.property("Normalize");
+  push_path(editor, "Normalize");
+  if (choice_field(editor, room, {"Unlocked", "All"}, normalize)) painting.normalize = static_cast<Normalize>(normalize);
+  if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, normalize == 0 ? "skin.normalize_unlocked" : "skin.normalize_all"), room);
+  pop_path(editor);
   checkbox(editor, "Below the bone", column.property("Only"), "Below the bone", painting.subtree);
   checkbox(editor, "Accumulate", column.property(""), "Accumulate", painting.accumulate);
   column.space(6);

@@ -79,6 +79,7 @@ std::vector<Proof> proofs_of_painting() {
       {"skin.falloff_sharp", "click \"Edit/Brush/Sharp falloff\"", is(&Painting::falloff, FalloffShape::Sharp)},
       {"skin.falloff_linear", "click \"Edit/Brush/Linear falloff\"", is(&Painting::falloff, FalloffShape::Linear)},
       {"skin.falloff_constant", "click \"Edit/Brush/Constant falloff\"", is(&Painting::falloff, FalloffShape::Constant)},
+      {"skin.falloff_own", "click \"Edit/Brush/Own falloff\"", [](Stage& s, const Seen&) { return !s.editor().skin->painting->falloff_curve.empty(); }},
       {"skin.falloff_smooth", "click \"Edit/Brush/Smooth falloff\"", is(&Painting::falloff, FalloffShape::Smooth)},
   };
 }

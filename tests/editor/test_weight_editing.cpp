@@ -374,6 +374,46 @@ TEST_CASE("painting: below the bone a brush changes nothing where other bones ha
   });
 }
 
+TEST_CASE("brush: its own falloff is a curve whose points are dragged, added and taken away") {
+  LimbEditor test;
+  Document next = test.editor->document();
+  next.weights = test::half_weights(*next.volume);
+  test.editor->history.reset(next, "Open weighted limb");
+  test.play("key Ctrl+2\nwait-idle");
+  Painting& painting = *test.editor->skin->painting;
+  const Falloff smooth = falloff_of(painting);
+  test.play("click \"Edit/Brush/Own falloff\"\nwait-idle");
+  REQUIRE(painting.falloff_curve.size() == 5);
+  CHECK(std::abs(falloff_of(painting)(0.5f) - smooth(0.5f)) < 1e-3);
+  // Its middle point, half as high as the box, goes down to the bottom.
+  const Rect box = test.editor->widgets.find("Brush/curve")->rect;
+  const auto drag = [&](const glm::vec2& from, const glm::vec2& to) {
+    test.host->events.push(PointerMoved{from});
+    test.player.settle();
+    test.host->events.push(ButtonChanged{MouseButton::Left, true});
+    test.player.settle();
+    test.host->events.push(PointerMoved{to});
+    test.player.settle();
+    test.host->events.push(ButtonChanged{MouseButton::Left, false});
+    test.player.settle();
+  };
+  drag(box.centre(), {box.centre().x, box.high.y});
+  REQUIRE(painting.falloff_curve.size() == 5);
+  CHECK(painting.falloff_curve[2].y == 0);
+  CHECK(falloff_of(painting)(0.5f) < 0.01f);
+  // A new one between the first two, as high as the pointer is.
+  drag({box.low.x + box.width() * 0.16f, box.centre().y}, {box.low.x + box.width() * 0.16f, box.centre().y});
+  REQUIRE(painting.falloff_curve.size() == 6);
+  CHECK(painting.falloff_curve[1].y == doctest::Approx(0.5).epsilon(0.05));
+  // It cannot pass the next one.
+  drag({box.low.x + box.width() * 0.16f, box.centre().y}, {box.high.x - 10, box.centre().y});
+  CHECK(painting.falloff_curve[1].x < painting.falloff_curve[2].x);
+  CHECK(painting.falloff_curve[1].x > painting.falloff_curve[0].x);
+  test.play("click \"Edit/Brush/Smooth falloff\"\nwait-idle");
+  CHECK(painting.falloff_curve.empty());
+  CHECK(falloff_of(painting) == smooth);
+}
+
 TEST_CASE("weight editing: choosing a bone leaves the chosen tissues, which brushes may be kept to") {
   EditEditor test;
   test.editor->selection.tissues = {kMuscle};
