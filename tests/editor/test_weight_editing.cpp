@@ -3,6 +3,7 @@
 
 #include "core/rig/mirror.h"
 #include "editor/brush_ring.h"
+#include "editor/handling.h"
 #include "editor/painting.h"
 #include "editor/skin_display.h"
 #include "tests/editor/weighed_limb.h"
@@ -412,6 +413,42 @@ TEST_CASE("brush: its own falloff is a curve whose points are dragged, added and
   test.play("click \"Edit/Brush/Smooth falloff\"\nwait-idle");
   CHECK(painting.falloff_curve.empty());
   CHECK(falloff_of(painting) == smooth);
+}
+
+TEST_CASE("painting: with X-mirror a stroke paints the bone of the other side there, as one step") {
+  EditEditor test;
+  Document next = test.editor->document();
+  Armature rig;
+  rig.bones = {{"Trunk", -1, {0, 0, -30}, {0, 0, 30}}, {"Arm.L", 0, {20, 0, 10}, {20, 0, -10}}, {"Arm.R", 0, {-20, 0, 10}, {-20, 0, -10}}};
+  next.armature = std::make_shared<const Armature>(rig);
+  next.weights = std::make_shared<const SkinWeights>(std::vector<std::string>{"Trunk", "Arm.L", "Arm.R"}, TissueVoxels(*next.volume));
+  test.editor->history.commit("Two arms", next);
+  test.choose(1);
+  test.editor->handling->x_mirror = true;
+  test.painting().kind = BrushKind::Add;
+  test.painting().strength = 0.5;
+  test.painting().radius = 12;
+  test.painting().depth = BrushDepth::Through;
+  test.play("key Num5\nwait-idle");
+  const glm::dvec2 pixel = body_seen(*test.editor)->pixel_of({22, -std::sqrt(1600 - 22 * 22), 0}).value();
+  const int steps = test.steps();
+  test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + "\nwait-idle");
+  for (const bool down : {true, false}) {
+    test.host->events.push(ButtonChanged{MouseButton::Left, down});
+    test.player.settle();
+  }
+  CHECK(test.steps() == steps + 1);
+  int left = 0, right = 0;
+  test.for_each([&](const glm::dvec3& p, Label, const Influence& influence) {
+    left += influence.of(1) > 0;
+    right += influence.of(2) > 0;
+    CHECK((influence.of(1) == 0 || p.x > 0));
+    CHECK((influence.of(2) == 0 || p.x < 0));
+  });
+  CHECK(left > 20);
+  CHECK(std::abs(left - right) <= left / 5);  // the plane lies between voxels, and rays end where they end
+  test.play("key Ctrl+Z");
+  test.for_each([&](const glm::dvec3&, Label, const Influence& influence) { CHECK(influence == rigid_influence(0)); });
 }
 
 TEST_CASE("weight editing: choosing a bone leaves the chosen tissues, which brushes may be kept to") {
