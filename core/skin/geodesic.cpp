@@ -2,6 +2,7 @@
 #include "core/skin/geodesic.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/skin/best_four.h"
@@ -27,6 +28,14 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
     if (held_by[place] != kSoft) sources[held_by[place]].push_back({place, glm::i16vec3(v)});
   });
 
+  std::vector<float> stiffness;  // #tissue voxels; empty: 1
+  if (!settings.stiffness.empty()) {
+    stiffness.assign(tissue.size(), 1);
+    tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      if (const auto found = settings.stiffness.find(volume.at(v)); found != settings.stiffness.end()) stiffness[place] = static_cast<float>(found->second);
+    });
+  }
+
   BestFour best(tissue.size());
   TissueFront front(volume, tissue);
   std::vector<float> distance(tissue.size(), std::numeric_limits<float>::infinity());
@@ -49,8 +58,10 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
     });
     // Over the nearest bone's, so that a weight is at most one before the sum is.
     std::vector<float> weight(reached.size());
-    for (size_t i = 0; i < reached.size(); ++i)
+    for (size_t i = 0; i < reached.size(); ++i) {
       weight[i] = std::min(1.0f, strength(distance[reached[i]]) / strength(nearest.distance[reached[i]]));
+      if (!stiffness.empty()) weight[i] = std::pow(weight[i], stiffness[reached[i]]);
+    }
     best.offer(reached, weight, 1, 0, bone);
     for (std::int64_t place : reached) distance[place] = std::numeric_limits<float>::infinity();
     for (const auto& [place, voxel] : sources[bone]) distance[place] = std::numeric_limits<float>::infinity();

@@ -156,7 +156,7 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
   const int bone_count = static_cast<int>(armature.bones.size());
   const std::vector<std::uint16_t> held_by = bone_holding(volume, tissue, parts, armature);
   const NearestBone nearest = attracting_bone(volume, tissue, armature, held_by);
-  const SoftBody body(volume, tissue, tissues, held_by, nearest);
+  const SoftBody body(volume, tissue, tissues, held_by, nearest, settings.stiffness);
   const SoftBody::Coarse coarse = body.coarse();
   const std::vector<bool> reached = reached_cells(coarse.graph, coarse.held);
   const CoarseTemperatures temperatures = solve_coarse(coarse, reached, bone_count);

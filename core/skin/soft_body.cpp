@@ -233,8 +233,9 @@ NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissu
 }
 
 SoftBody::SoftBody(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-                   const std::vector<std::uint16_t>& held_by, const NearestBone& nearest)
-    : volume_(volume), tissue_(tissue), held_by_(held_by), nearest_(nearest), conductivity_(1 << 16, 1.0f) {
+                   const std::vector<std::uint16_t>& held_by, const NearestBone& nearest, const std::map<Label, double>& stiffness)
+    : volume_(volume), tissue_(tissue), held_by_(held_by), nearest_(nearest), conductivity_(1 << 16, 1.0f), attraction_(1 << 16, kAttraction) {
+  for (const auto& [label, stiff] : stiffness) attraction_[label] = static_cast<float>(kAttraction * stiff * stiff);
   for (const Tissue& t : tissues.tissues) conductivity_[t.label] = conductivity(t.kind);
   const glm::dvec3 s = volume.grid.spacing;
   const glm::dvec3 area_over_distance(s.y * s.z / s.x, s.x * s.z / s.y, s.x * s.y / s.z);
@@ -283,9 +284,9 @@ float SoftBody::face(std::int64_t axis, Label a, Label b) const {
   return face_[axis] * (ka == kb ? ka : 2 * ka * kb / (ka + kb));
 }
 
-float SoftBody::attraction(std::int64_t place) const {
+float SoftBody::attraction(std::int64_t place, Label label) const {
   const float distance = nearest_.distance[place];
-  return kAttraction * volume_of_voxel_ / (distance * distance);  // zero where no bone is reached
+  return attraction_[label] * volume_of_voxel_ / (distance * distance);  // zero where no bone is reached
 }
 
 SoftBody::Region SoftBody::region(const std::vector<std::int32_t>& bricks) const {
@@ -340,7 +341,7 @@ SoftBody::Region SoftBody::region(const std::vector<std::int32_t>& bricks) const
         }
         if (counting) {
           graph.first[cell + 1] = next;
-        } else if (const float g = attraction(place); g > 0) {
+        } else if (const float g = attraction(place, window.label[here]); g > 0) {
           graph.diagonal[cell] += g;
           region.held.push_back({cell, nearest_.bone[place], g});
         }
@@ -439,7 +440,7 @@ SoftBody::Coarse SoftBody::coarse() const {
           links.push_back({cell, cell_of[other], g});
         }
       }
-      if (const float g = attraction(place); g > 0) {
+      if (const float g = attraction(place, window.label[here]); g > 0) {
         graph.diagonal[cell] += g;
         coarse.held.push_back({cell, nearest_.bone[place], g});
       }

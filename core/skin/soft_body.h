@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "core/rig/armature.h"
@@ -59,7 +60,7 @@ class SoftBody {
  public:
   // References are kept.
   SoftBody(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-           const std::vector<std::uint16_t>& held_by, const NearestBone& nearest);
+           const std::vector<std::uint16_t>& held_by, const NearestBone& nearest, const std::map<Label, double>& stiffness = {});
 
   // The soft voxels of some bricks as cells; what lies in other bricks has temperature zero.
   struct Region {
@@ -81,13 +82,14 @@ class SoftBody {
  private:
   struct Window;
   float face(std::int64_t axis, Label a, Label b) const;
-  float attraction(std::int64_t place) const;
+  float attraction(std::int64_t place, Label label) const;
 
   const LabelVolume& volume_;
   const TissueVoxels& tissue_;
   const std::vector<std::uint16_t>& held_by_;
   const NearestBone& nearest_;
   std::vector<float> conductivity_;  // by label
+  std::vector<float> attraction_;    // likewise: the square of its stiffness, since blends are as wide as the root of conduction over attraction
   std::array<float, 3> face_;        // area / distance of a face across each axis, largest 1
   float volume_of_voxel_ = 1;        // mm3, in the same measure
 };
