@@ -22,11 +22,21 @@ constexpr std::int64_t kBricksAtOnce = 16;
 // Tissue voxels by place, with their neighbours through faces.
 class Body {
  public:
-  Body(const StrokeBody& body, const SkinWeights& weights) : body_(body), weights_(weights), voxel_(body.tissue.size()) {
+  //   progress  told now and then, so that the search can be cancelled
+  Body(const StrokeBody& body, const SkinWeights& weights, Progress& progress = no_progress()) : body_(body), weights_(weights), progress_(progress), voxel_(body.tissue.size()) {
     body.tissue.for_each([&](std::int64_t place, const glm::ivec3& v) { voxel_[place] = glm::i16vec3(v); });
   }
 
   std::int64_t size() const { return std::ssize(voxel_); }
+  // From here on the search is so far, [0, 1].
+  void at(double done) {
+    done_ = done;
+    progress_.update("looking for problems", done_);
+  }
+  void go_on(std::int64_t count) const {
+    constexpr std::int64_t kOften = 1 << 16;
+    if (count % kOften == 0) progress_.update("looking for problems", done_);
+  }
   glm::ivec3 voxel(std::int64_t place) const { return glm::ivec3(voxel_[place]); }
   const Influence& influence(std::int64_t place) const {
     const int brick = body_.tissue.brick_at(voxel(place));
@@ -52,12 +62,14 @@ class Body {
       const auto number = static_cast<std::int32_t>(found.size());
       std::vector<std::int64_t>& voxels = found.emplace_back(1, start);
       piece[start] = number;
-      for (std::size_t i = 0; i < voxels.size(); ++i)
+      for (std::size_t i = 0; i < voxels.size(); ++i) {
+        go_on(static_cast<std::int64_t>(i) + 1);
         beside(voxels[i], [&](std::int64_t next) {
           if (piece[next] >= 0 || group[next] != group[start]) return;
           piece[next] = number;
           voxels.push_back(next);
         });
+      }
       std::sort(voxels.begin(), voxels.end());
     }
     return piece;
@@ -87,6 +99,8 @@ class Body {
  private:
   const StrokeBody& body_;
   const SkinWeights& weights_;
+  Progress& progress_;
+  double done_ = 0;
   std::vector<glm::i16vec3> voxel_;
 };
 
@@ -159,6 +173,7 @@ void find_far_bones(const StrokeBody& body, const Body& all, const ProblemSettin
   std::map<std::pair<int, int>, bool> far;
   std::map<std::pair<int, int>, std::vector<std::int64_t>> found;
   for (std::int64_t place = 0; place < all.size(); ++place) {
+    all.go_on(place);
     const Influence& influence = all.influence(place);
     for (int i = 0; i < 4; ++i)
       for (int k = i + 1; k < 4; ++k) {
@@ -175,11 +190,40 @@ void find_far_bones(const StrokeBody& body, const Body& all, const ProblemSettin
   }
 }
 
-void find_soft_bone(const StrokeBody& body, const Body& all, const LabelSet& bone, std::vector<WeightProblem>& problems) {
+// The bone that each voxel of bone tissue is to follow, -1 elsewhere: the one that it follows most. But a small patch that grows on
+// other bone tissue belongs to what it has the longest border with; small is measured by the largest patch of its own bone.
+std::vector<std::int32_t> bones_of_bone_tissue(const StrokeBody& body, const Body& all, const LabelSet& bone, const ProblemSettings& settings) {
+  std::vector<std::int32_t> follows(all.size(), -1);
+  for (std::int64_t place = 0; place < all.size(); ++place)
+    if (bone[body.volume.at(all.voxel(place))]) follows[place] = all.influence(place).bone[0];
+  std::vector<std::vector<std::int64_t>> pieces;
+  const std::vector<std::int32_t> piece = all.pieces(follows, pieces);
+  std::map<int, std::size_t> largest;
+  for (const auto& voxels : pieces) largest[follows[voxels[0]]] = std::max(largest[follows[voxels[0]]], voxels.size());
+  // Patches of patches are done from the largest on, so that the smaller ones join what has been settled.
+  std::vector<std::size_t> small;
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+    if (double(pieces[p].size()) < settings.island_share * double(largest[follows[pieces[p][0]]])) small.push_back(p);
+  std::stable_sort(small.begin(), small.end(), [&](std::size_t a, std::size_t b) { return pieces[a].size() > pieces[b].size(); });
+  for (const std::size_t p : small) {
+    std::map<int, int> border;
+    const int own = follows[pieces[p][0]];
+    for (const auto place : pieces[p])
+      all.beside(place, [&](std::int64_t next) {
+        if (follows[next] >= 0 && piece[next] != static_cast<std::int32_t>(p) && follows[next] != own) ++border[follows[next]];
+      });
+    const auto longest = std::max_element(border.begin(), border.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (longest == border.end()) continue;
+    for (const auto place : pieces[p]) follows[place] = longest->first;
+  }
+  return follows;
+}
+
+void find_soft_bone(const StrokeBody& body, const Body& all, const LabelSet& bone, const ProblemSettings& settings, std::vector<WeightProblem>& problems) {
+  const std::vector<std::int32_t> follows = bones_of_bone_tissue(body, all, bone, settings);
   std::map<int, std::vector<std::int64_t>> found;
   for (std::int64_t place = 0; place < all.size(); ++place)
-    if (const Influence& influence = all.influence(place); bone[body.volume.at(all.voxel(place))] && influence.weight[0] != kFullWeight)
-      found[influence.bone[0]].push_back(place);
+    if (follows[place] >= 0 && all.influence(place) != rigid_influence(follows[place])) found[follows[place]].push_back(place);
   for (auto& [main, voxels] : found) {
     const glm::dvec3 middle = all.middle(voxels);
     problems.push_back({Kind::SoftBone, main, -1, middle, std::move(voxels)});
@@ -217,17 +261,17 @@ void find_steep(const StrokeBody& body, const Body& all, const LabelSet& bone, c
 }  // namespace
 
 std::vector<WeightProblem> find_problems(const StrokeBody& body, const SkinWeights& weights, const ProblemSettings& settings, Progress& progress) {
-  const Body all(body, weights);
+  Body all(body, weights, progress);
   const LabelSet bone = bone_labels(body);
   std::vector<WeightProblem> problems;
-  progress.update("looking for problems", 0);
+  all.at(0);
   find_unreached(body, all, bone, problems);
-  progress.update("looking for problems", 0.3);
+  all.at(0.3);
   find_islands(all, settings, problems);
-  progress.update("looking for problems", 0.6);
+  all.at(0.6);
   find_far_bones(body, all, settings, problems);
-  find_soft_bone(body, all, bone, problems);
-  progress.update("looking for problems", 0.8);
+  find_soft_bone(body, all, bone, settings, problems);
+  all.at(0.8);
   find_steep(body, all, bone, settings, problems);
   std::erase_if(problems, [&](const WeightProblem& p) { return std::ssize(p.voxels) < settings.least_voxels; });
   std::stable_sort(problems.begin(), problems.end(),
@@ -242,7 +286,7 @@ std::string describe(const WeightProblem& problem, const Armature& armature) {
     case Kind::Unreached: return voxels + " that no bone reaches, given to " + name(problem.bone);
     case Kind::Island: return voxels + " of " + name(problem.bone) + " apart from the rest";
     case Kind::FarBones: return voxels + " between " + name(problem.bone) + " and " + name(problem.other) + ", which are far apart";
-    case Kind::SoftBone: return voxels + " of bone that bend, mainly with " + name(problem.bone);
+    case Kind::SoftBone: return voxels + " of bone not rigid with " + name(problem.bone);
     case Kind::Steep:
       return voxels + " where weights change abruptly, at " + name(problem.bone) + (problem.other >= 0 ? " and " + name(problem.other) : "");
   }
@@ -367,7 +411,7 @@ WeightEdit repaired(const StrokeBody& body, const SkinWeights& weights, const We
     case Kind::SoftBone:
       there.rigid_bone_tissue = false;
       return edited(body, weights, there, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
-        return rules.set(influence, influence.bone[0], kFullWeight);
+        return rules.set(influence, problem.bone, kFullWeight);
       });
     case Kind::Steep: return smoothed_out(body, weights, problem, there, scope.region, settings);
   }

@@ -3,7 +3,7 @@
 //   Unreached   a piece of tissue apart from the body: no bone lies in it, so nothing but a guess says what it follows
 //   Island      a small patch that mainly follows a bone, apart from the rest of what follows that bone
 //   FarBones    voxels that follow two bones far from each other in the rig
-//   SoftBone    bone tissue that does not follow exactly one bone
+//   SoftBone    bone tissue that bends, or that follows another bone than the bone tissue it has grown on
 //   Steep       soft tissue whose weights change too much from one voxel to the next: it will tear or fold there
 // One problem stands for one place: a piece, a patch, a pair of bones, a run of voxels that hang together.
 #pragma once
@@ -18,7 +18,7 @@ namespace limber {
 struct WeightProblem {
   enum class Kind { Unreached, Island, FarBones, SoftBone, Steep };
   Kind kind = Kind::Unreached;
-  int bone = -1, other = -1;         // Unreached, Island, SoftBone: the bone followed most; FarBones: both; Steep: the two sides
+  int bone = -1, other = -1;         // Unreached, Island: the bone followed most; SoftBone: the bone to be followed; FarBones: both; Steep: the two sides
   glm::dvec3 place{0};               // world, mm: the middle of the voxel nearest to the middle of all
   std::vector<std::int64_t> voxels;  // places in the tissue list, growing; what FarBones and Steep would change
 };
@@ -42,7 +42,7 @@ std::string describe(const WeightProblem& problem, const Armature& armature);
 //   Unreached   the piece follows, as one, what the nearest tissue of the body does
 //   Island      filled in from its rim
 //   FarBones    the lesser of the two goes, the others take over
-//   SoftBone    each voxel rigid with the bone that it follows most
+//   SoftBone    rigid with its bone
 //   Steep       smoothed there and for three voxels around, until it is not steep, 40 times at most
 WeightEdit repaired(const StrokeBody& body, const SkinWeights& weights, const WeightProblem& problem, const EditScope& scope = {},
                     const ProblemSettings& settings = {});

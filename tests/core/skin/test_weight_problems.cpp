@@ -131,6 +131,43 @@ TEST_CASE("weight problems: bone that bends is found and made rigid with what it
   CHECK(edit.weights == good);
 }
 
+TEST_CASE("weight problems: bone that is rigid with another bone than it has grown on, or bends mainly with it, goes back to its own") {
+  Painted painted = good_bar();
+  const SkinWeights good = *painted.weights;
+  const auto patch = [](const glm::ivec3& v) { return v.x >= 7 && v.x < 9 && v.y >= 7 && v.y < 9 && v.z >= 8 && v.z < 11; };
+  for (const Influence& wrong : {rigid_influence(1), quantize({{0, 0.2}, {1, 0.8}})}) {
+    painted.set([&](const glm::ivec3& v) { return patch(v) ? wrong : at(painted.tissue, good, v); });
+    const auto soft = of_kind(find_problems(painted.stroke_body(), *painted.weights), Kind::SoftBone);
+    REQUIRE(soft.size() == 1);
+    CHECK(soft[0].voxels.size() == 2 * 2 * 3);
+    CHECK(soft[0].bone == 0);
+    CHECK(describe(soft[0], painted.body.armature) == "12 voxels of bone not rigid with Upper");
+    CHECK(repaired(painted.stroke_body(), *painted.weights, soft[0]).weights == good);
+  }
+}
+
+TEST_CASE("weight problems: a small bone with air or flesh all around stays with what it follows") {
+  Painted painted = good_bar();
+  auto& volume = painted.body.volume;
+  // The lower bone's end becomes a bone of its own, apart by a slice of flesh.
+  for (int y = 0; y < volume.grid.size.y; ++y)
+    for (int x = 0; x < volume.grid.size.x; ++x)
+      if (volume.at({x, y, 36}) == kBone) volume.at({x, y, 36}) = kMuscle;
+  painted.set([&](const glm::ivec3& v) { return volume.at(v) == kBone && v.z > 40 ? rigid_influence(0) : rigid_influence(v.z < 22 ? 0 : 1); });
+  for (int z = 39; z <= 40; ++z)
+    for (int y = 0; y < volume.grid.size.y; ++y)
+      for (int x = 0; x < volume.grid.size.x; ++x)
+        if (volume.at({x, y, z}) == kBone) volume.at({x, y, z}) = kMuscle;
+  CHECK(of_kind(find_problems(painted.stroke_body(), *painted.weights), Kind::SoftBone).empty());
+}
+
+TEST_CASE("weight problems: the search can be cancelled") {
+  const Painted painted = good_bar();
+  Progress stop;
+  stop.cancel();
+  CHECK_THROWS_AS(find_problems(painted.stroke_body(), *painted.weights, {}, stop), Cancelled);
+}
+
 TEST_CASE("weight problems: a clean cut through flesh is steep, and smooth once repaired") {
   Painted painted = good_bar();
   const auto& volume = painted.body.volume;
