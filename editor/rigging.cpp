@@ -8,6 +8,7 @@
 #include "core/project/bone_names.h"
 #include "core/rig/mirror.h"
 #include "core/skin/carry_weights.h"
+#include "core/skin/weight_layers.h"
 #include "editor/handling.h"
 #include "editor/project.h"
 
@@ -49,6 +50,8 @@ void commit_followed(Editor& editor, const std::string& label, Armature next, co
     const auto weights = fits ? carried(*document.weights, heirs(*before, from), names_of(next)) : std::nullopt;
     weights_lost = !weights;
     document.weights = weights ? std::make_shared<const SkinWeights>(*weights) : nullptr;
+    const auto layers = weights && document.layers ? carried(*document.layers, heirs(*before, from), names_of(next)) : std::nullopt;
+    document.layers = layers ? std::make_shared<const WeightLayers>(*layers) : nullptr;
   }
   if (follow) follow(document, *before, next);
   document.armature = std::make_shared<const Armature>(std::move(next));

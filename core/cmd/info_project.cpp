@@ -8,6 +8,7 @@
 #include "core/cmd/command.h"
 #include "core/project/journal.h"
 #include "core/project/project_io.h"
+#include "core/skin/weight_layers.h"
 
 namespace limber::cmd {
 
@@ -66,6 +67,8 @@ std::string describe_project(const Path& file) {
   if (document.tissues) json["tissues"] = json_of(*document.tissues);
   if (document.armature) json["bones"] = names_of(*document.armature);
   if (document.weights) json["weights"] = {{"voxels", document.weights->size()}, {"bones", document.weights->bones().size()}};
+  if (document.layers)
+    for (const auto& layer : document.layers->layers) json["weights"]["layers"].push_back({{"name", layer->name}, {"opacity", layer->opacity}, {"visible", layer->visible}});
   if (document.pose) json["posed_bones"] = turned_bones(document);
   for (const auto& clip : document.clips) {
     Json one = {{"name", clip->name}, {"keys", frames_of(clip->keys).size()}};

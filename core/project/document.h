@@ -24,6 +24,8 @@
 
 namespace limber {
 
+struct WeightLayers;
+
 // How one tissue is shown. A label without an entry is shown as it is.
 struct TissueLook {
   bool visible = true;
@@ -70,7 +72,7 @@ struct Result {
   std::shared_ptr<const Pose> from_pose;
 };
 
-// Any part may be absent (null); weights, pose and results need the volume or armature they belong to.
+// Any part may be absent (null); weights, their layers, pose and results need what they belong to.
 struct Document {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
@@ -86,6 +88,7 @@ struct Document {
   PoseLibrary poses;
   std::shared_ptr<const Anchors> anchors;
   std::shared_ptr<const WeightLocks> locks;
+  std::shared_ptr<const WeightLayers> layers;  // `weights` are what comes out of them; null: the weights have no layers
 
   const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -31,14 +32,14 @@ class DocumentWriter {
     std::weak_ptr<const void> part;
     ChunkHash hash;
   };
-  struct LastWeights {  // weights differ from the last ones by a few bricks
+  struct LastWeights {  // weights differ from the last ones in the same role, or in another, by a few bricks
     std::vector<std::weak_ptr<const SkinWeights::Chunk>> bricks;
     std::vector<ChunkHash> groups;
   };
   class Writing;
 
   std::unordered_map<const void*, Part> parts_;
-  LastWeights last_weights_;
+  std::map<int, LastWeights> last_weights_;
 };
 
 struct ReadLimits {

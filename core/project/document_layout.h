@@ -5,15 +5,16 @@
 #include <cstdint>
 
 #include "core/project/document.h"
+#include "core/skin/weight_layers.h"
 
 namespace limber {
 
 // 1 had one motion and no clips, 2 no library of poses, 3 no anchors, 4 nothing above the two lowest bits of a clip's reference,
-// 5 no locks of weights.
-constexpr std::uint32_t kDocumentLayout = 6;
+// 5 no locks of weights, 6 no layers of weights.
+constexpr std::uint32_t kDocumentLayout = 7;
 
 // A part's first byte.
-enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors, WeightLocks };
+enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors, WeightLocks, WeightLayer, WeightLayers };
 
 template <class T>
 struct PartKindOf;
@@ -31,6 +32,8 @@ template <> struct PartKindOf<Clip>        { static constexpr PartKind kKind = P
 template <> struct PartKindOf<NamedPose>   { static constexpr PartKind kKind = PartKind::NamedPose;  static constexpr const char* kName = "pose of the library"; };
 template <> struct PartKindOf<Anchors>     { static constexpr PartKind kKind = PartKind::Anchors;    static constexpr const char* kName = "pins and poles"; };
 template <> struct PartKindOf<WeightLocks> { static constexpr PartKind kKind = PartKind::WeightLocks; static constexpr const char* kName = "locks of weights"; };
+template <> struct PartKindOf<WeightLayer> { static constexpr PartKind kKind = PartKind::WeightLayer; static constexpr const char* kName = "layer of weights"; };
+template <> struct PartKindOf<WeightLayers> { static constexpr PartKind kKind = PartKind::WeightLayers; static constexpr const char* kName = "layers of weights"; };
 // clang-format on
 
 // The reference, and above it what source and rig rest in.

@@ -214,6 +214,16 @@ bool fits(const SkinWeights& weights, const LabelVolume& volume) {
   return true;
 }
 
+bool are_of_one_body(const SkinWeights& a, const SkinWeights& b) {
+  bool same = a.bones() == b.bones() && a.chunk_count() == b.chunk_count();
+  for (std::int64_t brick = 0; same && brick < a.chunk_count(); ++brick) same = a.chunk(brick).size() == b.chunk(brick).size();
+  return same;
+}
+bool are_of_one_body(const WeightLayers& layers, const SkinWeights& weights) {
+  return are_of_one_body(*layers.base, weights) &&
+         std::all_of(layers.layers.begin(), layers.layers.end(), [&](const auto& layer) { return are_of_one_body(layer->weights, weights); });
+}
+
 class Reading {
  public:
   Reading(ChunkSource& source, const std::string& where, std::vector<std::string>& warnings, const ReadLimits& limits, Progress& progress)
@@ -262,6 +272,7 @@ class Reading {
       if (layout > 2) list(document.poses);
       if (layout > 3) part(document.anchors);
       if (layout > 5) part(document.locks);
+      if (layout > 6) part(document.layers);
     }
     in.require(next == node.nodes.size());
     in.end();
@@ -461,6 +472,44 @@ class Reading {
     return bricks;
   }
 
+  WeightLayer read_part(const Node& node, ByteReader& in, const WeightLayer*) {
+    WeightLayer layer;
+    layer.name = in.text();
+    layer.visible = in.flag();
+    layer.opacity = in.get<double>();
+    in.end();
+    in.require(layer.opacity >= 0 && layer.opacity <= 1 && node.nodes.size() == 1 && !node.leaves.empty());
+    layer.weights = *read<SkinWeights>(node.nodes[0]);
+    const std::int64_t bricks = layer.weights.chunk_count();
+    const std::string covers = chunk(node.leaves[0], "layer of weights");
+    in.require(std::ssize(covers) == bricks && std::ssize(node.leaves) - 1 == (bricks + kGroupBricks - 1) / kGroupBricks);
+    layer.mask.resize(bricks);
+    for_leaves(node.leaves, 1, "layer of weights", [&](std::int64_t group, const std::string& leaf) {
+      take_memory(std::ssize(leaf), "layers of weights");
+      std::size_t place = 0;
+      for (std::int64_t brick = group * kGroupBricks; brick < std::min(bricks, (group + 1) * kGroupBricks); ++brick) {
+        if (!covers[brick]) continue;
+        WeightLayer::Mask mask(layer.weights.chunk(brick).size());
+        const std::size_t bytes = mask.size() * sizeof(std::uint16_t);
+        in.require(leaf.size() - place >= bytes);
+        if (bytes > 0) std::memcpy(mask.data(), leaf.data() + place, bytes);
+        place += bytes;
+        layer.mask[brick] = std::make_shared<const WeightLayer::Mask>(std::move(mask));
+      }
+      in.require(place == leaf.size());
+    });
+    return layer;
+  }
+
+  WeightLayers read_part(const Node& node, ByteReader& in, const WeightLayers*) {
+    const std::size_t count = in.get_below<std::uint32_t>(kMostInList);
+    in.end();
+    in.require(count > 0 && node.nodes.size() == count + 1 && node.leaves.empty());
+    WeightLayers layers{read<SkinWeights>(node.nodes[0]), {}};
+    for (std::size_t i = 1; i <= count; ++i) layers.layers.push_back(read<WeightLayer>(node.nodes[i]));
+    return layers;
+  }
+
   Result read_part(const Node& node, ByteReader& in, const Result*) {
     Result result;
     std::size_t next = 0;
@@ -514,6 +563,11 @@ class Reading {
     if (document.weights && (!document.volume || !fits(*document.weights, *document.volume))) {
       warnings_.push_back("the weights do not belong to the volume and were left out");
       document.weights = nullptr;
+      document.layers = nullptr;
+    }
+    if (document.layers && (!document.weights || !are_of_one_body(*document.layers, *document.weights))) {
+      warnings_.push_back("the layers of weights do not belong to the weights and were left out");
+      document.layers = nullptr;
     }
     if (document.pose && (!document.armature || document.pose->rotation.size() != document.armature->bones.size())) {
       warnings_.push_back("the pose does not belong to the rig and was left out");

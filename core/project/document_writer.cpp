@@ -206,6 +206,7 @@ class DocumentWriter::Writing {
     for (const auto& pose : document.poses) root.nodes.push_back(write(pose));
     part(document.anchors);
     part(document.locks);
+    part(document.layers);
     root.bytes = out.take();
     const ChunkHash hash = put_chunk(to_chunk(root));
     progress_.update("save", 1);
@@ -260,30 +261,71 @@ class DocumentWriter::Writing {
     // As a leaf: they stay while weights change.
     node.leaves.push_back(put_chunk({reinterpret_cast<const char*>(lengths.data()), lengths.size() * sizeof(std::uint16_t)}));
 
-    LastWeights& last = memory_.last_weights_;
-    const bool comparable = std::ssize(last.bricks) == bricks;
     std::vector<ChunkHash> hashes(groups);
     std::vector<std::int64_t> changed;
     for (std::int64_t group = 0; group < groups; ++group) {
-      if (comparable && same_bricks(weights, group) && sink_.has(last.groups[group]))
-        hashes[group] = last.groups[group];
-      else
-        changed.push_back(group);
+      const auto known = std::find_if(memory_.last_weights_.begin(), memory_.last_weights_.end(),
+                                      [&](const auto& last) { return same_bricks(last.second, weights, group) && sink_.has(last.second.groups[group]); });
+      if (known == memory_.last_weights_.end()) changed.push_back(group);
+      else hashes[group] = known->second.groups[group];
     }
     const auto written = put_all(std::ssize(changed), [&](std::int64_t i) { return group_bytes(weights, changed[i]); });
     for (std::size_t i = 0; i < changed.size(); ++i) hashes[changed[i]] = written[i];
     node.leaves.insert(node.leaves.end(), hashes.begin(), hashes.end());
 
+    LastWeights& last = memory_.last_weights_[role_];
     last.bricks.resize(bricks);
     for (std::int64_t brick = 0; brick < bricks; ++brick) last.bricks[brick] = weights.shared_chunk(brick);
     last.groups = std::move(hashes);
   }
 
-  bool same_bricks(const SkinWeights& weights, std::int64_t group) const {
+  static bool same_bricks(const LastWeights& last, const SkinWeights& weights, std::int64_t group) {
+    if (std::ssize(last.bricks) != weights.chunk_count()) return false;
     const std::int64_t first = group * kGroupBricks, end = std::min(weights.chunk_count(), first + kGroupBricks);
     for (std::int64_t brick = first; brick < end; ++brick)
-      if (memory_.last_weights_.bricks[brick].lock() != weights.shared_chunk(brick)) return false;
+      if (last.bricks[brick].lock() != weights.shared_chunk(brick)) return false;
     return true;
+  }
+
+  // The masks of a group of bricks in a leaf, those one after another that are there.
+  void fill(Node& node, ByteWriter& out, const WeightLayer& layer) {
+    out.text(layer.name);
+    out.flag(layer.visible);
+    out.put(layer.opacity);
+    node.nodes.push_back(write_weights(layer.weights));
+    const std::int64_t bricks = std::ssize(layer.mask);
+    std::vector<std::uint8_t> covers(bricks);
+    for (std::int64_t brick = 0; brick < bricks; ++brick) covers[brick] = layer.mask[brick] != nullptr;
+    node.leaves.push_back(put_chunk({reinterpret_cast<const char*>(covers.data()), covers.size()}));
+    const auto leaves = put_all((bricks + kGroupBricks - 1) / kGroupBricks, [&](std::int64_t group) {
+      std::string bytes;
+      for (std::int64_t brick = group * kGroupBricks; brick < std::min(bricks, (group + 1) * kGroupBricks); ++brick)
+        if (const auto& mask = layer.mask[brick]) bytes.append(reinterpret_cast<const char*>(mask->data()), mask->size() * sizeof(std::uint16_t));
+      return bytes;
+    });
+    node.leaves.insert(node.leaves.end(), leaves.begin(), leaves.end());
+  }
+
+  // The base first, then the layers from below.
+  void fill(Node& node, ByteWriter& out, const WeightLayers& layers) {
+    role_ = 1;
+    node.nodes.push_back(write(layers.base));
+    out.count(layers.layers.size());
+    for (const auto& layer : layers.layers) {
+      ++role_;
+      node.nodes.push_back(write(layer));
+    }
+    role_ = 0;
+  }
+
+  // A layer's own weights are no part with a pointer of its own.
+  ChunkHash write_weights(const SkinWeights& weights) {
+    Node node;
+    ByteWriter out;
+    out.put(static_cast<std::uint8_t>(PartKind::Weights));
+    fill(node, out, weights);
+    node.bytes = out.take();
+    return put_chunk(to_chunk(node));
   }
 
   void fill(Node& node, ByteWriter& out, const Result& result) {
@@ -366,6 +408,7 @@ class DocumentWriter::Writing {
   ChunkSink& sink_;
   const Packing packing_;
   Progress& progress_;
+  int role_ = 0;  // of the weights that are written: what comes out, the base, the layers from below
 };
 
 ChunkHash DocumentWriter::write(const Document& document, ChunkSink& sink, Packing packing, Progress& progress) {

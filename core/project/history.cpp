@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/skin/weight_layers.h"
+
 namespace limber {
 
 namespace {
@@ -70,6 +72,10 @@ std::int64_t own_bytes(const WeightLocks& locks) {
   for (const std::string& bone : locks.bones) bytes += kNode + std::int64_t{sizeof bone} + heap_bytes(bone);
   return bytes;
 }
+std::int64_t own_bytes(const WeightLayer::Mask& mask) { return heap_bytes(mask); }
+// Without chunks and masks, which are shared.
+std::int64_t own_bytes(const WeightLayer& layer) { return heap_bytes(layer.name) + own_bytes(layer.weights) + heap_bytes(layer.mask); }
+std::int64_t own_bytes(const WeightLayers& layers) { return heap_bytes(layers.layers); }
 std::int64_t own_bytes(const Visibility& visibility) {
   return static_cast<std::int64_t>(visibility.looks.size()) * (kBlock + std::int64_t{sizeof(std::pair<Label, TissueLook>)} + 32);
 }
@@ -100,9 +106,20 @@ class History::Ledger {
     return edge;
   }
 
+  void visit_chunks(const SkinWeights& weights, int step) {
+    for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) count(weights.shared_chunk(brick), step);
+  }
   void visit(const std::shared_ptr<const SkinWeights>& weights, int step) {
-    if (!count(weights, step)) return;
-    for (std::int64_t brick = 0; brick < weights->chunk_count(); ++brick) count(weights->shared_chunk(brick), step);
+    if (count(weights, step)) visit_chunks(*weights, step);
+  }
+  void visit(const std::shared_ptr<const WeightLayers>& layers, int step) {
+    if (!count(layers, step)) return;
+    visit(layers->base, step);
+    for (const auto& layer : layers->layers) {
+      if (!count(layer, step)) continue;
+      visit_chunks(layer->weights, step);
+      for (const auto& mask : layer->mask) count(mask, step);
+    }
   }
 
   void visit(const std::shared_ptr<const Result>& result, int step) {
@@ -129,6 +146,7 @@ class History::Ledger {
     for (const auto& pose : document.poses) count(pose, step);
     count(document.anchors, step);
     count(document.locks, step);
+    visit(document.layers, step);
     bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results) + heap_bytes(document.clips) + heap_bytes(document.poses));
   }
 

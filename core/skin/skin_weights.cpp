@@ -78,6 +78,11 @@ void SkinWeights::set_chunk(std::int64_t brick, Chunk chunk) {
   chunks_[brick] = std::make_shared<const Chunk>(std::move(chunk));
 }
 
+void SkinWeights::share_chunk(std::int64_t brick, const SkinWeights& from) {
+  if (from.chunk(brick).size() != chunks_[brick]->size()) throw std::logic_error("SkinWeights: a chunk's length may not change");
+  chunks_[brick] = from.chunks_[brick];
+}
+
 bool SkinWeights::operator==(const SkinWeights& other) const {
   if (bones_ != other.bones_ || size_ != other.size_ || chunks_.size() != other.chunks_.size()) return false;
   for (size_t i = 0; i < chunks_.size(); ++i)

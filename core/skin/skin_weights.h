@@ -56,6 +56,8 @@ class SkinWeights {
   std::int64_t chunk_count() const { return std::ssize(chunks_); }
   // Clones the chunk if it is shared. Throws std::logic_error if `chunk`'s length differs or a sum is not exact.
   void set_chunk(std::int64_t brick, Chunk chunk);
+  // Shares the chunk that other weights of the same bones have there. Throws std::logic_error if its length differs.
+  void share_chunk(std::int64_t brick, const SkinWeights& from);
 
   bool operator==(const SkinWeights&) const;
 

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/skin/carry_weights.h"
 #include "core/skin/weights_around.h"
 
 namespace limber {
@@ -47,6 +49,10 @@ SkinWeights made_from(const SkinWeights& from, const Wanted& wanted, const Make&
   return all;
 }
 
+bool covers_all(const WeightLayer::Mask& mask) {
+  return std::all_of(mask.begin(), mask.end(), [](std::uint16_t value) { return value != 0; });
+}
+
 const WeightLayer& layer_at(const WeightLayers& layers, std::size_t layer) {
   if (layer >= layers.layers.size()) throw std::logic_error("no such layer");
   return *layers.layers[layer];
@@ -70,6 +76,11 @@ SkinWeights::Chunk composed_chunk(const WeightLayers& layers, std::int64_t brick
   return chunk;
 }
 
+SkinWeights::Chunk composed_over_base(const WeightLayers& layers, std::int64_t brick, SkinWeights::Chunk base) {
+  for (const auto& layer : layers.layers) cover_with(base, *layer, brick);
+  return base;
+}
+
 SkinWeights composed(const WeightLayers& layers) {
   const auto covered = [&](std::int64_t brick) {
     return std::any_of(layers.layers.begin(), layers.layers.end(), [&](const auto& layer) { return layer->visible && layer->mask[brick]; });
@@ -77,37 +88,195 @@ SkinWeights composed(const WeightLayers& layers) {
   return made_from(*layers.base, covered, [&](std::int64_t brick) { return composed_chunk(layers, brick, layers.layers.size()); });
 }
 
+std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const WeightLayers& before) {
+  const std::int64_t count = layers.base->chunk_count();
+  if (before.base->chunk_count() != count) throw std::logic_error("layers of another body");
+  // Layers that cover nothing in a brick do not count there.
+  const auto next = [](const WeightLayers& of, std::size_t from, std::int64_t brick) {
+    while (from < of.layers.size() && (!of.layers[from]->visible || of.layers[from]->opacity == 0 || !of.layers[from]->mask[brick])) ++from;
+    return from;
+  };
+  const auto differs = [&](std::int64_t brick) {
+    if (layers.base->shared_chunk(brick) != before.base->shared_chunk(brick)) return true;
+    std::size_t now = 0, was = 0;
+    for (;; ++now, ++was) {
+      now = next(layers, now, brick);
+      was = next(before, was, brick);
+      if (now == layers.layers.size() || was == before.layers.size()) return now != layers.layers.size() || was != before.layers.size();
+      const WeightLayer &a = *layers.layers[now], &b = *before.layers[was];
+      if (a.opacity != b.opacity || a.mask[brick] != b.mask[brick] || a.weights.shared_chunk(brick) != b.weights.shared_chunk(brick)) return true;
+    }
+  };
+  std::vector<std::int64_t> changed;
+  for (std::int64_t brick = 0; brick < count; ++brick)
+    if (differs(brick)) changed.push_back(brick);
+  return changed;
+}
+
+SkinWeights recomposed(const WeightLayers& layers, const WeightLayers& before, const SkinWeights& came_out) {
+  const std::vector<std::int64_t> changed = changed_bricks(layers, before);
+  std::vector<SkinWeights::Chunk> made(changed.size());
+  parallel_for(std::ssize(changed), kBricksAtOnce, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = begin; i < end; ++i) made[i] = composed_chunk(layers, changed[i], layers.layers.size());
+  });
+  SkinWeights all = came_out;
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const std::int64_t b = changed[i];
+    if (made[i] == layers.base->chunk(b)) all.share_chunk(b, *layers.base);
+    else if (made[i] != came_out.chunk(b)) all.set_chunk(b, std::move(made[i]));
+  }
+  return all;
+}
+
 SkinWeights canvas(const WeightLayers& layers, std::size_t index) {
   const WeightLayer& layer = layer_at(layers, index);
-  const auto covered = [&](std::int64_t brick) {
-    return std::any_of(layers.layers.begin(), layers.layers.begin() + index + 1, [&](const auto& l) { return l->mask[brick] != nullptr; });
+  const std::int64_t count = layers.base->chunk_count();
+  std::vector<std::uint8_t> whole(count);
+  parallel_for(count, kBricksAtOnce, [&](std::int64_t begin, std::int64_t end) {
+    for (auto b = begin; b < end; ++b) whole[b] = layer.mask[b] && covers_all(*layer.mask[b]);
+  });
+  const auto mixed_here = [&](std::int64_t brick) {
+    return !whole[brick] && std::any_of(layers.layers.begin(), layers.layers.begin() + index + 1, [&](const auto& l) { return l->mask[brick] != nullptr; });
   };
-  return made_from(*layers.base, covered, [&](std::int64_t brick) {
+  SkinWeights shown = made_from(*layers.base, mixed_here, [&](std::int64_t brick) {
     SkinWeights::Chunk chunk = composed_chunk(layers, brick, index);
     if (layer.mask[brick])
       for (std::size_t i = 0; i < chunk.size(); ++i)
         if ((*layer.mask[brick])[i]) chunk[i] = layer.weights.chunk(brick)[i];
     return chunk;
   });
+  for (std::int64_t b = 0; b < count; ++b)
+    if (whole[b]) shown.share_chunk(b, layer.weights);
+  return shown;
 }
+
+namespace {
+
+// A brick of a layer after its canvas was painted on.
+struct PaintedBrick {
+  SkinWeights::Chunk weights;
+  WeightLayer::Mask mask;
+};
+
+PaintedBrick painted_brick(const WeightLayer& layer, std::int64_t brick, const SkinWeights::Chunk& was, const SkinWeights::Chunk& is) {
+  PaintedBrick painted{layer.weights.chunk(brick), layer.mask[brick] ? *layer.mask[brick] : WeightLayer::Mask(was.size(), 0)};
+  for (std::size_t i = 0; i < was.size(); ++i) {
+    if (was[i] == is[i]) continue;
+    painted.weights[i] = is[i];
+    painted.mask[i] = kFullWeight;
+  }
+  return painted;
+}
+
+}  // namespace
 
 WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after) {
   if (before.size() != after.size() || before.size() != layer.weights.size()) throw std::logic_error("a layer of another body");
   WeightLayer painted = layer;
   for (std::int64_t b = 0; b < before.chunk_count(); ++b) {
-    const SkinWeights::Chunk &was = before.chunk(b), &is = after.chunk(b);
-    if (before.shared_chunk(b) == after.shared_chunk(b) || was == is) continue;
-    SkinWeights::Chunk own = layer.weights.chunk(b);
-    WeightLayer::Mask mask = layer.mask[b] ? *layer.mask[b] : WeightLayer::Mask(was.size(), 0);
-    for (std::size_t i = 0; i < was.size(); ++i) {
-      if (was[i] == is[i]) continue;
-      own[i] = is[i];
-      mask[i] = kFullWeight;
-    }
-    painted.weights.set_chunk(b, std::move(own));
-    painted.mask[b] = std::make_shared<const WeightLayer::Mask>(std::move(mask));
+    if (before.shared_chunk(b) == after.shared_chunk(b) || before.chunk(b) == after.chunk(b)) continue;
+    PaintedBrick brick = painted_brick(layer, b, before.chunk(b), after.chunk(b));
+    painted.weights.set_chunk(b, std::move(brick.weights));
+    painted.mask[b] = std::make_shared<const WeightLayer::Mask>(std::move(brick.mask));
   }
   return painted;
+}
+
+namespace {
+
+// What comes out with that brick in the layer's place.
+SkinWeights::Chunk composed_with(const WeightLayers& layers, std::size_t index, std::int64_t brick, const PaintedBrick& painted) {
+  const WeightLayer& layer = layer_at(layers, index);
+  SkinWeights::Chunk chunk = composed_chunk(layers, brick, index);
+  if (layer.visible)
+    for (std::size_t i = 0; i < chunk.size(); ++i) chunk[i] = mixed(chunk[i], painted.weights[i], layer.opacity * painted.mask[i] / kFullWeight);
+  for (std::size_t above = index + 1; above < layers.layers.size(); ++above) cover_with(chunk, *layers.layers[above], brick);
+  return chunk;
+}
+
+PaintedBrick masked_brick(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Chunk& is) {
+  const WeightLayer& layer = layer_at(layers, index);
+  PaintedBrick masked{layer.weights.chunk(brick), WeightLayer::Mask(is.size(), 0)};
+  const SkinWeights::Chunk below = composed_chunk(layers, brick, index);
+  for (std::size_t i = 0; i < is.size(); ++i) {
+    for (int k = 0; k < 4; ++k)
+      if (is[i].weight[k] && is[i].bone[k] == kCovering) masked.mask[i] = is[i].weight[k];
+    if (!layer.mask[brick] || (*layer.mask[brick])[i] == 0) masked.weights[i] = below[i];
+  }
+  return masked;
+}
+
+}  // namespace
+
+SkinWeights::Chunk composed_while_painted(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Chunk& before,
+                                          const SkinWeights::Chunk& after) {
+  return composed_with(layers, index, brick, painted_brick(layer_at(layers, index), brick, before, after));
+}
+
+SkinWeights::Chunk composed_while_masked(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Chunk& mask) {
+  return composed_with(layers, index, brick, masked_brick(layers, index, brick, mask));
+}
+
+SkinWeights mask_as_weights(const WeightLayer& layer) {
+  static_assert(kNotCovering == 0);
+  std::map<std::size_t, std::shared_ptr<const SkinWeights::Chunk>> empty;  // by length
+  std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
+  for (std::int64_t b = 0; b < layer.weights.chunk_count(); ++b) {
+    const std::size_t count = layer.weights.chunk(b).size();
+    if (!layer.mask[b]) {
+      auto& shared = empty[count];
+      if (!shared) shared = std::make_shared<const SkinWeights::Chunk>(count, rigid_influence(kNotCovering));
+      chunks.push_back(shared);
+      continue;
+    }
+    SkinWeights::Chunk chunk(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint16_t cover = (*layer.mask[b])[i];
+      chunk[i].bone = {kNotCovering, kCovering, 0, 0};
+      chunk[i].weight = {static_cast<std::uint16_t>(kFullWeight - cover), cover, 0, 0};
+      sort_influence(chunk[i]);
+    }
+    chunks.push_back(std::make_shared<const SkinWeights::Chunk>(std::move(chunk)));
+  }
+  return {{"not covering", "covering"}, std::move(chunks)};
+}
+
+WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t index, const SkinWeights& before, const SkinWeights& after) {
+  WeightLayer layer = layer_at(layers, index);
+  for (std::int64_t b = 0; b < before.chunk_count(); ++b) {
+    if (before.shared_chunk(b) == after.shared_chunk(b)) continue;
+    PaintedBrick masked = masked_brick(layers, index, b, after.chunk(b));
+    const bool any = std::any_of(masked.mask.begin(), masked.mask.end(), [](std::uint16_t cover) { return cover != 0; });
+    layer.weights.set_chunk(b, std::move(masked.weights));
+    layer.mask[b] = any ? std::make_shared<const WeightLayer::Mask>(std::move(masked.mask)) : nullptr;
+  }
+  return layer;
+}
+
+WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWeights> base) {
+  if (base->chunk_count() != layers.base->chunk_count() || base->bones() != layers.base->bones()) throw std::logic_error("layers of another body");
+  WeightLayers over{std::move(base), {}};
+  for (const auto& layer : layers.layers) {
+    WeightLayer next = *layer;
+    for (std::int64_t b = 0; b < next.weights.chunk_count(); ++b)
+      if (!next.mask[b]) next.weights.share_chunk(b, *over.base);
+    over.layers.push_back(std::make_shared<const WeightLayer>(std::move(next)));
+  }
+  return over;
+}
+
+std::optional<WeightLayers> carried(const WeightLayers& layers, const std::vector<int>& to, const std::vector<std::string>& names) {
+  const auto base = carried(*layers.base, to, names);
+  if (!base) return std::nullopt;
+  WeightLayers next{std::make_shared<const SkinWeights>(*base), {}};
+  for (const auto& layer : layers.layers) {
+    const auto weights = carried(layer->weights, to, names);
+    if (!weights) return std::nullopt;
+    WeightLayer own = *layer;
+    own.weights = *weights;
+    next.layers.push_back(std::make_shared<const WeightLayer>(std::move(own)));
+  }
+  return next;
 }
 
 WeightLayer with_mask(const WeightLayers& layers, std::size_t index, const TissueVoxels& tissue, const TissueRegion& region, double cover) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,15 +41,36 @@ WeightLayers with_new_layer(const WeightLayers& layers, const std::string& name)
 SkinWeights::Chunk composed_chunk(const WeightLayers& layers, std::int64_t brick, std::size_t count);
 // All of it. Bricks that no layer covers are shared with the base.
 SkinWeights composed(const WeightLayers& layers);
+// The bricks whose weights may come out otherwise than of `before`, layers of the same body. Those whose parts are shared do not.
+std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const WeightLayers& before);
+// composed(layers), made anew only in those bricks; the others are those of `came_out`, which is composed(before).
+SkinWeights recomposed(const WeightLayers& layers, const WeightLayers& before, const SkinWeights& came_out);
 
-// What is painted on when this layer is.
+// What is painted on when this layer is. Bricks that only one of them covers, and that wholly, are shared with it.
 SkinWeights canvas(const WeightLayers& layers, std::size_t layer);
 // The layer after its canvas was changed from `before` to `after`: where they differ it has what is new, and covers fully.
 WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after);
+// One brick of what would come out then, or with another base.
+SkinWeights::Chunk composed_over_base(const WeightLayers& layers, std::int64_t brick, SkinWeights::Chunk base);
+SkinWeights::Chunk composed_while_painted(const WeightLayers& layers, std::size_t layer, std::int64_t brick, const SkinWeights::Chunk& before,
+                                          const SkinWeights::Chunk& after);
+
+// A mask as weights that a stroke can paint: what the layer covers follows kCovering, the rest kNotCovering.
+constexpr int kNotCovering = 0, kCovering = 1;
+SkinWeights mask_as_weights(const WeightLayer& layer);
+SkinWeights::Chunk composed_while_masked(const WeightLayers& layers, std::size_t layer, std::int64_t brick, const SkinWeights::Chunk& mask);
+// The layer after its mask was changed. Where it did not cover before it now has what its canvas shows.
+WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t layer, const SkinWeights& before, const SkinWeights& after);
 
 // The mask becomes `cover` [0, 1] in the region (empty: everywhere). Where the layer did not cover before it now has what its
 // canvas shows.
 WeightLayer with_mask(const WeightLayers& layers, std::size_t layer, const TissueVoxels& tissue, const TissueRegion& region, double cover);
+
+// The same layers over another base; what a layer does not cover it shares with it.
+WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWeights> base);
+
+// After bones were added to the rig, removed from it or put in another order: see carry_weights.h.
+std::optional<WeightLayers> carried(const WeightLayers& layers, const std::vector<int>& to, const std::vector<std::string>& names);
 
 // The layer joined with the one below it, or with the base: what comes out stays the same (to the four bones a voxel can have).
 // Throws Error where either layer is hidden.

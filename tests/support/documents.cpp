@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/skin/weight_layers.h"
+
 namespace limber::test {
 
 namespace {
@@ -57,6 +59,14 @@ bool equal(const Visibility& a, const Visibility& b) { return a == b; }
 
 template <class T>
 bool equal(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>& b);
+
+bool equal(const WeightLayer& a, const WeightLayer& b) {
+  return a.name == b.name && a.visible == b.visible && same(a.opacity, b.opacity) && a.weights == b.weights &&
+         std::equal(a.mask.begin(), a.mask.end(), b.mask.begin(), b.mask.end(), [](const auto& x, const auto& y) { return x && y ? *x == *y : !x && !y; });
+}
+bool equal(const WeightLayers& a, const WeightLayers& b) {
+  return equal(a.base, b.base) && std::equal(a.layers.begin(), a.layers.end(), b.layers.begin(), b.layers.end(), [](const auto& x, const auto& y) { return equal(*x, *y); });
+}
 
 template <class Track>
 bool same_track(const Track& a, const Track& b) {
@@ -138,6 +148,21 @@ Clip keyed_clip() {
   return clip;
 }
 
+// The document's weights become those of a base with two layers, of which the upper is painted at two places of a brick.
+void add_layers(Document& document, std::mt19937& random) {
+  WeightLayers layers = with_new_layer(with_new_layer({document.weights, {}}, "lower \xff"), "upper");
+  WeightLayer upper = *layers.layers[1];
+  upper.opacity = 0.1 + 0.9 * unit(random);
+  SkinWeights painted = *document.weights;
+  const auto brick = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(painted.chunk_count()));
+  SkinWeights::Chunk chunk = painted.chunk(brick);
+  for (int i = 0; i < 2; ++i) chunk[random() % chunk.size()] = random_influence(random, 1);
+  painted.set_chunk(brick, std::move(chunk));
+  layers.layers[1] = shared(painted_on(upper, *document.weights, painted));
+  document.weights = shared(composed(layers));
+  document.layers = shared(std::move(layers));
+}
+
 Result result_of(const Document& document, std::mt19937& random) {
   LabelVolume posed = *document.volume;
   for (int i = 0; i < 20; ++i) posed.voxels[random() % posed.voxels.size()] = static_cast<Label>(below(random, 3));
@@ -158,7 +183,7 @@ bool same_contents(const Document& a, const Document& b) {
     return std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(), [](const auto& x, const auto& y) { return equal(x, y); });
   };
   return a.clip == b.clip && a.frame == b.frame && all_equal(a.clips, b.clips) && all_equal(a.poses, b.poses) && equal(a.anchors, b.anchors) &&
-         equal(a.locks, b.locks);
+         equal(a.locks, b.locks) && equal(a.layers, b.layers);
 }
 
 Document small_document() {
@@ -178,13 +203,28 @@ Document small_document() {
   document.anchors = shared(Anchors{.pins = {"Lower", "gone \xff"}, .poles = {{"Lower", {1e-300, -0.0, 70}}}});
   document.locks = shared(WeightLocks{{"Lower", "gone \xff"}});
   document.visibility = shared(Visibility{.looks = {{2, {.visible = false, .opacity = 0.25f}}}});
+  add_layers(document, random);
   document.results.push_back(shared(result_of(document, random)));
   return document;
 }
 
 Document random_edit(const Document& document, std::mt19937& random) {
   Document next = document;
-  switch (below(random, 9)) {
+  switch (below(random, 10)) {
+    case 9: {
+      if (!document.layers) {
+        add_layers(next, random);
+        break;
+      }
+      WeightLayers layers = *document.layers;
+      WeightLayer layer = *layers.layers.back();
+      layer.opacity = unit(random);
+      layer.visible = below(random, 2) == 0;
+      layers.layers.back() = shared(std::move(layer));
+      next.weights = shared(recomposed(layers, *document.layers, *document.weights));
+      next.layers = shared(std::move(layers));
+      break;
+    }
     case 8: {
       Clip clip = document.clips.empty() ? Clip{.name = "New"} : *document.clips[0];
       clip.keys.bones["Lower"][below(random, 50)] = glm::angleAxis(unit(random), glm::dvec3(1, 0, 0));

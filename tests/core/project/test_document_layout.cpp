@@ -67,11 +67,12 @@ TEST_CASE("project: a document of the second layout opens, with an empty library
   now.poses.clear();
   now.anchors = nullptr;
   now.locks = nullptr;
+  now.layers = nullptr;
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  // The same, without the count of poses and the flags of anchors and locks at its end.
-  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 2);
+  // The same, without the count of poses and the flags of anchors, locks and layers at its end.
+  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 3);
   node.bytes[0] = 2;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -82,10 +83,11 @@ TEST_CASE("project: a document of the third layout opens, without pins and poles
   Document now = small_document();
   now.anchors = nullptr;
   now.locks = nullptr;
+  now.layers = nullptr;
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  node.bytes.resize(node.bytes.size() - 2);
+  node.bytes.resize(node.bytes.size() - 3);
   node.bytes[0] = 3;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -95,14 +97,41 @@ TEST_CASE("project: a document of the third layout opens, without pins and poles
 TEST_CASE("project: a document of the fifth layout opens, without locks of weights") {
   Document now = small_document();
   now.locks = nullptr;
+  now.layers = nullptr;
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  node.bytes.pop_back();
+  node.bytes.resize(node.bytes.size() - 2);
   node.bytes[0] = 5;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
   CHECK(warnings.empty());
+}
+
+TEST_CASE("project: a document of the sixth layout opens, without layers of weights") {
+  Document now = small_document();
+  now.layers = nullptr;
+  Chunks chunks;
+  DocumentWriter writer;
+  Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
+  node.bytes.pop_back();
+  node.bytes[0] = 6;
+  std::vector<std::string> warnings;
+  CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
+  CHECK(warnings.empty());
+}
+
+TEST_CASE("project: layers that belong to other weights are left out and said so, the weights stay") {
+  Document now = small_document();
+  REQUIRE(now.layers);
+  now.weights = std::make_shared<const SkinWeights>(std::vector<std::string>{"Other"}, TissueVoxels(*now.volume));
+  Chunks chunks;
+  DocumentWriter writer;
+  std::vector<std::string> warnings;
+  const Document back = read_document(writer.write(now, chunks, Packing::Quick), chunks, "new.limber", warnings);
+  CHECK(!back.layers);
+  CHECK(*back.weights == *now.weights);
+  CHECK(warnings == std::vector<std::string>{"the layers of weights do not belong to the weights and were left out"});
 }
 
 }  // namespace limber::test

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
+#include "core/skin/carry_weights.h"
 #include "core/skin/weight_layers.h"
 #include "tests/core/skin/painted.h"
 
@@ -123,4 +124,96 @@ TEST_CASE("weight layers: merging down changes nothing that comes out, sums stay
   hidden.visible = false;
   CHECK_THROWS_AS(merged_down(with(layers, 0, hidden), 1), Error);
   CHECK_THROWS_AS(merged_down(with(layers, 0, hidden), 0), Error);
+}
+
+TEST_CASE("weight layers: what comes out is made anew only where parts changed, and equals what is made from nothing") {
+  const Painted painted(two_bone_bar());
+  const WeightLayers before = painted_at(painted, with_new_layer(on(painted), "Upper"), 0, {6, 6, 40}, 1);
+  const SkinWeights came_out = composed(before);
+  CHECK(changed_bricks(before, before).empty());
+  CHECK(changed_bricks(before, on(painted)) == changed_bricks(on(painted), before));
+  const auto same = [&](const WeightLayers& after, const WeightLayers& was, const SkinWeights& made) {
+    const SkinWeights again = recomposed(after, was, made);
+    CHECK(again == composed(after));
+    std::int64_t own = 0;
+    for (std::int64_t b = 0; b < again.chunk_count(); ++b) own += again.shared_chunk(b) != made.shared_chunk(b);
+    CHECK(own <= std::ssize(changed_bricks(after, was)));
+    CHECK(own < again.chunk_count());
+  };
+  same(painted_at(painted, before, 1, {6, 6, 30}, 0), before, came_out);
+  WeightLayers swapped = before;
+  std::swap(swapped.layers[0], swapped.layers[1]);
+  CHECK(changed_bricks(swapped, before).empty());  // the other covers nothing
+  WeightLayer half = *before.layers[0];
+  half.opacity = 0.3;
+  same(with(before, 0, half), before, came_out);
+  half.visible = false;
+  const WeightLayers hidden = with(before, 0, half);
+  same(hidden, before, came_out);
+  for (std::int64_t b = 0; b < came_out.chunk_count(); ++b) CHECK(recomposed(hidden, before, came_out).shared_chunk(b) == painted.weights->shared_chunk(b));
+}
+
+TEST_CASE("weight layers: a brick is seen while it is painted as it comes out afterwards, below other layers too") {
+  const Painted painted(two_bone_bar());
+  WeightLayers layers = painted_at(painted, with_new_layer(on(painted), "Upper"), 1, {6, 6, 40}, 1);
+  WeightLayer upper = *layers.layers[1];
+  upper.opacity = 0.4;
+  layers = with(layers, 1, upper);
+  const SkinWeights before = canvas(layers, 0);
+  SkinWeights after = before;
+  for (std::int64_t b = 0; b < after.chunk_count(); ++b) {
+    SkinWeights::Chunk chunk = after.chunk(b);
+    for (std::size_t i = 0; i < chunk.size(); i += 3) chunk[i] = quantize({{0, 0.25}, {1, 0.75}});
+    after.set_chunk(b, chunk);
+  }
+  const SkinWeights all = composed(with(layers, 0, painted_on(*layers.layers[0], before, after)));
+  for (std::int64_t b = 0; b < all.chunk_count(); ++b) CHECK(composed_while_painted(layers, 0, b, before.chunk(b), after.chunk(b)) == all.chunk(b));
+}
+
+TEST_CASE("weight layers: a mask is painted like weights, to the last step of 1/65535") {
+  const Painted painted(two_bone_bar());
+  WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
+  const SkinWeights before = mask_as_weights(*layers.layers[0]);
+  // Nothing changed: nothing changes.
+  CHECK(mask_painted_on(layers, 0, before, before).mask == layers.layers[0]->mask);
+  SkinWeights after = before;
+  for (std::int64_t b = 0; b < after.chunk_count(); ++b) {
+    SkinWeights::Chunk chunk = after.chunk(b);
+    for (std::size_t i = 0; i < chunk.size(); ++i) chunk[i] = i % 2 ? rigid_influence(kNotCovering) : Influence{{kNotCovering, kCovering, 0, 0}, {static_cast<std::uint16_t>(kFullWeight - int(i)), static_cast<std::uint16_t>(i), 0, 0}};
+    after.set_chunk(b, chunk);
+  }
+  const SkinWeights shown = canvas(layers, 0);
+  const WeightLayer masked = mask_painted_on(layers, 0, before, after);
+  for (std::int64_t b = 0; b < after.chunk_count(); ++b)
+    for (std::size_t i = 0; i < after.chunk(b).size(); ++i) {
+      CHECK((*masked.mask[b])[i] == (i % 2 ? 0 : i));
+      CHECK(masked.weights.chunk(b)[i] == shown.chunk(b)[i]);
+    }
+  const SkinWeights out = composed(with(layers, 0, masked));
+  for (std::int64_t b = 0; b < out.chunk_count(); ++b) CHECK(composed_while_masked(layers, 0, b, after.chunk(b)) == out.chunk(b));
+  // Painted away wholly, a brick is no part of the layer any more.
+  SkinWeights nothing = after;
+  for (std::int64_t b = 0; b < nothing.chunk_count(); ++b) nothing.set_chunk(b, SkinWeights::Chunk(nothing.chunk(b).size(), rigid_influence(kNotCovering)));
+  for (const auto& mask : mask_painted_on(with(layers, 0, masked), 0, after, nothing).mask) CHECK(!mask);
+}
+
+TEST_CASE("weight layers: another base shows through where nothing covers, and no old brick of it is kept") {
+  const Painted painted(two_bone_bar());
+  const WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
+  const auto base = std::make_shared<const SkinWeights>(flooded(painted.stroke_body(), *painted.weights, std::vector<int>{1}, Flood::Set, 0.25).weights);
+  const WeightLayers over = over_base(layers, base);
+  CHECK(over.base == base);
+  const SkinWeights out = composed(over);
+  for (std::int64_t b = 0; b < out.chunk_count(); ++b) CHECK(composed_over_base(layers, b, base->chunk(b)) == out.chunk(b));
+  for (std::int64_t b = 0; b < base->chunk_count(); ++b)
+    CHECK(over.layers[0]->weights.shared_chunk(b) == (layers.layers[0]->mask[b] ? layers.layers[0]->weights.shared_chunk(b) : base->shared_chunk(b)));
+}
+
+TEST_CASE("weight layers: they follow the rig's bones as weights do") {
+  const Painted painted(two_bone_bar());
+  const WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
+  const auto next = carried(layers, {1, 0}, {"B", "A"});
+  REQUIRE(next);
+  CHECK(composed(*next) == *carried(composed(layers), {1, 0}, {"B", "A"}));
+  CHECK(!carried(layers, {-1, -1}, {"A"}));
 }
