@@ -30,6 +30,9 @@ inline constexpr char kSelect[] = "\uf245", kMove[] = "\uf047", kRotate[] = "\uf
 inline constexpr char kBrushAdd[] = "\uf067", kBrushSubtract[] = "\uf068", kBrushSet[] = "\uf192", kBrushMultiply[] = "\uf069", kBrushSmooth[] = "\uf043",
                       kBrushSharpen[] = "\uf0e7", kBrushAverage[] = "\uf24e", kBrushSmear[] = "\uf25a", kBrushCapsule[] = "\uf1cd", kGradient[] = "\uf1fe", kRegion[] = "\uf096";
 
+// Layers
+inline constexpr char kUp[] = "\uf062", kDown[] = "\uf063", kMergeDown[] = "\uf103", kMask[] = "\uf12d";
+
 // Time
 inline constexpr char kFirst[] = "\uf049", kBack[] = "\uf048", kPlay[] = "\uf04b", kPause[] = "\uf04c", kForward[] = "\uf051", kLast[] = "\uf050",
                       kLoop[] = "\uf079", kKey[] = "\uf084", kMarker[] = "\uf02e", kOnionSkin[] = "\uf24d";

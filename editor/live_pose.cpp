@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "editor/editor.h"
 #include "editor/posing.h"
+#include "editor/test_pose.h"
 
 namespace limber::editor {
 
@@ -157,13 +158,15 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
   posed_ = false;
   trouble_.clear();
   const Document& document = editor.document();
-  if (editor.workspace != Workspace::Pose || !document.volume || !document.tissues || !document.armature) return {};
+  const bool painting = editor.workspace == Workspace::Skin;
+  if (!shows_pose(editor) || !document.volume || !document.tissues) return {};
   if (!document.weights) {
     trouble_ = "No weights yet";
     return {};
   }
   PoseWish wish{{document.volume, document.tissues, document.weights}, {}, preview_blend(editor), nullptr};
-  wish.surface = surface_of(editor, wish.body);
+  // No weights are seen on a surface.
+  if (!painting) wish.surface = surface_of(editor, wish.body);
   const Pose pose = shown_pose(editor);
   if (!motions_of_weights(*document.weights, *document.armature, pose, wish.motions)) {
     trouble_ = "The weights belong to another rig";
@@ -185,6 +188,7 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
   if (fine_.wish == wish_ && fine_.map) shown_ = fine_.map;  // of the same pose as the surface
   else if (editor.now < since_ + kRest) editor.wake_at(since_ + kRest);
   else if (shown_) thorough_.ask(wish_);
+  if (painting) return {};
   return DenseWish{document.volume, document.tissues, document.armature, document.weights, pose, wish_.blend};
 }
 

@@ -17,6 +17,7 @@
 #include "core/volume/dicom.h"
 #include "core/volume/phantom.h"
 #include "core/volume/volume_io.h"
+#include "editor/layers.h"
 #include "editor/project.h"
 #include "editor/retargeting.h"
 #include "editor/rig_fitting.h"
@@ -111,6 +112,7 @@ Import read_rig(const Path& path, const Document& now) {
   return {[rig](Document& d) {
             d.armature = rig;
             d.weights.reset();
+            d.layers.reset();
             d.pose = pose_at_frame(d);
           },
           file.warnings, inside};
@@ -120,7 +122,7 @@ Import read_weights_file(const Path& path, const Document& now) {
   if (!now.volume || !now.armature) refuse("weights need a volume and a rig", path, now.volume ? "import the rig first" : "open the volume first");
   WeightsFile file = read_weights(path, *now.volume, TissueVoxels(*now.volume), *now.armature);
   auto weights = shared(std::move(file.weights));
-  return {[weights](Document& d) { d.weights = weights; }, file.warnings};
+  return {[weights](Document& d) { set_weights(d, weights); }, file.warnings};
 }
 
 Import read_pose_file(const Path& path, const Document& now) {

@@ -11,6 +11,8 @@
 #include "editor/editor.h"
 #include "editor/gizmo_painter.h"
 #include "editor/handling.h"
+#include "editor/layers.h"
+#include "editor/project.h"
 #include "editor/skin_display.h"
 
 namespace limber::editor {
@@ -36,6 +38,11 @@ struct Painting::Running {
   // What the stroke refers to.
   Document document;
   std::shared_ptr<const TissueVoxels> tissue;
+  EditedWeights edited;
+  // What comes out of the layers as the stroke goes on; the mask that it changes, where it paints one, and the bones of masks.
+  std::optional<SkinWeights> shown;
+  std::shared_ptr<const SkinWeights> mask;
+  Armature mask_bones;
   std::unique_ptr<Stroke> stroke;
   ViewPlace view;
   std::string label;
@@ -84,7 +91,7 @@ std::string why_not_paint(const Editor& editor) {
   if (!document.weights) return "There are no weights yet: compute them first";
   const auto bone = skin_bone(editor);
   if (!bone || weights_bone(*document.weights, document.armature->bones[*bone].name) < 0) return "The weights belong to another rig";
-  return "";
+  return why_not_paint_layer(editor);
 }
 
 std::string why_brush_reaches_nothing(const Editor& editor) {
@@ -167,8 +174,20 @@ StrokeSettings stroke_settings(const Editor& editor, BrushKind kind) {
 namespace {
 
 void show_stroke(Editor& editor, Painting::Running& running) {
-  if (running.stroke->take_dirty().empty()) return;
-  editor.views->preview_weights = std::make_shared<const SkinWeights>(running.stroke->weights());
+  const std::vector<int> dirty = running.stroke->take_dirty();
+  if (dirty.empty()) return;
+  if (const WeightLayers* layers = running.edited.layers.get()) {
+    for (const int brick : dirty) {
+      const SkinWeights::Chunk& is = running.stroke->chunk(brick);
+      const auto& layer = running.edited.layer;
+      running.shown->set_chunk(brick, running.mask ? composed_while_masked(*layers, *layer, brick, is)
+                                      : layer      ? composed_while_painted(*layers, *layer, brick, running.edited.weights->chunk(brick), is)
+                                                   : composed_over_base(*layers, brick, is));
+    }
+    editor.views->preview_weights = std::make_shared<const SkinWeights>(*running.shown);
+  } else {
+    editor.views->preview_weights = std::make_shared<const SkinWeights>(running.stroke->weights());
+  }
   editor.touch();
 }
 
@@ -202,12 +221,17 @@ void end_stroke(Editor& editor) {
   const bool empty = stroke.empty();
   const int lock = stroke.blocked_count() > 0 ? stroke.blocked_by() : -1;
   if (!empty) {
-    Document next = editor.document();
-    next.weights = std::make_shared<const SkinWeights>(stroke.finish());
-    editor.history.commit(running->label, std::move(next));
+    const SkinWeights after = stroke.finish();
+    if (running->mask) {
+      WeightLayers next = *running->edited.layers;
+      next.layers[*running->edited.layer] = std::make_shared<const WeightLayer>(mask_painted_on(next, *running->edited.layer, *running->mask, after));
+      commit_layers(editor, running->label, std::move(next));
+    } else {
+      commit_weights(editor, running->label, running->edited, std::make_shared<const SkinWeights>(after));
+    }
   }
   drop_stroke(editor);
-  if (empty && lock >= 0) editor.messages.toast_error(lock_message(*running->document.armature, lock), "Nothing else can take or give the weight here", "skin.unlock_all");
+  if (empty && lock >= 0 && !running->mask) editor.messages.toast_error(lock_message(*running->document.armature, lock), "Nothing else can take or give the weight here", "skin.unlock_all");
 }
 
 }  // namespace
@@ -215,6 +239,7 @@ void end_stroke(Editor& editor) {
 void begin_stroke(Editor& editor, BrushKind kind) {
   const ViewPlace* view = hovered_view(editor);
   if (!view || !why_not_paint(editor).empty()) return;
+  if (editor.skin->painting->mask && active_layer(editor) && kind == BrushKind::JointCapsule) return editor.messages.info("Paint", "A joint capsule paints bones: choose another brush for the mask");
   auto running = std::make_shared<Painting::Running>();
   running->document = editor.document();
   running->tissue = tissue_voxels(*editor.views, editor.document());
@@ -222,8 +247,21 @@ void begin_stroke(Editor& editor, BrushKind kind) {
   running->pixel = editor.input.pointer;
   const Document& document = running->document;
   const int bone = *skin_bone(editor);
+  running->edited = edited_weights(editor);
   running->label = std::string(name_of(kind)) + " " + document.armature->bones[bone].name;
-  running->stroke = std::make_unique<Stroke>(StrokeBody{*document.volume, *running->tissue, *document.tissues, *document.armature}, document.weights, stroke_settings(editor, kind));
+  StrokeSettings settings = stroke_settings(editor, kind);
+  std::shared_ptr<const SkinWeights> painted = running->edited.weights;
+  if (running->edited.layers) running->shown = *document.weights;
+  if (editor.skin->painting->mask && running->edited.layer) {
+    const WeightLayer& layer = *running->edited.layers->layers[*running->edited.layer];
+    running->label = std::string(name_of(kind)) + " mask of " + layer.name;
+    painted = running->mask = std::make_shared<const SkinWeights>(mask_as_weights(layer));
+    for (const std::string& name : painted->bones()) running->mask_bones.bones.push_back({.name = name, .tail = {0, 0, 1}});
+    settings.bones = {kCovering};
+    settings.locked.clear();
+    settings.rigid_bone_tissue = false;
+  }
+  running->stroke = std::make_unique<Stroke>(StrokeBody{*document.volume, *running->tissue, *document.tissues, running->mask ? running->mask_bones : *document.armature}, painted, settings);
   editor.skin->painting->running = running;
   paint_to(editor, editor.input.pointer);
   editor.drag = Drag{MouseButton::Left, [](Editor& e, const glm::vec2&) { paint_to(e, e.input.pointer); }, end_stroke, drop_stroke};

@@ -12,11 +12,14 @@
 
 #include "core/skin/stroke.h"
 #include "editor/painted_region.h"
+#include "core/skin/weight_layers.h"
 #include "editor/seen_from.h"
+#include "editor/test_pose.h"
 
 namespace limber::editor {
 
 struct Editor;
+struct FoundProblems;
 
 // Tissues that a brush may change.
 enum class PaintedTissue { All, Soft, Chosen, Visible };
@@ -48,6 +51,19 @@ struct Painting {
   Normalize normalize = Normalize::Unlocked;
 
   int dragged_point = -1;           // of the falloff's curve
+  // Of weights (editor/layers.h).
+  std::optional<std::size_t> layer;  // that is painted; none: the base
+  bool mask = false;                 // its mask is painted in place of its weights
+  struct {                           // what is painted on, and what it was made of
+    std::shared_ptr<const WeightLayers> of;
+    std::size_t layer = 0;
+    std::shared_ptr<const SkinWeights> weights;
+  } canvas;
+
+  TestPose test;
+  std::shared_ptr<const FoundProblems> problems;  // of editor/weight_problems.h; null: not looked for yet
+  int problem = -1;                               // the one that was gone to
+
   std::optional<BrushPlace> place;  // under the pointer, by the last frame
 
   // Of edits of the whole body (weight_editing.h)

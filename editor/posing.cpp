@@ -7,14 +7,20 @@
 #include "core/rig/joint_limits.h"
 #include "core/rig/mirror.h"
 #include "editor/handling.h"
+#include "editor/painting.h"
 #include "editor/project.h"
+#include "editor/skin_display.h"
+#include "editor/test_pose.h"
 #include "editor/timeline.h"
 
 namespace limber::editor {
 
 Pose pose_of(const Document& document) { return document.pose ? *document.pose : rest_pose(*document.armature); }
 
-Pose shown_pose(const Editor& editor) { return editor.views->preview_pose ? *editor.views->preview_pose : pose_of(editor.document()); }
+Pose shown_pose(const Editor& editor) {
+  if (editor.views->preview_pose) return *editor.views->preview_pose;
+  return editor.workspace == Workspace::Skin ? test_pose(editor) : pose_of(editor.document());
+}
 
 std::vector<int> chosen_bones(const Editor& editor) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
@@ -88,6 +94,8 @@ void commit_pose(Editor& editor, const std::string& label, Pose pose) { commit_p
 
 void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next) {
   drop_shown_pose(editor);
+  // What was posed stays in sight.
+  if (editor.workspace == Workspace::Skin) editor.skin->painting->test = {.posed = true};
   if (const Pose before = pose_of(next); pose != before) {
     if (editor.timeline->auto_key) key_changes(next, before, pose);
     next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));

@@ -49,11 +49,13 @@ Document with_volume(const Document& now, std::shared_ptr<const LabelVolume> vol
   note.clear();
   if (now.weights && !same_tissue) {
     next.weights.reset();
+    next.layers.reset();
     note = "The weights belonged to the old voxels and are gone";
   }
   if (now.armature && mirrored) {
     next.armature.reset();
     next.weights.reset();
+    next.layers.reset();
     next.pose.reset();
     note = "The rig stood in the old body and is gone";
   }

@@ -9,6 +9,7 @@
 #include "editor/editor.h"
 #include "editor/live_pose.h"
 #include "editor/posing.h"
+#include "editor/test_pose.h"
 
 namespace limber::editor {
 
@@ -193,7 +194,7 @@ void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<
     }
     if (document.armature && result->from_pose && result->from_pose->rotation.size() == document.armature->bones.size())
       scene.posed_from_rest = posed_from_rest(*document.armature, *result->from_pose);
-  } else if (editor.workspace == Workspace::Pose && document.armature) {
+  } else if (shows_pose(editor)) {
     scene.posed_from_rest = posed_from_rest(*document.armature, shown_pose(editor));
     scene.pose = editor.live->map();
     scene.surface = editor.live->surface();

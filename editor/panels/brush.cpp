@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The Skin workspace's brush: how it fades, how its dabs follow one another, what it reaches.
 #include <algorithm>
+#include <cstdio>
 
 #include "editor/fields.h"
 #include "editor/painting.h"
@@ -62,6 +63,23 @@ void edit_curve(Editor& editor, const Rect& rect, Painting& painting) {
   if (pressed.hovered && !pressed.held) operator_tooltip(editor, *find_operator(editor, "skin.falloff_own"), rect);
 }
 
+// How far the active bone is bent on trial; that another one is, with the way back.
+void draw_test_pose(Editor& editor, Column& column) {
+  const TestPose& test = editor.skin->painting->test;
+  if (why_not_bend(editor).empty()) {
+    double degrees = bend(editor);
+    bool committed = false;
+    if (number_field(editor, "Test pose", column.property("Test pose"), degrees, -TestPose::kMost, TestPose::kMost, "%+.0f", "\u00b0", true, committed) || committed) set_bend(editor, degrees);
+  }
+  if (test.degrees == 0 || bend(editor) != 0) return;
+  const Rect rect = column.property("");
+  char text[64];
+  std::snprintf(text, sizeof text, " bent by %+.0f\u00b0", test.degrees);
+  const float width = editor.look.px(70);
+  put_text(editor, editor.look.fonts.regular, editor.look.theme.text2, Rect{rect.low, {rect.high.x - width - editor.look.px(6), rect.high.y}}, test.bone + text);
+  operator_button(editor, "skin.unbend", {{rect.high.x - width, rect.low.y}, rect.high}, "Unbend");
+}
+
 }  // namespace
 
 void draw_brush_section(Editor& editor, Column& column) {
@@ -102,6 +120,7 @@ void draw_brush_section(Editor& editor, Column& column) {
   if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, normalize == 0 ? "skin.normalize_unlocked" : "skin.normalize_all"), room);
   pop_path(editor);
   checkbox(editor, "Below the bone", column.property("Only"), "Below the bone", painting.subtree);
+  draw_test_pose(editor, column);
   checkbox(editor, "Accumulate", column.property(""), "Accumulate", painting.accumulate);
   column.space(6);
   column.end_section();

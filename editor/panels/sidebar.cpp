@@ -39,7 +39,11 @@ void draw_sidebar(Editor& editor) {
       draw_running(editor, column);
       draw_resample(editor, column);
     }
-    if (editor.workspace == Workspace::Skin && editor.document().weights) draw_brush_section(editor, column);
+    if (editor.workspace == Workspace::Skin && editor.document().weights) {
+      draw_layers(editor, column);
+      draw_brush_section(editor, column);
+      draw_weight_problems(editor, column);
+    }
     if (editor.workspace == Workspace::Pose) {
       draw_pose_library(editor, column);
       draw_posed_bone(editor, column);

@@ -178,6 +178,11 @@ void put_options(Editor& editor, Header& header) {
     if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"})) header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
     header.line();
   }
+  if (editor.workspace == Workspace::Skin && editor.document().armature && !paints) {
+    header.action("skin.heat");
+    if (header.fits(150, {"skin.compute"})) header.plain("skin.compute");
+    header.line();
+  }
   if (paints) {
     Painting& painting = *editor.skin->painting;
     header.menu("Edit weights", "Weights");
@@ -192,6 +197,7 @@ void put_options(Editor& editor, Header& header) {
     if (header.fits(90, {"skin.along_tissue"})) header.toggle("skin.along_tissue");
     if (header.fits(140, {"skin.paint_all", "skin.paint_soft", "skin.paint_chosen", "skin.paint_visible"})) header.choice("Painted tissue", {"skin.paint_all", "skin.paint_soft", "skin.paint_chosen", "skin.paint_visible"});
     if (header.fits(180, {"skin.normalize_unlocked", "skin.normalize_all"})) header.choice("Normalize", {"skin.normalize_unlocked", "skin.normalize_all"});
+    if (header.fits(header.toggle_width(90), {"skin.posed"})) header.toggle("skin.posed");
     if (header.fits(header.toggle_width(110), {"edit.x_mirror"})) header.toggle("edit.x_mirror");
     if (header.fits(90, {"skin.contours"})) header.toggle("skin.contours");
     const auto kBodies = {"view.solid", "view.xray_display", "view.tissue"};

@@ -83,6 +83,7 @@ std::vector<Proof> proofs_of_work() {
 
       {"skin.geodesic", "key F3\n type \"geodesic\"\n key Return\n wait-job", weighted},
       {"skin.rigid", "click Edit/Weights/Rigid\n wait-job", weighted},
+      {"skin.compute", "click \"Edit/Weights/Compute weights...\"\n key Return\n wait-job", weighted},
       {"skin.drop_weights", "click \"Edit/Weights/Drop weights\"", [](Stage& s, const Seen& b) { return b.document.weights && !s.document().weights; }},
       {"skin.heat", "click Steps/Skin/Compute\n wait-job", weighted},
 

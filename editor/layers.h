@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Layers of weights: which one strokes and edits go to, and edits of the layers themselves. The document's weights are what
+// comes out of its layers; who changes one changes the other with it, by these functions alone.
+//
+// A body of many voxels is put together anew beside the editor; until that is done nothing has changed.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/project/document.h"
+#include "core/skin/weight_layers.h"
+
+namespace limber::editor {
+
+struct Editor;
+
+// Other weights in the document: below the layers where these are of the same body and bones, else in place of them too.
+void set_weights(Document& document, std::shared_ptr<const SkinWeights> weights);
+
+// What strokes and edits change.
+struct EditedWeights {
+  std::shared_ptr<const WeightLayers> layers;  // the document's; null: it has none
+  std::optional<std::size_t> layer;            // none: the base, or the weights themselves
+  std::shared_ptr<const SkinWeights> weights;  // as they are before the edit: what that layer's canvas shows
+};
+// The active layer's; the document has weights.
+EditedWeights edited_weights(Editor& editor);
+// The document after what is edited became `after`. Throws Error where its layers or weights were changed meanwhile.
+Document with_edited(const Document& now, const EditedWeights& edited, std::shared_ptr<const SkinWeights> after);
+// As one edit.
+void commit_weights(Editor& editor, const std::string& label, const EditedWeights& edited, std::shared_ptr<const SkinWeights> after);
+
+// The layer that is painted; none: the base, or there are no layers.
+std::optional<std::size_t> active_layer(const Editor& editor);
+void choose_layer(Editor& editor, std::optional<std::size_t> layer);
+// "The layer Elbow is hidden"; "" where nothing keeps it from being painted.
+std::string why_not_paint_layer(const Editor& editor);
+
+void show_layer(Editor& editor, std::size_t layer, bool visible);
+void rename_layer(Editor& editor, std::size_t layer, const std::string& name);
+void set_layer_opacity(Editor& editor, std::size_t layer, double opacity);
+
+// As one edit; no layers: the base alone stays.
+void commit_layers(Editor& editor, const std::string& label, WeightLayers next);
+
+}  // namespace limber::editor

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The pose in which weights are painted.
+#include "editor/test_pose.h"
+
+#include "editor/icons.h"
+#include "editor/operators/operator.h"
+#include "editor/painting.h"
+#include "editor/skin_display.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string needs_weights(const Editor& editor) {
+  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  return seen_weights(editor) ? "" : "Compute the weights first";
+}
+
+std::string needs_bend(const Editor& editor) {
+  const std::string why = needs_weights(editor);
+  return !why.empty() ? why : editor.skin->painting->test.degrees == 0 ? "No joint is bent on trial" : "";
+}
+
+}  // namespace
+
+std::vector<Operator> test_pose_operators() {
+  return {
+      {"skin.posed", "Posed", icon::kPose, "Test pose", "Shows the body in its pose while its weights are painted; once more at rest. Strokes land where the pointer is seen.",
+       [](Editor& e) { e.skin->painting->test.posed = !e.skin->painting->test.posed; }, needs_weights, [](const Editor& e) { return e.skin->painting->test.posed; }},
+      {"skin.bend_by_wheel", "Bend by wheel", "", "Test pose", "Bends the active bone on trial, by a step of the wheel.", [](Editor& e) { set_bend(e, bend(e) + TestPose::kStep * e.input.wheel); }, why_not_bend},
+      {"skin.bend_more", "Bend further", "", "Test pose", "Bends the active bone on trial; the pose of the project stays.", [](Editor& e) { set_bend(e, bend(e) + TestPose::kStep); }, why_not_bend},
+      {"skin.bend_less", "Bend less", "", "Test pose", "Bends the active bone on trial the other way.", [](Editor& e) { set_bend(e, bend(e) - TestPose::kStep); }, why_not_bend},
+      {"skin.unbend", "Unbend", "", "Test pose", "The joint that is bent on trial goes back.", clear_bend, needs_bend},
+  };
+}
+
+}  // namespace limber::editor
