@@ -31,7 +31,7 @@ bool of_rig(const Document& document) {
 
 // The bones and the tissue that a computation in part is about.
 struct Part {
-  EditedWeights edited;
+  LayerToEdit edited;
   std::vector<int> bones;
   EditScope scope{.rigid_bone_tissue = false};
   std::vector<std::uint8_t> labels;  // empty: all
@@ -45,7 +45,7 @@ std::vector<int> chosen_of(const Editor& editor) {
 }
 
 Part part_of(Editor& editor, const Computation& computation) {
-  Part part{.edited = edited_weights(editor)};
+  Part part{.edited = layer_to_edit(editor)};
   const Document& document = editor.document();
   if (computation.bones == Computation::Bones::Chosen) part.bones = chosen_of(editor);
   if (computation.bones == Computation::Bones::Unlocked)

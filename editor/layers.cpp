@@ -71,9 +71,9 @@ std::string why_not_paint_layer(const Editor& editor) {
   return "";
 }
 
-EditedWeights edited_weights(Editor& editor) {
+LayerToEdit layer_to_edit(Editor& editor) {
   const Document& document = editor.document();
-  EditedWeights edited{document.layers, active_layer(editor), document.weights};
+  LayerToEdit edited{document.layers, active_layer(editor), document.weights};
   if (!edited.layers) return edited;
   if (!edited.layer) {
     edited.weights = edited.layers->base;
@@ -85,7 +85,7 @@ EditedWeights edited_weights(Editor& editor) {
   return edited;
 }
 
-Document with_edited(const Document& now, const EditedWeights& edited, std::shared_ptr<const SkinWeights> after) {
+Document with_edited(const Document& now, const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after) {
   if (now.layers != edited.layers || (!now.layers && now.weights != edited.weights)) throw Error("the weights were changed meanwhile", "changing weights", "do it again");
   Document next = now;
   if (!edited.layers) {
@@ -100,7 +100,7 @@ Document with_edited(const Document& now, const EditedWeights& edited, std::shar
   return next;
 }
 
-void commit_weights(Editor& editor, const std::string& label, const EditedWeights& edited, std::shared_ptr<const SkinWeights> after) {
+void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after) {
   commit(editor, label, with_edited(editor.document(), edited, after));
   // The canvas shows it: the next stroke need not put it together.
   if (edited.layer) editor.skin->painting->canvas = {editor.document().layers, *edited.layer, std::move(after)};

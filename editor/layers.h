@@ -20,17 +20,17 @@ struct Editor;
 void set_weights(Document& document, std::shared_ptr<const SkinWeights> weights);
 
 // What strokes and edits change.
-struct EditedWeights {
+struct LayerToEdit {
   std::shared_ptr<const WeightLayers> layers;  // the document's; null: it has none
   std::optional<std::size_t> layer;            // none: the base, or the weights themselves
   std::shared_ptr<const SkinWeights> weights;  // as they are before the edit: what that layer's canvas shows
 };
 // The active layer's; the document has weights.
-EditedWeights edited_weights(Editor& editor);
+LayerToEdit layer_to_edit(Editor& editor);
 // The document after what is edited became `after`. Throws Error where its layers or weights were changed meanwhile.
-Document with_edited(const Document& now, const EditedWeights& edited, std::shared_ptr<const SkinWeights> after);
+Document with_edited(const Document& now, const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after);
 // As one edit.
-void commit_weights(Editor& editor, const std::string& label, const EditedWeights& edited, std::shared_ptr<const SkinWeights> after);
+void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after);
 
 // The layer that is painted; none: the base, or there are no layers.
 std::optional<std::size_t> active_layer(const Editor& editor);

@@ -38,7 +38,7 @@ struct Painting::Running {
   // What the stroke refers to.
   Document document;
   std::shared_ptr<const TissueVoxels> tissue;
-  EditedWeights edited;
+  LayerToEdit edited;
   // What comes out of the layers as the stroke goes on; the mask that it changes, where it paints one, and the bones of masks.
   std::optional<SkinWeights> shown;
   std::shared_ptr<const SkinWeights> mask;
@@ -247,7 +247,7 @@ void begin_stroke(Editor& editor, BrushKind kind) {
   running->pixel = editor.input.pointer;
   const Document& document = running->document;
   const int bone = *skin_bone(editor);
-  running->edited = edited_weights(editor);
+  running->edited = layer_to_edit(editor);
   running->label = std::string(name_of(kind)) + " " + document.armature->bones[bone].name;
   StrokeSettings settings = stroke_settings(editor, kind);
   std::shared_ptr<const SkinWeights> painted = running->edited.weights;

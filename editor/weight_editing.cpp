@@ -47,7 +47,8 @@ EditedWeights done(const WeightsToEdit& what, const WeightOperation& operation, 
 bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& operation, EditedWeights outcome) {
   const WeightEdit& edit = outcome.edit;
   const Document& now = editor.document();
-  if (now.weights != what.document.weights || now.volume != what.document.volume || now.armature != what.document.armature) {
+  const bool others = now.layers != what.layer.layers || (!now.layers && now.weights != what.layer.weights);
+  if (others || now.volume != what.document.volume || now.armature != what.document.armature) {
     editor.messages.warn(operation.label, "The weights were changed meanwhile: it was dropped");
     return false;
   }
@@ -59,9 +60,7 @@ bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& oper
     else editor.messages.info(operation.label, "All is so already");
     return false;
   }
-  Document next = now;
-  next.weights = std::make_shared<const SkinWeights>(edit.weights);
-  commit(editor, operation.label, std::move(next));
+  commit_weights(editor, operation.label, what.layer, std::make_shared<const SkinWeights>(edit.weights));
   const std::string changed = grouped(edit.changed) + (edit.changed == 1 ? " voxel" : " voxels");
   if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
   else if (!lock.empty()) editor.messages.warn(operation.label, changed + "; " + grouped(edit.blocked) + " kept: " + lock);
@@ -94,7 +93,9 @@ void perform(Editor& editor, const Fields& fields, const MakeWeightOperation& ma
 }  // namespace
 
 WeightsToEdit weights_to_edit(Editor& editor) {
-  return {editor.document(), tissue_voxels(*editor.views, editor.document()), stroke_settings(editor, BrushKind::Set)};
+  WeightsToEdit what{editor.document(), tissue_voxels(*editor.views, editor.document()), stroke_settings(editor, BrushKind::Set), layer_to_edit(editor)};
+  what.document.weights = what.layer.weights;
+  return what;
 }
 
 ActWith weight_act(const MakeWeightOperation& make) {

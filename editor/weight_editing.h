@@ -10,15 +10,17 @@
 #include <vector>
 
 #include "core/skin/weight_edits.h"
+#include "editor/layers.h"
 #include "editor/adjust.h"
 
 namespace limber::editor {
 
 // All that the work reads, so that it can go on beside the editor.
 struct WeightsToEdit {
-  Document document;
+  Document document;  // its weights are what is edited: those of the active layer, where there are any
   std::shared_ptr<const TissueVoxels> tissue;
   StrokeSettings settings;  // as of a brush: the painted bones, locks, filter
+  LayerToEdit layer;
 
   StrokeBody body() const { return {*document.volume, *tissue, *document.tissues, *document.armature}; }
 };

@@ -24,7 +24,7 @@ TEST_CASE("painting: kill -9 during a stroke loses that stroke alone; layers and
   create_project({.document = document}, project, writer);
   const std::string script = home / "script", picture = home / "second.png", folder = home.folder.path();
   // A layer, a stroke on it, and another one whose button is never let go.
-  std::ofstream(script) << "key Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-idle\nkey Shift+L\nwait-idle\n"
+  std::ofstream(script) << "key Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-idle\nkey Shift+Ctrl+L\nwait-idle\n"
                            "press \"3D view/view\"\nrelease\nwait-idle\n"
                            "key ]\nkey ]\npress \"3D view/view\"\nmove \"3D view/view\"\nshot "
                         << picture << "\nwait 1000000\n";

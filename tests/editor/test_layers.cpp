@@ -45,14 +45,14 @@ std::vector<Proof> proofs_of_layers() {
   const std::string at_middle = "move \"3D view/view\"\n wait-idle\n ", dab = "press \"3D view/view\"\n release\n wait-idle\n ";
   const auto first_is = [](auto test) { return [=](Stage& s, const Seen&) { return s.document().layers && test(*s.document().layers->layers[0]); }; };
   return {
-      {"skin.layer_add", "key Shift+L", layers_are({"Layer 1"}, "Add Layer 1"), Shows::Nothing, "", layer},
+      {"skin.layer_add", "key Shift+Ctrl+L", layers_are({"Layer 1"}, "Add Layer 1"), Shows::Nothing, "", layer},
       {"skin.layer_show", "click \"Edit/Layers/Show layer\"", first_is([](const WeightLayer& l) { return !l.visible; }), Shows::InBody, at_middle + dab},
       {"skin.layer_uncover", "click \"Edit/Layers/Clear mask\"", [](Stage& s, const Seen&) { return std::all_of(s.document().layers->layers[0]->mask.begin(), s.document().layers->layers[0]->mask.end(), [](const auto& mask) { return !mask; }); }, Shows::InBody,
        "click \"Edit/Layers/Show layer\"\n " + at_middle},
       {"skin.layer_cover", "click \"Edit/Layers/Cover everywhere\"", [](Stage& s, const Seen&) { return std::all_of(s.document().layers->layers[0]->mask.begin(), s.document().layers->layers[0]->mask.end(), [](const auto& mask) { return mask && *mask == WeightLayer::Mask(mask->size(), kFullWeight); }); }},
       {"skin.layer_mask", at_middle + "key Q", [](Stage& s, const Seen&) { return s.editor().skin->painting->mask; }},
       {"skin.layer_rename", "click \"Edit/Layers/Rename layer\"\n key Ctrl+A\n type \"Elbow\"\n key Return\n wait-idle", layers_are({"Elbow"}, "Rename Layer 1"), Shows::Nothing, "", [](Stage& s) { s.editor().skin->painting->mask = false; }},
-      {"skin.layer_down", "click \"Edit/Layers/Lower layer\"", layers_are({"Layer 1", "Elbow"}, "Lower Layer 1"), Shows::Nothing, at_middle + "key Shift+L\n"},
+      {"skin.layer_down", "click \"Edit/Layers/Lower layer\"", layers_are({"Layer 1", "Elbow"}, "Lower Layer 1"), Shows::Nothing, at_middle + "key Shift+Ctrl+L\n"},
       {"skin.layer_up", "click \"Edit/Layers/Raise layer\"", layers_are({"Elbow", "Layer 1"}, "Raise Layer 1")},
       {"skin.layer_remove", "click \"Edit/Layers/Remove layer\"", layers_are({"Elbow"}, "Remove Layer 1")},
       {"skin.layer_merge", "click \"Edit/Layers/Merge down\"", layers_are({}, "Merge Elbow down")},
@@ -75,7 +75,7 @@ TEST_CASE("layers: a stroke changes the active layer alone, comes out as painted
   PaintEditor test;
   const auto base = test.editor->document().weights;
   const int steps = test.steps();
-  test.play("move \"3D view/view\"\nkey Shift+L\nwait-idle");
+  test.play("move \"3D view/view\"\nkey Shift+Ctrl+L\nwait-idle");
   REQUIRE(test.editor->document().layers);
   CHECK(*test.editor->document().weights == *base);
   CHECK(active_layer(*test.editor) == 0);
@@ -106,7 +106,7 @@ TEST_CASE("layers: a stroke changes the active layer alone, comes out as painted
 
 TEST_CASE("layers: the base is painted below a layer, which keeps what it covers") {
   PaintEditor test;
-  test.play("move \"3D view/view\"\nkey Shift+L\nwait-idle");
+  test.play("move \"3D view/view\"\nkey Shift+Ctrl+L\nwait-idle");
   stroke(test, dab(test));
   const auto covered = layers(test).layers[0];
   const auto base = layers(test).base;
@@ -125,7 +125,7 @@ TEST_CASE("layers: the base is painted below a layer, which keeps what it covers
 
 TEST_CASE("layers: opacity, eye and mask are edits in the sidebar, and a hidden layer is not painted") {
   PaintEditor test;
-  test.play("key N\nmove \"3D view/view\"\nkey Shift+L\nwait-idle");
+  test.play("key N\nmove \"3D view/view\"\nkey Shift+Ctrl+L\nwait-idle");
   stroke(test, dab(test));
   const SkinWeights full = test.weights();
   test.play("double-click \"sidebar/sections/Layers/layer 0/opacity\"\nkey Ctrl+A\ntype \"40\"\nkey Return\nwait-idle");
@@ -160,7 +160,7 @@ TEST_CASE("layers: opacity, eye and mask are edits in the sidebar, and a hidden 
 
 TEST_CASE("layers: computed and imported weights come below the layers; those of other bones take their place") {
   PaintEditor test;
-  test.play("move \"3D view/view\"\nkey Shift+L\nwait-idle");
+  test.play("move \"3D view/view\"\nkey Shift+Ctrl+L\nwait-idle");
   stroke(test, dab(test));
   Document document = test.editor->document();
   SkinWeights rigid(document.weights->bones(), TissueVoxels(*document.volume));
@@ -175,7 +175,7 @@ TEST_CASE("layers: computed and imported weights come below the layers; those of
 
 TEST_CASE("layers: they are in the project when it is opened again, and go on being painted") {
   PaintEditor test;
-  test.play("move \"3D view/view\"\nkey Shift+L\nwait-idle");
+  test.play("move \"3D view/view\"\nkey Shift+Ctrl+L\nwait-idle");
   stroke(test, dab(test));
   const TemporaryFolder folder;
   DocumentWriter writer;
