@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kList[] = "problems";
 constexpr int kMostRows = 8;  // seen at once
-constexpr float kRow = 24, kButton = 62;
+constexpr float kRow = 24, kButton = 62, kCount = 36;
 
 void draw_kind(Editor& editor, Column& column, WeightProblem::Kind kind, std::size_t count) {
   const Look& look = editor.look;
@@ -24,17 +24,28 @@ void draw_kind(Editor& editor, Column& column, WeightProblem::Kind kind, std::si
   put_text(editor, look.fonts.small, look.theme.text2, Rect{{rect.high.x - look.px(50), rect.low.y}, {rect.high.x - look.px(10), rect.high.y}}, std::to_string(count), Align::Right);
 }
 
+// "Humerus, Forearm": the heading over the row says what is wrong with them, the tip says all.
+std::string bones_of(const WeightProblem& problem, const Armature& armature) {
+  std::string names;
+  for (const int bone : {problem.bone, problem.other})
+    if (bone >= 0) names += (names.empty() ? "" : ", ") + armature.bones[bone].name;
+  return names;
+}
+
 void draw_problem(Editor& editor, Column& column, const FoundProblems& found, int index) {
   const Look& look = editor.look;
   Rect rect;
   const bool chosen = editor.skin->painting->problem == index, repaired = found.repaired[static_cast<std::size_t>(index)];
   if (!column.list_row(rect, index, chosen, kList)) return;
   const PathScope path(editor, "problem " + std::to_string(index));
-  const std::string words = describe(found.problems[static_cast<std::size_t>(index)], *found.armature);
+  const WeightProblem& problem = found.problems[static_cast<std::size_t>(index)];
+  const std::string words = describe(problem, *found.armature);
   const Rect icon{{rect.low.x + look.px(8), rect.low.y}, {rect.low.x + look.px(26), rect.high.y}}, name{{rect.low.x, rect.low.y}, {rect.high.x - look.px(kButton + 14), rect.high.y}};
   const Pressed pressed = press_area(editor, "name", name);
   put_icon(look.fonts.regular, repaired ? look.theme.ok : look.theme.warn, icon, repaired ? icon::kOk : icon::kWarning);
-  put_text(editor, look.fonts.regular, repaired ? look.theme.text2 : look.theme.text, Rect{{icon.high.x + look.px(4), name.low.y}, name.high}, words);
+  const Rect count{{icon.high.x, rect.low.y}, {icon.high.x + look.px(kCount), rect.high.y}};
+  put_text(editor, look.fonts.small, look.theme.text2, count, std::to_string(problem.voxels.size()), Align::Right);
+  put_text(editor, look.fonts.regular, repaired ? look.theme.text2 : look.theme.text, Rect{{count.high.x + look.px(6), name.low.y}, name.high}, bones_of(problem, *found.armature));
   if (pressed.hovered) tooltip(editor, name, words, "Click to go there.");
   const Rect press{{rect.high.x - look.px(kButton + 8), rect.low.y + look.px(2)}, {rect.high.x - look.px(8), rect.high.y - look.px(2)}};
   if (!repaired && button(editor, "Repair", press, {"", "Repair"})) {

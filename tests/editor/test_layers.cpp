@@ -46,16 +46,16 @@ std::vector<Proof> proofs_of_layers() {
   const auto first_is = [](auto test) { return [=](Stage& s, const Seen&) { return s.document().layers && test(*s.document().layers->layers[0]); }; };
   return {
       {"skin.layer_add", "key Shift+Ctrl+L", layers_are({"Layer 1"}, "Add Layer 1"), Shows::Nothing, "", layer},
-      {"skin.layer_show", "click \"Edit/Layers/Show layer\"", first_is([](const WeightLayer& l) { return !l.visible; }), Shows::InBody, at_middle + dab},
-      {"skin.layer_uncover", "click \"Edit/Layers/Clear mask\"", [](Stage& s, const Seen&) { return std::all_of(s.document().layers->layers[0]->mask.begin(), s.document().layers->layers[0]->mask.end(), [](const auto& mask) { return !mask; }); }, Shows::InBody,
-       "click \"Edit/Layers/Show layer\"\n " + at_middle},
-      {"skin.layer_cover", "click \"Edit/Layers/Cover everywhere\"", [](Stage& s, const Seen&) { return std::all_of(s.document().layers->layers[0]->mask.begin(), s.document().layers->layers[0]->mask.end(), [](const auto& mask) { return mask && *mask == WeightLayer::Mask(mask->size(), kFullWeight); }); }},
+      {"skin.layer_show", "click \"Edit weights/Layers/Show layer\"", first_is([](const WeightLayer& l) { return !l.visible; }), Shows::InBody, at_middle + dab},
+      {"skin.layer_uncover", "click \"Edit weights/Layers/Clear mask\"", [](Stage& s, const Seen&) { return std::all_of(s.document().layers->layers[0]->mask.begin(), s.document().layers->layers[0]->mask.end(), [](const auto& mask) { return !mask; }); }, Shows::InBody,
+       "click \"Edit weights/Layers/Show layer\"\n " + at_middle},
+      {"skin.layer_cover", "click \"Edit weights/Layers/Cover everywhere\"", [](Stage& s, const Seen&) { return std::all_of(s.document().layers->layers[0]->mask.begin(), s.document().layers->layers[0]->mask.end(), [](const auto& mask) { return mask && *mask == WeightLayer::Mask(mask->size(), kFullWeight); }); }},
       {"skin.layer_mask", at_middle + "key Q", [](Stage& s, const Seen&) { return s.editor().skin->painting->mask; }},
-      {"skin.layer_rename", "click \"Edit/Layers/Rename layer\"\n key Ctrl+A\n type \"Elbow\"\n key Return\n wait-idle", layers_are({"Elbow"}, "Rename Layer 1"), Shows::Nothing, "", [](Stage& s) { s.editor().skin->painting->mask = false; }},
-      {"skin.layer_down", "click \"Edit/Layers/Lower layer\"", layers_are({"Layer 1", "Elbow"}, "Lower Layer 1"), Shows::Nothing, at_middle + "key Shift+Ctrl+L\n"},
-      {"skin.layer_up", "click \"Edit/Layers/Raise layer\"", layers_are({"Elbow", "Layer 1"}, "Raise Layer 1")},
-      {"skin.layer_remove", "click \"Edit/Layers/Remove layer\"", layers_are({"Elbow"}, "Remove Layer 1")},
-      {"skin.layer_merge", "click \"Edit/Layers/Merge down\"", layers_are({}, "Merge Elbow down")},
+      {"skin.layer_rename", "click \"Edit weights/Layers/Rename layer\"\n key Ctrl+A\n type \"Elbow\"\n key Return\n wait-idle", layers_are({"Elbow"}, "Rename Layer 1"), Shows::Nothing, "", [](Stage& s) { s.editor().skin->painting->mask = false; }},
+      {"skin.layer_down", "click \"Edit weights/Layers/Lower layer\"", layers_are({"Layer 1", "Elbow"}, "Lower Layer 1"), Shows::Nothing, at_middle + "key Shift+Ctrl+L\n"},
+      {"skin.layer_up", "click \"Edit weights/Layers/Raise layer\"", layers_are({"Elbow", "Layer 1"}, "Raise Layer 1")},
+      {"skin.layer_remove", "click \"Edit weights/Layers/Remove layer\"", layers_are({"Elbow"}, "Remove Layer 1")},
+      {"skin.layer_merge", "click \"Edit weights/Layers/Merge down\"", layers_are({}, "Merge Elbow down")},
   };
 }
 

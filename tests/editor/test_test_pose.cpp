@@ -35,9 +35,9 @@ glm::dvec3 posed(const PaintEditor& test, const glm::dvec3& rest) { return posed
 std::vector<Proof> proofs_of_test_poses() {
   return {
       {"skin.posed", "key Tab\n wait-idle", [](Stage& s, const Seen&) { return s.editor().skin->painting->test.posed && s.editor().views->scene.pose; }, Shows::InBody, "", weigh},
-      {"skin.bend_more", "click \"Edit/Test pose/Bend further\"\n wait-idle", bent(5), Shows::InBody},
-      {"skin.unbend", "click \"Edit/Test pose/Unbend\"\n wait-idle", bent(0), Shows::InBody},
-      {"skin.bend_less", "click \"Edit/Test pose/Bend less\"\n wait-idle", bent(-5)},
+      {"skin.bend_more", "click \"Edit weights/Test pose/Bend further\"\n wait-idle", bent(5), Shows::InBody},
+      {"skin.unbend", "click \"Edit weights/Test pose/Unbend\"\n wait-idle", bent(0), Shows::InBody},
+      {"skin.bend_less", "click \"Edit weights/Test pose/Bend less\"\n wait-idle", bent(-5)},
       {"skin.bend_by_wheel", "move \"3D view/view\"\n key-down Shift\n key-down Ctrl\n wheel \"3D view/view\" 3\n key-up Ctrl\n key-up Shift\n wait-idle", bent(10)},
   };
 }

@@ -38,10 +38,10 @@ int at(Stage& s) { return s.editor().skin->painting->problem; }
 
 std::vector<Proof> proofs_of_weight_problems() {
   return {
-      {"skin.find_problems", "click \"Edit/Problems/Find problems\"\n wait-job\n wait-idle", [](Stage& s, const Seen&) { return s.editor().skin->painting->problems != nullptr; }, Shows::Nothing, "", weigh},
+      {"skin.find_problems", "click \"Edit weights/Problems/Find problems\"\n wait-job\n wait-idle", [](Stage& s, const Seen&) { return s.editor().skin->painting->problems != nullptr; }, Shows::Nothing, "", weigh},
       {"skin.next_problem", "key J\n wait-idle", [](Stage& s, const Seen&) { return at(s) == 0; }},
       {"skin.previous_problem", "key Shift+J\n wait-idle", [](Stage& s, const Seen&) { return at(s) == static_cast<int>(s.editor().skin->painting->problems->problems.size()) - 1; }},
-      {"skin.repair_problem", "click \"Edit/Problems/Repair problem\"\n wait-job\n wait-idle", [](Stage& s, const Seen& b) { return static_cast<int>(s.editor().history.position()) == b.position + 1; }, Shows::Nothing, "move \"3D view/view\"\n key J\n wait-idle"},
+      {"skin.repair_problem", "click \"Edit weights/Problems/Repair problem\"\n wait-job\n wait-idle", [](Stage& s, const Seen& b) { return static_cast<int>(s.editor().history.position()) == b.position + 1; }, Shows::Nothing, "move \"3D view/view\"\n key J\n wait-idle"},
   };
 }
 

@@ -12,6 +12,7 @@ namespace limber::test {
 Document edit_script_start() {
   Document document = small_document();
   document.weights = nullptr;
+  document.layers = nullptr;
   document.results.clear();
   // A body of weights that is not small, so that a write takes its time.
   const Document large = large_document(1);
