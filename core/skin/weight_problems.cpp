@@ -17,7 +17,6 @@ namespace {
 using Kind = WeightProblem::Kind;
 constexpr int kMostPasses = 40;
 constexpr int kAround = 3;
-constexpr std::int64_t kBricksAtOnce = 16;
 
 // Tissue voxels by place, with their neighbours through faces.
 class Body {
