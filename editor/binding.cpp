@@ -150,7 +150,7 @@ void ask_computation(Editor& editor) {
     const std::string what = computation.bones == Computation::Bones::Chosen ? "Only the chosen bones; the others share the rest as they did." : computation.bones == Computation::Bones::Unlocked ? "All bones but the locked ones." : "All bones, in that part of the body alone.";
     return what;
   };
-  editor.open_dialog(make_form({"Compute weights", "Says how tissue follows the bones. What is left out stays as it was painted.", "Compute",
+  editor.open_dialog(make_form({"Compute weights", "What is left out stays as it was. Numbers are stiffness: the higher, the narrower a tissue blends.", "Compute",
                                 {choice_of("Method", "Heat is the smoothest, geodesic is quicker, rigid gives each voxel to one bone.", {"Heat", "Geodesic", "Rigid"}),
                                  choice_of("Bones", "Whose weights are computed anew.", {"All", "Chosen", "Unlocked"}),
                                  choice_of("Where", "In which part of the body: in the tissues chosen in the list, or where the chosen bones have most of the weight.", {"Everywhere", "Chosen tissue", "Chosen bones"}),
