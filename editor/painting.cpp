@@ -267,6 +267,11 @@ void begin_stroke(Editor& editor, BrushKind kind) {
   editor.drag = Drag{MouseButton::Left, [](Editor& e, const glm::vec2&) { paint_to(e, e.input.pointer); }, end_stroke, drop_stroke};
 }
 
+int dabs_of_stroke(const Editor& editor) {
+  const auto& running = editor.skin->painting->running;
+  return running ? running->stroke->dab_count() : 0;
+}
+
 void follow_brush(Editor& editor) {
   Painting& painting = *editor.skin->painting;
   editor.skin->ring = 0;

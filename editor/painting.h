@@ -89,6 +89,8 @@ std::string why_not_paint(const Editor& editor);
 std::string why_brush_reaches_nothing(const Editor& editor);
 // Paints with that brush from the pointer on, until the button is let go.
 void begin_stroke(Editor& editor, BrushKind kind);
+// Of the stroke that is being painted; 0 where none is.
+int dabs_of_stroke(const Editor& editor);
 // Once a frame.
 void follow_brush(Editor& editor);
 // Over a view: the ring of the brush, and of the one that mirrors it.

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -32,12 +33,12 @@ class Stroke::Work {
   void dab(const glm::dvec3& centre, double pressure);
   const SkinWeights::Chunk& chunk(std::int64_t brick) const {
     const int slot = slot_of_[brick];
-    return slot < 0 || bricks_[slot].now.empty() ? weights_->chunk(brick) : bricks_[slot].now;
+    return slot < 0 ? weights_->chunk(brick) : now_of(bricks_[slot]);
   }
   const SkinWeights& original() const { return *weights_; }
   std::vector<int> take_dirty();
   bool empty() const;
-  SkinWeights weights() const;
+  const SkinWeights& weights();
   SkinWeights finish();
   std::int64_t memory_bytes() const;
 
@@ -48,10 +49,12 @@ class Stroke::Work {
   // A brick that the stroke came to.
   struct Brick {
     int brick;
-    SkinWeights::Chunk now;  // empty until something changes
+    SkinWeights::Chunk now;  // as it is now, where shown_ has it as it was; else empty
+    int differing = 0;       // voxels that are not as they were at first
     // #chunk: the most any dab has covered each voxel so far, in 1/65535, for either side; empty where dabs accumulate.
     std::array<std::vector<std::uint16_t>, 2> cover;
     bool dirty = false;
+    bool shown = false;  // shown_ has it
     std::vector<std::uint64_t> blocked;  // a bit per voxel that a lock kept from changing; empty until there is one
   };
   // What is painted on one side of the body.
@@ -74,8 +77,12 @@ class Stroke::Work {
   Side side_of(std::vector<int> bones) const;
   void find_nearby(const Reached& reached);
   void dab_side(int side, const glm::dvec3& centre, double strength);
+  const SkinWeights::Chunk& now_of(const Brick& brick) const {
+    return !brick.now.empty() ? brick.now : brick.shown ? shown_.chunk(brick.brick) : weights_->chunk(brick.brick);
+  }
   void touch(const Reached& reached, int plane);
   void paint_plainly(const Reached& reached, const Reached::Brick& part, int side, float strength, Blocked& blocked);
+  void put(Brick& brick, const SkinWeights::Chunk& original, int at, const Influence& made) const;
   void paint_brick(const Reached& reached, const Reached::Brick& part, int side, float strength, Influence* next, Blocked& blocked);
   void apply(const Side& side, Influence& influence, const Target* target, const glm::ivec3& voxel, double cover, Blocked& blocked) const;
   bool looks_around() const { return brush_.kind >= BrushKind::Smooth && brush_.kind <= BrushKind::Smear; }
@@ -103,6 +110,7 @@ class Stroke::Work {
 
   std::vector<std::int32_t> slot_of_;  // #bricks, -1: not touched
   std::vector<Brick> bricks_;
+  SkinWeights shown_;                  // what weights() gave last
   std::vector<Influence> next_;        // of a dab that looks around and accumulates
   std::optional<glm::dvec3> last_point_, last_dab_;
   double last_pressure_ = 1, since_dab_ = 0;
@@ -252,7 +260,7 @@ void Stroke::Work::touch(const Reached& reached, int plane) {
     std::int32_t& slot = slot_of_[part.brick];
     if (slot < 0) {
       slot = static_cast<std::int32_t>(bricks_.size());
-      bricks_.push_back({part.brick, {}, {}, false, {}});
+      bricks_.push_back({.brick = part.brick});
     }
     auto& cover = bricks_[slot].cover[plane];
     if (!accumulate_ && cover.empty()) cover.assign(weights_->chunk(part.brick).size(), 0);
@@ -286,14 +294,19 @@ void Stroke::Work::dab_side(int side, const glm::dvec3& centre, double strength)
     for (const Reached::Brick& part : reached.bricks) {
       Brick& brick = bricks_[slot_of_[part.brick]];
       for (int i = part.begin; i < part.end; ++i) {
-        if (next_[i] == chunk(part.brick)[reached.at[i]]) continue;
-        if (brick.now.empty()) brick.now = weights_->chunk(part.brick);
-        brick.now[reached.at[i]] = next_[i];
-        brick.dirty = true;
+        if (next_[i] != chunk(part.brick)[reached.at[i]]) put(brick, weights_->chunk(part.brick), reached.at[i], next_[i]);
       }
     }
   for (const Blocked& some : blocked_in)
     for (const auto& [bone, times] : some.by) blocked[bone] += times;
+}
+
+void Stroke::Work::put(Brick& brick, const SkinWeights::Chunk& original, int at, const Influence& made) const {
+  if (brick.now.empty()) brick.now = now_of(brick);
+  Influence& now = brick.now[at];
+  brick.differing += int{made != original[at]} - int{now != original[at]};
+  now = made;
+  brick.dirty = true;
 }
 
 // By far the most frequent brushes: one bone, and nothing to look at but the voxel itself. Covers are found for the whole brick
@@ -322,7 +335,7 @@ void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& p
       if (covered <= most[at]) continue;
       most[at] = static_cast<std::uint16_t>(covered);
     }
-    const Influence& now = brick.now.empty() ? original[at] : brick.now[at];
+    const Influence now = now_of(brick)[at];
     Influence made = accumulate_ ? now : original[at];
     int before = 0;
     for (int k = 0; k < 4; ++k) before += made.bone[k] == bone ? made.weight[k] : 0;
@@ -337,10 +350,7 @@ void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& p
     // By halves, as they were written: the whole would have to wait for both.
     const auto bones = std::bit_cast<std::uint64_t>(made.bone), weights = std::bit_cast<std::uint64_t>(made.weight);
     if (bones == std::bit_cast<std::uint64_t>(now.bone) && weights == std::bit_cast<std::uint64_t>(now.weight)) continue;
-    if (brick.now.empty()) brick.now = original;
-    brick.now[at].bone = std::bit_cast<std::array<std::uint16_t, 4>>(bones);
-    brick.now[at].weight = std::bit_cast<std::array<std::uint16_t, 4>>(weights);
-    brick.dirty = true;
+    put(brick, original, at, {std::bit_cast<std::array<std::uint16_t, 4>>(bones), std::bit_cast<std::array<std::uint16_t, 4>>(weights)});
   }
 }
 
@@ -357,7 +367,7 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
   Target target, other_target;
   for (int i = part.begin; i < part.end; ++i) {
     const int at = reached.at[i], cell = reached.cell[i];
-    const Influence& now = brick.now.empty() ? original[at] : brick.now[at];
+    const Influence now = now_of(brick)[at];
     if (next) next[i] = now;
     blocked_here.brick = &brick;
     blocked_here.at = at;
@@ -392,9 +402,7 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
     if (next) {
       next[i] = made;
     } else if (made != now) {
-      if (brick.now.empty()) brick.now = original;
-      brick.now[at] = made;
-      brick.dirty = true;
+      put(brick, original, at, made);
     }
   }
 }
@@ -531,30 +539,36 @@ std::vector<int> Stroke::Work::take_dirty() {
 }
 
 bool Stroke::Work::empty() const {
-  return std::all_of(bricks_.begin(), bricks_.end(), [&](const Brick& b) { return b.now.empty() || b.now == weights_->chunk(b.brick); });
+  return std::all_of(bricks_.begin(), bricks_.end(), [&](const Brick& brick) { return brick.differing == 0; });
 }
 
-SkinWeights Stroke::Work::weights() const {
-  SkinWeights all = *weights_;
-  for (const Brick& brick : bricks_)
-    if (!brick.now.empty() && brick.now != weights_->chunk(brick.brick)) all.set_chunk(brick.brick, brick.now);
-  return all;
+const SkinWeights& Stroke::Work::weights() {
+  if (shown_.chunk_count() == 0) shown_ = *weights_;
+  for (Brick& brick : bricks_) {
+    if (brick.now.empty()) continue;
+    brick.shown = brick.differing != 0;
+    if (brick.shown) shown_.set_chunk(brick.brick, std::move(brick.now));
+    else shown_.share_chunk(brick.brick, *weights_);
+    brick.now = {};
+  }
+  return shown_;
 }
 
 SkinWeights Stroke::Work::finish() {
-  SkinWeights all = *weights_;
-  for (Brick& brick : bricks_)
-    if (!brick.now.empty() && brick.now != weights_->chunk(brick.brick)) all.set_chunk(brick.brick, std::move(brick.now));
+  weights();
   bricks_.clear();
   slot_of_.assign(slot_of_.size(), -1);
-  return all;
+  return std::exchange(shown_, SkinWeights());
 }
 
 std::int64_t Stroke::Work::memory_bytes() const {
   std::int64_t bytes = reach_.memory_bytes() + std::ssize(slot_of_) * 4 + static_cast<std::int64_t>(bricks_.capacity() * sizeof(Brick)) +
                        static_cast<std::int64_t>(next_.capacity() * sizeof(Influence));
-  for (const Brick& brick : bricks_)
-    bytes += static_cast<std::int64_t>(brick.now.capacity() * sizeof(Influence) + 2 * (brick.cover[0].capacity() + brick.cover[1].capacity()) + 8 * brick.blocked.capacity());
+  bytes += shown_.chunk_count() * static_cast<std::int64_t>(sizeof(std::shared_ptr<const SkinWeights::Chunk>));
+  for (const Brick& brick : bricks_) {
+    bytes += static_cast<std::int64_t>((brick.now.capacity() + (brick.shown ? shown_.chunk(brick.brick).capacity() : 0)) * sizeof(Influence));
+    bytes += static_cast<std::int64_t>(2 * (brick.cover[0].capacity() + brick.cover[1].capacity()) + 8 * brick.blocked.capacity());
+  }
   return bytes;
 }
 

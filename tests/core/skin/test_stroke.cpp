@@ -355,6 +355,37 @@ TEST_CASE("stroke: it says which bricks changed, when nothing did, and which loc
   CHECK_THROWS_AS(Stroke(painted.stroke_body(), painted.weights, settings), std::logic_error);
 }
 
+TEST_CASE("stroke: weights handed on share the bricks that did not change since, and what was handed on stays as it was") {
+  const Phantom phantom = make_body_phantom(8);
+  const Painted painted({phantom.volume, phantom.tissues, phantom.armature});
+  for (const bool accumulate : {false, true}) {
+    StrokeSettings settings = brush_of(BrushKind::Add, 6 * 8.0, 2);
+    settings.brush.accumulate = accumulate;
+    Stroke stroke(painted.stroke_body(), painted.weights, settings);
+    const Bone& bone = phantom.armature.bones[2];
+    SkinWeights last = stroke.weights();
+    std::size_t all = 0, most = 0;
+    for (int i = 0; i < 12; ++i) {
+      stroke.dab(glm::mix(bone.head, bone.tail, i / 11.0), 0.5);
+      const std::vector<int> dirty = stroke.take_dirty();
+      std::vector<SkinWeights::Chunk> before;
+      for (std::int64_t b = 0; b < last.chunk_count(); ++b) before.push_back(last.chunk(b));
+      const SkinWeights next = stroke.weights();
+      for (std::int64_t b = 0; b < next.chunk_count(); ++b) {
+        const bool is_dirty = std::binary_search(dirty.begin(), dirty.end(), static_cast<int>(b));
+        CHECK((next.shared_chunk(b) != last.shared_chunk(b)) == is_dirty);
+        CHECK(next.chunk(b) == stroke.chunk(b));
+        CHECK(last.chunk(b) == before[b]);
+      }
+      all += dirty.size();
+      most = std::max(most, dirty.size());
+      last = next;
+    }
+    CHECK(most < all / 2);
+    CHECK(stroke.finish() == last);
+  }
+}
+
 TEST_CASE("stroke: on a whole body one of 200 dabs takes less than 5 MB, and leaves all bricks but its own shared") {
   const Phantom phantom = make_body_phantom(8);
   Painted painted({phantom.volume, phantom.tissues, phantom.armature});

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// stroke_frames
+// How long the frames of the editor take while weights are painted: the real editor in a window of 640x480 that is a picture
+// in memory, on the paper's arm where LIMBER_SHARED names it, else on the procedural one. The mouse draws a stroke of 200
+// dabs along the middle of the body and back, as fast as makes 60 dabs a second; then the frames go on for a second, in which
+// what the stroke left behind is done. Frames are drawn 60 a second or as fast as they can; events that came meanwhile wait.
+// At rest and on the posed body, with a radius of 16 and of 32 voxels, then undone. Prints as JSON for each the dabs, the
+// frames of the stroke and after it, and in milliseconds the worst and the 95th percentile of a whole frame (with the window
+// painted and OpenGL done) and of what the interface's own thread computed in it; `over` counts frames longer than 1/30 s.
+//
+//   stroke_frames [LOG]    the parts of every frame as frame_log.h tells them, into files LOG.NAME.txt
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/bone_parts.h"
+#include "core/skin/geodesic.h"
+#include "core/volume/phantom.h"
+#include "core/volume/volume_io.h"
+#include "editor/frame_log.h"
+#include "editor/offscreen.h"
+#include "editor/painting.h"
+#include "editor/project.h"
+#include "editor/recording.h"
+#include "editor/seen_from.h"
+#include "editor/skin_display.h"
+#include "editor/timeline.h"
+
+namespace {
+
+using namespace limber;
+using namespace limber::editor;
+
+constexpr double kFrame = 1.0 / 60, kLongest = 1.0 / 30, kAfterwards = 1;  // s
+constexpr int kDabs = 200;
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+Document arm_document() {
+  LabelVolume volume;
+  TissueTable tissues;
+  Armature armature;
+  const char* shared = std::getenv("LIMBER_SHARED");
+  const Path folder = Path(shared ? shared : "") / "data/bender";
+  if (shared && std::filesystem::exists(folder / "man-arm-2mm.mha")) {
+    VolumeFile file = read_volume(folder / "man-arm-2mm.mha");
+    volume = std::move(file.volume), tissues = std::move(file.tissues);
+    armature = read_armature(folder / "man-arm-2mm-armature.vtk");
+  } else {
+    std::fprintf(stderr, "without LIMBER_SHARED: the procedural arm\n");
+    Phantom phantom = make_arm_phantom(2);
+    volume = std::move(phantom.volume), tissues = std::move(phantom.tissues), armature = std::move(phantom.armature);
+  }
+  const TissueVoxels tissue(volume);
+  Document document;
+  document.weights = std::make_shared<const SkinWeights>(bind_geodesic(volume, tissue, armature, split_bones(volume, tissue, tissues, armature)));
+  document.volume = std::make_shared<const LabelVolume>(std::move(volume));
+  document.tissues = std::make_shared<const TissueTable>(std::move(tissues));
+  document.volume_type = std::make_shared<FileType>();
+  document.armature = std::make_shared<const Armature>(std::move(armature));
+  return document;
+}
+
+class ArmPainted {
+ public:
+  explicit ArmPainted(std::string log) : log_(std::move(log)), host_(open_offscreen({640, 480})), editor_(*host_), player_(editor_, *host_) {
+    player_.step();
+    editor_.history.reset(arm_document(), "Open arm");
+    editor_.name = "arm";
+    frame_all(editor_, false);
+    player_.play("key Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-job\nwait-idle");
+    // A bone in the middle of the body, so that its weight ends within the stroke.
+    const Armature& armature = *editor_.document().armature;
+    for (int bone = 0; bone < std::ssize(armature.bones); ++bone)
+      if (armature.bones[static_cast<std::size_t>(bone)].name.find("orearm") != std::string::npos || bone == 0) editor_.selection.bone = bone;
+    editor_.selection.bones = {*editor_.selection.bone};
+    rest();
+  }
+
+  // Bends the active bone's joint on trial.
+  void bend(double degrees) {
+    set_bend(editor_, degrees);
+    rest();
+  }
+
+  void stroke(const char* name, double voxels) {
+    Painting& painting = *editor_.skin->painting;
+    painting.radius = voxels * editor_.document().volume->grid.spacing.x;
+    const auto is_body = [](const ViewPlace& place) { return place.id == ViewId::Body; };
+    const ViewPlace view = *std::find_if(editor_.layout.view_places.begin(), editor_.layout.view_places.end(), is_body);
+    const std::vector<glm::vec2> path = middle_of_body(view);
+    if (path.size() < 2) throw Error("the body is not seen", name, "look at the picture");
+    player_.play("move \"3D view/view\"");
+    move(path.front());
+    rest();
+    editor_.timeline->frame_log->clear();
+    whole_.clear();
+
+    const auto place = brush_place(editor_, view, path.front());
+    const double step = painting.spacing * painting.radius / SeenFrom(editor_, view).millimetres_per_pixel(place->seen);  // pixels a dab
+    const std::size_t before = static_cast<std::size_t>(editor_.history.position());
+    frame(ButtonChanged{MouseButton::Left, true});
+    const double begin = seconds();
+    int dabs = 0;
+    for (double due = begin; (dabs = dabs_of_stroke(editor_)) < kDabs; due += kFrame) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(due + kFrame - seconds()));
+      due = std::max(due, seconds() - kFrame);
+      // Where the mouse is by now; what came in between the editor sees as one way.
+      frame(PointerMoved{at(path, step * 60 * (seconds() - begin))});
+    }
+    const double took = seconds() - begin;
+    const std::size_t of_stroke = whole_.size();
+    frame(ButtonChanged{MouseButton::Left, false});
+    for (const double end = seconds() + kAfterwards; seconds() < end;) {
+      const double due = seconds() + kFrame;
+      frame();
+      std::this_thread::sleep_for(std::chrono::duration<double>(due - seconds()));
+    }
+    if (static_cast<std::size_t>(editor_.history.position()) != before + 1) throw Error("the stroke changed nothing", name, "look at what it paints");
+    report(name, dabs, took, of_stroke);
+    player_.play("key Ctrl+Z");
+    rest();
+  }
+
+ private:
+  // Left to right or top to bottom, whichever is longer: the middles of what is seen of the body, every few pixels.
+  std::vector<glm::vec2> middle_of_body(const ViewPlace& view) {
+    std::vector<glm::vec2> best;
+    for (const int along : {0, 1}) {
+      std::vector<glm::vec2> middles;
+      for (float a = view.rect.low[along] + 2; a < view.rect.high[along] - 2; a += 4) {
+        glm::vec2 sum(0);
+        int count = 0;
+        for (float b = view.rect.low[1 - along] + 2; b < view.rect.high[1 - along] - 2; b += 2) {
+          const glm::vec2 pixel = along == 0 ? glm::vec2(a, b) : glm::vec2(b, a);
+          if (brush_place(editor_, view, pixel)) sum += pixel, ++count;
+        }
+        if (count > 0 && brush_place(editor_, view, sum / float(count))) middles.push_back(sum / float(count));
+      }
+      if (middles.size() > best.size()) best = middles;
+    }
+    return best;
+  }
+
+  // So many pixels from the beginning, to and fro.
+  static glm::vec2 at(const std::vector<glm::vec2>& path, double way) {
+    double length = 0;
+    for (std::size_t i = 1; i < path.size(); ++i) length += glm::distance(path[i - 1], path[i]);
+    way = std::fmod(way, 2 * length);
+    if (way > length) way = 2 * length - way;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const double part = glm::distance(path[i - 1], path[i]);
+      if (way <= part) return glm::mix(path[i - 1], path[i], static_cast<float>(way / std::max(part, 1e-6)));
+      way -= part;
+    }
+    return path.back();
+  }
+
+  void frame() {
+    FrameLog& log = *editor_.timeline->frame_log;
+    const double begin = seconds();
+    log.begin();
+    editor_.frame(player_.now() + begin - begin_);
+    host_->picture();
+    log.part("paint");
+    log.end("stroke");
+    whole_.push_back(1e3 * (seconds() - begin));
+  }
+  void frame(const Event& event) {
+    host_->events.push(event);
+    frame();
+  }
+  void move(const glm::vec2& place) { frame(PointerMoved{place}); }
+  void rest() {
+    do {
+      frame();
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    } while (editor_.busy() || !editor_.at_rest());
+  }
+
+  void report(const char* name, int dabs, double took, std::size_t of_stroke) {
+    std::vector<double> own;
+    for (const FrameLog::Frame& each : editor_.timeline->frame_log->frames()) own.push_back(each.computed);
+    const auto row = [](const char* what, std::vector<double> all) {
+      const auto over = std::count_if(all.begin(), all.end(), [](double ms) { return ms > 1e3 * kLongest; });
+      std::printf(", \"%s\": {\"worst\": %.1f, \"p95\": %.1f, \"median\": %.1f, \"over\": %d}", what, percentile(all, 100), percentile(all, 95), percentile(all, 50), static_cast<int>(over));
+    };
+    const auto cut = static_cast<std::ptrdiff_t>(of_stroke);
+    std::printf("%s{\"stroke\": \"%s\", \"dabs\": %d, \"seconds\": %.2f, \"frames\": %zu, \"frames_after\": %zu", std::exchange(first_, false) ? "" : ",\n ", name, dabs, took, of_stroke, whole_.size() - of_stroke);
+    row("whole_ms", {whole_.begin(), whole_.begin() + cut});
+    row("own_ms", {own.begin(), own.begin() + cut});
+    row("whole_after_ms", {whole_.begin() + cut, whole_.end()});
+    row("own_after_ms", {own.begin() + cut, own.end()});
+    std::printf("}");
+    std::fflush(stdout);
+    if (!log_.empty()) write_file_atomically(log_ + "." + name + ".txt", editor_.timeline->frame_log->text());
+  }
+
+  const std::string log_;
+  std::unique_ptr<Offscreen> host_;
+  Editor editor_;
+  Player player_;
+  const double begin_ = seconds();
+  std::vector<double> whole_;  // ms
+  bool first_ = true;
+};
+
+}  // namespace
+
+int main(int count, char** words) {
+  try {
+    ArmPainted session(count > 1 ? words[1] : "");
+    std::printf("[");
+    session.stroke("rest_16", 16);
+    session.stroke("rest_32", 32);
+    session.bend(45);
+    session.stroke("posed_16", 16);
+    session.stroke("posed_32", 32);
+    std::printf("]\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
