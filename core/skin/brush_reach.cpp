@@ -66,6 +66,21 @@ std::uint64_t up_to(int end, int word) {
   return left < 0 ? 0 : left >= 63 ? ~std::uint64_t{0} : (std::uint64_t{2} << left) - 1;
 }
 
+// Rows of bits of a slice from its lowest voxel on, in x a multiple of eight: 1 where there is no tissue, outside the volume too.
+void air_of_slice(const TissueVoxels& tissue, const glm::ivec3& low, int words, int rows, std::uint64_t* air) {
+  std::fill_n(air, std::size_t(words) * rows, ~std::uint64_t{0});
+  if (low.z < 0 || low.z >= tissue.grid_size().z) return;
+  for (int y = std::max(low.y, 0) & ~(kBrick - 1); y < std::min(low.y + rows, tissue.grid_size().y); y += kBrick)
+    for (int x = std::max(low.x, 0); x < std::min(low.x + 64 * words, tissue.grid_size().x); x += kBrick) {
+      const int brick = tissue.brick_at({x, y, low.z});
+      if (brick < 0) continue;
+      const std::uint64_t mask = tissue.bricks()[brick].mask[low.z & (kBrick - 1)];
+      const int bit = x - low.x;
+      for (int r = std::max(y, low.y), end = std::min(y + kBrick, low.y + rows); r < end; ++r)
+        air[std::size_t(words) * (r - low.y) + (bit >> 6)] &= ~((mask >> (8 * (r - y)) & 0xff) << (bit & 63));
+    }
+}
+
 }  // namespace
 
 BrushReach::BrushReach(const LabelVolume& volume, const TissueVoxels& tissue, BrushFilter filter)
@@ -234,64 +249,59 @@ BrushReach::Mask BrushReach::surface_of(int index) const {
   return surface;
 }
 
-// Squared distances to air in a box around the bricks, one pass per axis, looking outward no further than the depth asked for.
+// Air grown by a ball of the depth asked for, as rows of bits in a box around the bricks: slice by slice of air, in x by
+// every width that the ball has, and so many rows up and down.
 void BrushReach::keep_shallow(std::span<const int> bricks) {
   const glm::dvec3 spacing = volume_.grid.spacing;
   const glm::ivec3 margin(glm::min(glm::floor(filter_.depth_mm / spacing + 1e-9), glm::dvec3(volume_.grid.size)));
   glm::ivec3 low(std::numeric_limits<int>::max()), high(0);
   for (const int brick : bricks) {
-    low = glm::min(low, tissue_.bricks()[brick].corner - margin);
-    high = glm::max(high, tissue_.bricks()[brick].corner + kBrick - 1 + margin);
+    low = glm::min(low, tissue_.bricks()[brick].corner);
+    high = glm::max(high, tissue_.bricks()[brick].corner + kBrick - 1);
   }
-  const glm::ivec3 size = high - low + 1;
-  const auto index = [&](int x, int y, int z) { return x + std::int64_t{size.x} * (y + std::int64_t{size.y} * z); };
-  std::vector<float> squared(index(0, 0, size.z));
-  for (int z = 0; z < size.z; ++z)
-    for (int y = 0; y < size.y; ++y) {
-      float* row = &squared[index(0, y, z)];
-      const auto pass = [&](int begin, int end, int step) {
-        int since = margin.x + 1;
-        for (int x = begin; x != end; x += step) {
-          if (since < margin.x + 1) ++since;
-          if (volume_.at_or_air(low + glm::ivec3(x, y, z)) == 0) since = 0;
-          const float way = since > margin.x ? kFar : static_cast<float>(since * spacing.x);
-          row[x] = step > 0 ? way * way : std::min(row[x], way * way);
-        }
-      };
-      pass(0, size.x, 1);
-      pass(size.x - 1, -1, -1);
+  const int from_x = (low.x - margin.x) & ~(kBrick - 1), words = (high.x + margin.x - from_x) / 64 + 1;
+  const int rows = high.y - low.y + 1, air_rows = rows + 2 * margin.y;
+  // How far the ball reaches in x from a row so far away; -1: not at all.
+  const float most = static_cast<float>(filter_.depth_mm * filter_.depth_mm * (1 + 1e-6));
+  const auto squared = [&](int axis, int steps) { return static_cast<float>(steps * spacing[axis] * steps * spacing[axis]); };
+  std::vector<int> reach(std::size_t(margin.y + 1) * (margin.z + 1), -1);
+  for (int z = 0; z <= margin.z; ++z)
+    for (int y = 0; y <= margin.y; ++y)
+      for (int x = 0; x <= margin.x; ++x) {
+        const float way = static_cast<float>(x * spacing.x);
+        if (way * way + squared(1, y) + squared(2, z) <= most) reach[y + (margin.y + 1) * z] = x;
+      }
+  std::vector<std::uint64_t> shallow(std::size_t(words) * rows * kBrick, 0), grown(std::size_t(words) * air_rows * (margin.x + 1));
+  for (int z = low.z - margin.z; z < low.z + kBrick + margin.z; ++z) {
+    air_of_slice(tissue_, {from_x, low.y - margin.y, z}, words, air_rows, grown.data());
+    for (int width = 1; width <= margin.x; ++width) {
+      const std::uint64_t* last = &grown[std::size_t(words) * air_rows * (width - 1)];
+      std::uint64_t* next = &grown[std::size_t(words) * air_rows * width];
+      for (int r = 0; r < air_rows; ++r, last += words, next += words)
+        for (int w = 0; w < words; ++w)
+          next[w] = last[w] | last[w] << 1 | last[w] >> 1 | (w > 0 ? last[w - 1] >> 63 : 0) | (w + 1 < words ? last[w + 1] << 63 : 0);
     }
-  std::vector<float> line;
-  for (int axis = 1; axis < 3; ++axis) {
-    const int across = 3 - axis;
-    line.resize(std::size_t(size.x) * size[axis]);
-    for (int c = 0; c < size[across]; ++c) {
-      const auto row_at = [&](int i) { return &squared[axis == 1 ? index(0, i, c) : index(0, c, i)]; };
-      for (int i = 0; i < size[axis]; ++i) std::copy_n(row_at(i), size.x, &line[std::size_t(i) * size.x]);
-      for (int i = 0; i < size[axis]; ++i) {
-        float* row = row_at(i);
-        for (int k = 1; k <= margin[axis]; ++k) {
-          const float rise = static_cast<float>(k * spacing[axis] * k * spacing[axis]);
-          for (const int j : {i - k, i + k}) {
-            if (j < 0 || j >= size[axis]) continue;
-            const float* other = &line[std::size_t(j) * size.x];
-            for (int x = 0; x < size.x; ++x) row[x] = std::min(row[x], other[x] + rise);
-          }
-        }
+    for (int to = std::max(0, z - margin.z - low.z), end = std::min(kBrick - 1, z + margin.z - low.z); to <= end; ++to) {
+      std::uint64_t* into = &shallow[std::size_t(words) * rows * to];
+      for (int y = -margin.y; y <= margin.y; ++y) {
+        const int width = reach[std::abs(y) + (margin.y + 1) * std::abs(low.z + to - z)];
+        if (width < 0) continue;
+        const std::uint64_t* air = &grown[std::size_t(words) * (std::size_t(air_rows) * width + margin.y + y)];
+        for (std::ptrdiff_t i = 0, count = std::ptrdiff_t{words} * rows; i < count; ++i) into[i] |= air[i];
       }
     }
   }
-  const float most = static_cast<float>(filter_.depth_mm * filter_.depth_mm * (1 + 1e-6));
   for (const int brick : bricks) {
     const TissueVoxels::Brick& b = tissue_.bricks()[brick];
     const Mask surface = surface_of(brick);
     Mask& mask = allowed_[allowed_of_[brick]];
-    for (int z = 0; z < kBrick; ++z)
-      for (std::uint64_t word = mask[z] & ~surface[z]; word; word &= word - 1) {
-        const int bit = std::countr_zero(word);
-        const glm::ivec3 v = b.corner + glm::ivec3(bit & 7, bit >> 3, z) - low;
-        if (squared[index(v.x, v.y, v.z)] > most) mask[z] &= ~(std::uint64_t{1} << bit);
-      }
+    const int bit = b.corner.x - from_x;
+    for (int z = 0; z < kBrick; ++z) {
+      std::uint64_t near = 0;
+      const std::uint64_t* row = &shallow[std::size_t(words) * (std::size_t(rows) * z + b.corner.y - low.y) + (bit >> 6)];
+      for (int y = 0; y < kBrick; ++y, row += words) near |= (*row >> (bit & 63) & 0xff) << (8 * y);
+      mask[z] &= surface[z] | near;
+    }
   }
 }
 
@@ -657,21 +667,24 @@ void BrushReach::emit_geodesic() {
 
 const Reached& BrushReach::dab(const glm::dvec3& centre, double radius, BrushDistance distance) {
   reached_.bricks.clear();
-  reached_.at.clear();
-  reached_.cell.clear();
-  reached_.distance.clear();
+  const auto resize = [&](std::int64_t size) {
+    reached_.at.resize(size);
+    reached_.cell.resize(size);
+    reached_.distance.resize(size);
+  };
   centre_ = voxel_from_world_ * centre;
   radius_ = radius;
   const bool geodesic = distance == BrushDistance::Geodesic;
-  if (!(radius > 0) || (geodesic && !find_start()) || !place_window(radius, geodesic)) return reached_;
+  if (!(radius > 0) || (geodesic && !find_start()) || !place_window(radius, geodesic)) {
+    resize(0);
+    return reached_;
+  }
   if (filtered_) need_allowed();
 
   place_ball(radius, ball_);
   std::int64_t most = kBrick;  // a row is written whole
   for (const Span& row : ball_) most += std::max(row.last - row.first + 1, 0);
-  reached_.at.resize(most);
-  reached_.cell.resize(most);
-  reached_.distance.resize(most);
+  resize(most);  // what the last dab left there is written over
   if (geodesic) {
     const glm::dvec3 spacing = volume_.grid.spacing;
     place_ball(radius + std::max({spacing.x, spacing.y, spacing.z}) + glm::length((glm::dvec3(start_) - centre_) * spacing), grown_ball_);
@@ -685,9 +698,7 @@ const Reached& BrushReach::dab(const glm::dvec3& centre, double radius, BrushDis
   }
   const std::int32_t count = reached_.bricks.empty() ? 0 : reached_.bricks.back().end;
   for (std::int32_t i = 0; i < count; ++i) reached_.distance[i] = std::sqrt(reached_.distance[i]);
-  reached_.at.resize(count);
-  reached_.cell.resize(count);
-  reached_.distance.resize(count);
+  resize(count);
   return reached_;
 }
 

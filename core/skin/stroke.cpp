@@ -5,7 +5,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "core/base/error.h"
@@ -21,6 +23,12 @@ constexpr int kBrick = TissueVoxels::kBrick;
 constexpr std::int64_t kBricksAtOnce = 16;
 
 using Target = WeightSum;
+
+// As two numbers: arrays are compared by a call.
+bool equal(const Influence& a, const Influence& b) {
+  const auto number = [](const std::array<std::uint16_t, 4>& four) { return std::bit_cast<std::uint64_t>(four); };
+  return number(a.bone) == number(b.bone) && number(a.weight) == number(b.weight);
+}
 
 }  // namespace
 
@@ -50,7 +58,6 @@ class Stroke::Work {
   struct Brick {
     int brick;
     SkinWeights::Chunk now;  // as it is now, where shown_ has it as it was; else empty
-    int differing = 0;       // voxels that are not as they were at first
     // #chunk: the most any dab has covered each voxel so far, in 1/65535, for either side; empty where dabs accumulate.
     std::array<std::vector<std::uint16_t>, 2> cover;
     bool dirty = false;
@@ -82,7 +89,8 @@ class Stroke::Work {
   }
   void touch(const Reached& reached, int plane);
   void paint_plainly(const Reached& reached, const Reached::Brick& part, int side, float strength, Blocked& blocked);
-  void put(Brick& brick, const SkinWeights::Chunk& original, int at, const Influence& made) const;
+  void put(Brick& brick, int at, const Influence& made) const;
+  bool differs(const Brick& brick) const;
   void paint_brick(const Reached& reached, const Reached::Brick& part, int side, float strength, Influence* next, Blocked& blocked);
   void apply(const Side& side, Influence& influence, const Target* target, const glm::ivec3& voxel, double cover, Blocked& blocked) const;
   bool looks_around() const { return brush_.kind >= BrushKind::Smooth && brush_.kind <= BrushKind::Smear; }
@@ -260,7 +268,7 @@ void Stroke::Work::touch(const Reached& reached, int plane) {
     std::int32_t& slot = slot_of_[part.brick];
     if (slot < 0) {
       slot = static_cast<std::int32_t>(bricks_.size());
-      bricks_.push_back({.brick = part.brick});
+      bricks_.push_back({part.brick, {}, {}, false, false, {}});
     }
     auto& cover = bricks_[slot].cover[plane];
     if (!accumulate_ && cover.empty()) cover.assign(weights_->chunk(part.brick).size(), 0);
@@ -294,18 +302,19 @@ void Stroke::Work::dab_side(int side, const glm::dvec3& centre, double strength)
     for (const Reached::Brick& part : reached.bricks) {
       Brick& brick = bricks_[slot_of_[part.brick]];
       for (int i = part.begin; i < part.end; ++i) {
-        if (next_[i] != chunk(part.brick)[reached.at[i]]) put(brick, weights_->chunk(part.brick), reached.at[i], next_[i]);
+        if (!equal(next_[i], chunk(part.brick)[reached.at[i]])) put(brick, reached.at[i], next_[i]);
       }
     }
   for (const Blocked& some : blocked_in)
     for (const auto& [bone, times] : some.by) blocked[bone] += times;
 }
 
-void Stroke::Work::put(Brick& brick, const SkinWeights::Chunk& original, int at, const Influence& made) const {
+void Stroke::Work::put(Brick& brick, int at, const Influence& made) const {
   if (brick.now.empty()) brick.now = now_of(brick);
   Influence& now = brick.now[at];
-  brick.differing += int{made != original[at]} - int{now != original[at]};
-  now = made;
+  // By halves, as they were written: the whole would have to wait for both.
+  now.bone = made.bone;
+  now.weight = made.weight;
   brick.dirty = true;
 }
 
@@ -328,15 +337,19 @@ void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& p
   if (brush_.kind == BrushKind::Set) added = brush_.value * kFullWeight;
   if (brush_.kind == BrushKind::Add) added = kFullWeight;
   if (brush_.kind == BrushKind::Subtract) added = -kFullWeight;
+  // Those that are covered more than before, told without a jump.
+  std::array<std::uint16_t, kBrick * kBrick * kBrick> more;
+  int more_count = 0;
   for (int i = 0; i < count; ++i) {
-    const int at = reached.at[part.begin + i], covered = covers[i];
-    if (covered == 0) continue;
-    if (most) {
-      if (covered <= most[at]) continue;
-      most[at] = static_cast<std::uint16_t>(covered);
-    }
-    const Influence now = now_of(brick)[at];
-    Influence made = accumulate_ ? now : original[at];
+    const std::uint16_t covered = covers[i], before = most ? most[reached.at[part.begin + i]] : 0;
+    more[more_count] = static_cast<std::uint16_t>(i);
+    more_count += covered > before;
+    if (most) most[reached.at[part.begin + i]] = std::max(covered, before);
+  }
+  const Influence *first = original.data(), *now = now_of(brick).data();
+  for (int m = 0; m < more_count; ++m) {
+    const int at = reached.at[part.begin + more[m]], covered = covers[more[m]];
+    Influence made = accumulate_ ? now[at] : first[at];
     int before = 0;
     for (int k = 0; k < 4; ++k) before += made.bone[k] == bone ? made.weight[k] : 0;
     const double cover = covered / double(kFullWeight), to = before + (before * (factor - 1) + added) * cover;
@@ -347,10 +360,9 @@ void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& p
       blocked_here.at = at;
       blocked_here.add(change.blocked_by);
     }
-    // By halves, as they were written: the whole would have to wait for both.
-    const auto bones = std::bit_cast<std::uint64_t>(made.bone), weights = std::bit_cast<std::uint64_t>(made.weight);
-    if (bones == std::bit_cast<std::uint64_t>(now.bone) && weights == std::bit_cast<std::uint64_t>(now.weight)) continue;
-    put(brick, original, at, {std::bit_cast<std::array<std::uint16_t, 4>>(bones), std::bit_cast<std::array<std::uint16_t, 4>>(weights)});
+    if (equal(made, now[at])) continue;
+    put(brick, at, made);
+    now = brick.now.data();
   }
 }
 
@@ -401,8 +413,8 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
     }
     if (next) {
       next[i] = made;
-    } else if (made != now) {
-      put(brick, original, at, made);
+    } else if (!equal(made, now)) {
+      put(brick, at, made);
     }
   }
 }
@@ -459,7 +471,7 @@ bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, const st
   std::array<const Influence*, 6> beside;
   const int count = views->beside(voxel & (kBrick - 1), beside);
   bool differs = false;
-  for (int i = 0; i < count; ++i) differs = differs || *beside[i] != own;
+  for (int i = 0; i < count; ++i) differs = differs || !equal(*beside[i], own);
   if (!differs) return false;
   if (brush_.kind == BrushKind::Smooth) {
     for (int i = 0; i < count; ++i) add_to(target, *beside[i], 1);
@@ -538,15 +550,22 @@ std::vector<int> Stroke::Work::take_dirty() {
   return dirty;
 }
 
+// From the original.
+bool Stroke::Work::differs(const Brick& brick) const {
+  if (brick.now.empty()) return brick.shown;
+  static_assert(std::has_unique_object_representations_v<Influence>);
+  return std::memcmp(brick.now.data(), weights_->chunk(brick.brick).data(), brick.now.size() * sizeof(Influence)) != 0;
+}
+
 bool Stroke::Work::empty() const {
-  return std::all_of(bricks_.begin(), bricks_.end(), [&](const Brick& brick) { return brick.differing == 0; });
+  return std::all_of(bricks_.begin(), bricks_.end(), [&](const Brick& brick) { return !differs(brick); });
 }
 
 const SkinWeights& Stroke::Work::weights() {
   if (shown_.chunk_count() == 0) shown_ = *weights_;
   for (Brick& brick : bricks_) {
     if (brick.now.empty()) continue;
-    brick.shown = brick.differing != 0;
+    brick.shown = differs(brick);
     if (brick.shown) shown_.set_chunk(brick.brick, std::move(brick.now));
     else shown_.share_chunk(brick.brick, *weights_);
     brick.now = {};

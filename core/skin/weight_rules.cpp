@@ -250,35 +250,36 @@ WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight)
       return {true, -1};
     }
   }
-  int slot = 0, count = 0;
-  for (int i = 0; i < 4; ++i) count += influence.weight[i] != 0;
-  while (slot < count && influence.bone[slot] != bone) ++slot;
-  const int before = slot < count ? influence.weight[slot] : 0;
+  // Without jumps, which would go either way as often.
+  int count = 0, found = 0;
+  for (int i = 0; i < 4; ++i) {
+    count += influence.weight[i] != 0;
+    found |= (influence.bone[i] == bone) << i;
+  }
+  found &= (1 << count) - 1;
+  int slot = found ? std::countr_zero(static_cast<unsigned>(found)) : count;
+  const int before = found ? influence.weight[slot] : 0;
   const int now = std::clamp(weight, 0, kFullWeight), others = kFullWeight - now;
   if (now == before) return {};
   if (others == 0) {
     influence = rigid_influence(bone);
     return {true, -1};
   }
-  if (slot == 4) {  // the smallest makes room
-    influence.weight[3] = 0;
-    slot = 3;
-  } else if (slot == count) {
-    ++count;
+  slot = std::min(slot, 3);  // of four others the smallest makes room
+  std::array<int, 4> shared, weights;
+  int sum = 0, most = -1;
+  for (int i = 0; i < 4; ++i) {
+    weights[i] = i == slot ? 0 : influence.weight[i];
+    sum += weights[i];
+    most = std::max(most, weights[i] << 2 | (3 - i));
   }
-  std::array<int, 4> shared{};
-  int sum = 0, largest = -1;
-  for (int i = 0; i < count; ++i) {
-    if (i == slot) continue;
-    sum += influence.weight[i];
-    if (largest < 0 || influence.weight[i] > influence.weight[largest]) largest = i;
-  }
+  const int largest = 3 - (most & 3);
+  weights[largest] = 0;
   const double factor = others / double(sum);
   for (const double half : {0.5, 0.0}) {
     int left = others;
-    for (int i = 0; i < count; ++i) {
-      if (i == slot || i == largest) continue;
-      shared[i] = static_cast<int>(influence.weight[i] * factor + half);
+    for (int i = 0; i < 4; ++i) {
+      shared[i] = static_cast<int>(weights[i] * factor + half);
       left -= shared[i];
     }
     shared[largest] = left;
