@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include "core/base/background.h"
 #include "core/base/error.h"
 #include "editor/editor.h"
 #include "editor/posing.h"
@@ -91,12 +92,18 @@ void MapMaker::work() {
     working_ = true;
     lock.unlock();
     try {
-      if (!(ready.body == made.wish.body)) {
-        ready = {};  // two at once would be too much memory
-        ready = make_ready(made.wish.body, divisor_);
-      }
-      made.map = ready.preview->update(made.wish.motions, made.wish.blend);
-      if (made.wish.surface && divisor_ == 1) made.surface = std::make_shared<const PosedSurface>(posed_surface(made.wish.surface, made.wish.motions, made.wish.blend));
+      const auto make = [&] {
+        if (!(ready.body == made.wish.body)) {
+          ready = {};  // two at once would be too much memory
+          ready = make_ready(made.wish.body, divisor_);
+        }
+        made.map = ready.preview->update(made.wish.motions, made.wish.blend);
+        if (made.wish.surface && divisor_ == 1) made.surface = std::make_shared<const PosedSurface>(posed_surface(made.wish.surface, made.wish.motions, made.wish.blend));
+      };
+      // After a stroke the next one may be under way, and its frames come first.
+      const bool is_painted = ready.body.volume == made.wish.body.volume && ready.body.weights != made.wish.body.weights;
+      if (is_painted) in_background(make);
+      else make();
     } catch (const Error& error) {
       made.trouble = error.what();
     } catch (const std::bad_alloc&) {

@@ -7,7 +7,8 @@
 //
 // Maps are made by threads of their own, always of the newest pose; one that a newer pose overtook before its turn is left
 // out. So the editor never waits for a map: the bones are where they are, the volume follows as fast as the machine can. A
-// pose that has rested for a while gets a map of half the step.
+// pose that has rested for a while gets a map of half the step. A body of which only the weights are others, as after a
+// stroke, is made ready on what frames leave of the machine.
 #pragma once
 
 #include <condition_variable>
