@@ -28,6 +28,7 @@ constexpr double kCameraMove = 0.18;  // s
 constexpr double kLongestRest = 60;   // s; only so that a wait ends at all
 constexpr double kJobPulse = 0.1;     // s between frames while a job runs
 constexpr int kJobsAtOnce = 2;
+constexpr double kUploadTime = 0.008;  // s of a frame that weights take on their way to the card
 
 // Made when it is needed first.
 template <class Picture>
@@ -53,6 +54,8 @@ void draw_view_picture(Views& views, const Document& document, const ViewPlace& 
   if (views.other_scene) drawn(views, slice.other).draw(*views.other_scene, slice.camera, views.slice_display, size);
   else slice.other.reset();
 }
+
+bool is_complete(const SliceState& slice) { return slice.picture->complete() && (!slice.other || slice.other->complete()); }
 
 void move_camera(BodyView& body, double now, bool at_once) {
   if (!body.move) return;
@@ -133,6 +136,8 @@ bool Editor::busy() const { return jobs.busy() || live->busy() || skin->shares.b
 double Editor::rest() const {
   if (frames_wanted_ > 0 || !host.events.empty() || views->body.move || (modal && modal->moving())) return 0;
   if (layout.place_of(ViewId::Body) && (!views->body.picture->complete() || (views->body.other && !views->body.other->complete()))) return 0;
+  for (const ViewPlace& place : layout.view_places)
+    if (place.id != ViewId::Body && !is_complete(views->slices[static_cast<std::size_t>(axis_of(place.id))])) return 0;
   double seconds = kLongestRest;
   seconds = std::min(seconds, wake_at_ - now);
   if (busy()) seconds = std::min(seconds, kJobPulse);
@@ -160,6 +165,7 @@ void Editor::draw_views() {
   move_camera(views->body, now, preferences.reduce_motion);
   ended(*this, "pose");
   const Document shown = shown_document(*this);
+  views->renderer.begin_frame(kUploadTime);
   for (const ViewPlace& place : layout.view_places) {
     draw_view_picture(*views, shown, place, now);
     ended(*this, place.id == ViewId::Body ? "body" : "slice");

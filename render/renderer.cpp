@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
+#include <chrono>
 
 #include <epoxy/gl.h>
 
@@ -66,12 +67,12 @@ const PosedTexture* Renderer::Parts::pose(Body& body, const std::shared_ptr<cons
   return body.pose.get();
 }
 
-const WeightTexture* Renderer::Parts::weights(Body& body, const std::optional<ShownWeights>& shown) {
+WeightTexture* Renderer::Parts::weights(Body& body, const std::optional<ShownWeights>& shown, Extent extent) {
   if (!shown) return nullptr;
   if (const auto volume = body.volume->original().lock(); !volume || shown->tissue->grid_size() != volume->grid.size)
     throw Error("the weights were made for another volume", "display of weights", "show the volume that they belong to");
   if (!body.weights) body.weights = std::make_unique<WeightTexture>(*body.volume);
-  body.weights->update(*body.volume, *shown);
+  body.weights->update(*body.volume, *shown, extent == Extent::InTime && upload_time ? &*upload_time : nullptr);
   return body.weights.get();
 }
 
@@ -92,6 +93,9 @@ VolumePass& Renderer::Parts::volume_pass(const VolumeTexture& volume, VolumePass
 
 Renderer::Renderer(int largest_texture) : parts_(std::make_unique<Parts>(largest_texture)) {}
 Renderer::~Renderer() = default;
+void Renderer::begin_frame(double upload_seconds) {
+  parts_->upload_time = UploadTime{std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(upload_seconds))};
+}
 void Renderer::finish() { glFinish(); }
 const std::string& Renderer::note() const { return parts_->note; }
 

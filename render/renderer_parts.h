@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,8 +45,9 @@ struct Renderer::Parts {
   const VisibleField& layer(Body& body, const LooksTexture& looks, size_t layer);
   // The map on the card; null without one.
   const PosedTexture* pose(Body& body, const std::shared_ptr<const PreviewMap>& map);
-  // What is shown of weights on the card; null for nothing.
-  const WeightTexture* weights(Body& body, const std::optional<ShownWeights>& shown);
+  // What is shown of weights on the card, all of it or what there was time for; null for nothing.
+  enum class Extent { Whole, InTime };
+  WeightTexture* weights(Body& body, const std::optional<ShownWeights>& shown, Extent extent);
   // Where rays that look for a layer start in posed space; null without a map.
   const PosedHull* posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map);
   VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
@@ -58,6 +60,7 @@ struct Renderer::Parts {
   WeightPass weigh;
   SurfacePass surface;
   std::string note;
+  std::optional<UploadTime> upload_time;  // of this frame; nothing: there are no frames
 
  private:
   struct Looks {

@@ -194,6 +194,7 @@ struct View3D::Impl {
   bool shows_surface = false;
   std::int64_t rays_followed = 0;
   int weight_changes = 0;  // of the weights' texture, as drawn
+  bool has_all_weights = true;
 
   struct Source {
     Renderer::Parts::Body* body = nullptr;
@@ -205,13 +206,13 @@ struct View3D::Impl {
 
     const Hull& hull(size_t layer) const { return posed_hulls[layer] ? posed_hulls[layer]->hull() : layers[layer]->hull(); }
   };
-  std::optional<Source> source(const Scene& scene) {
+  std::optional<Source> source(const Scene& scene, Renderer::Parts::Extent extent) {
     if (!scene.volume || !scene.looks) return std::nullopt;
     Source result;
     result.body = &parts.body(scene.volume);
     result.looks = &parts.looks(*result.body, scene.looks, scene.display);
     result.pose = parts.pose(*result.body, scene.pose);
-    result.weights = parts.weights(*result.body, scene.weights);
+    result.weights = parts.weights(*result.body, scene.weights, extent);
     for (size_t layer = 0; layer < result.looks->layers().size(); ++layer) {
       result.layers.push_back(&parts.layer(*result.body, *result.looks, layer));
       result.posed_hulls.push_back(parts.posed_hull(*result.body, layer, scene.pose));
@@ -254,7 +255,7 @@ struct View3D::Impl {
   void shade(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
     for (size_t layer = 0; source.weights && layer < source.layers.size(); ++layer)
       parts.weigh.draw(*source.body->volume, *source.weights, rays, buffers[layer], part);
-    weight_changes = source.weights ? source.weights->change().count : 0;
+    weight_changes = source.weights ? source.weights->changes() : 0;
     body.resize(buffers[0].size(), GL_RGBA8);
     body.share_depth(buffers[0].hull_depth);
     body.clear();
@@ -325,10 +326,11 @@ struct View3D::Impl {
   // Other weights upon what the rays have met.
   //   only_weights  nothing but the weights themselves is new
   void recolour(const Source& source, bool only_weights) {
+    if (only_weights && source.weights->changes() == weight_changes) return;
     const ViewRays rays = rays_of(source, shown[0].size(), 0);
     PixelRect part = rect;
-    if (only_weights && !source.pose && sample > 0 && source.weights->change().count == weight_changes + 1)
-      part = intersection(part, VolumePass::covered(source.weights->change().low, source.weights->change().high, rays, shown[0].size()));
+    const auto changed = only_weights && !source.pose && sample > 0 ? source.weights->changed_since(weight_changes) : std::nullopt;
+    if (changed) part = intersection(part, VolumePass::covered(glm::vec3(changed->low), glm::vec3(changed->high), rays, shown[0].size()));
     shade(source, rays, shown, part);
     if (sample == 0) return;
     // The picture at rest takes over what is new, and is refined once more.
@@ -358,7 +360,7 @@ struct View3D::Impl {
     gl::check_gl("drawing a picture");
   }
 
-  bool complete() const { return drawn && (!refines || sample == kSamples); }
+  bool complete() const { return drawn && has_all_weights && (!refines || sample == kSamples); }
 };
 
 View3D::View3D(Renderer& renderer) : impl_(std::make_unique<Impl>(renderer)) {}
@@ -378,9 +380,11 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   my.key = key;
   my.scene = scene;
   my.output.resize(size, GL_RGBA8);
-  const auto source = my.source(scene);
+  const auto source = my.source(scene, scale == 0 ? Renderer::Parts::Extent::InTime : Renderer::Parts::Extent::Whole);
   my.refines = scale == 0 && source;
-  bool redraw = overlay_changed || moved || recoloured;
+  my.has_all_weights = !source || !source->weights || source->weights->complete();
+  const bool more_weights = my.drawn && source && source->weights && source->weights->changes() != my.weight_changes;
+  bool redraw = overlay_changed || moved || recoloured || more_weights;
   if (!source) {
     my.shown_scale = 0;
     my.sample = 0;
@@ -400,7 +404,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
       if (cost > kFrame) my.moving_scale = std::min(at + 1, kCoarsest);
       else if (at > 1 && cost * at * at / ((at - 1) * (at - 1)) < kFrame * 0.85) my.moving_scale = at - 1;
     }
-  } else if (recoloured) {
+  } else if (recoloured || more_weights) {
     my.changed_at = now;
     my.recolour(*source, scene.weights == before);
   } else if (my.refines && my.sample < kSamples && now - my.changed_at >= kRest) {
@@ -500,6 +504,18 @@ struct SliceView::Impl {
   explicit Impl(Renderer& renderer) : parts(renderer.parts()) {}
   Renderer::Parts& parts;
   Target output;
+  bool has_all_weights = true;
+
+  const WeightTexture* weights(Renderer::Parts::Body& body, const Scene& scene, const SliceCamera& camera) {
+    WeightTexture* weights = parts.weights(body, scene.weights, Renderer::Parts::Extent::InTime);
+    has_all_weights = !weights || weights->complete();
+    if (!weights) return nullptr;
+    const AffineTransform to_padded = padded_from_world(body.volume->grid());
+    const glm::dvec3 across = glm::abs(to_padded.linear * frame_of(camera.axis).normal), at = to_padded * camera.centre;
+    const int axis = across.x >= across.y && across.x >= across.z ? 0 : across.y >= across.z ? 1 : 2;
+    weights->prefer(axis, static_cast<float>(at[axis]));
+    return weights;
+  }
 };
 
 SliceView::SliceView(Renderer& renderer) : impl_(std::make_unique<Impl>(renderer)) {}
@@ -508,17 +524,19 @@ SliceView::~SliceView() = default;
 void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay display, const glm::ivec2& size) {
   Impl& my = *impl_;
   const KeepFramebuffer keep;
+  my.has_all_weights = true;
   my.output.resize(size, GL_RGBA8);
   my.output.bind();
   my.parts.compose.background(scene.dark_background ? Background::Dark : Background::Light, size);
   if (scene.volume && scene.looks) {
     auto& body = my.parts.body(scene.volume);
-    my.parts.slice.draw(*body.volume, my.parts.pose(body, scene.pose), my.parts.looks(body, scene.looks, Display::Solid), my.parts.weights(body, scene.weights),
+    my.parts.slice.draw(*body.volume, my.parts.pose(body, scene.pose), my.parts.looks(body, scene.looks, Display::Solid), my.weights(body, scene, camera),
                         scene.weights && scene.weights->contours, camera, display, scene.outlined, size);
   }
   gl::check_gl("drawing a slice");
 }
 
+bool SliceView::complete() const { return impl_->has_all_weights; }
 unsigned SliceView::texture() const { return impl_->output.texture().name(); }
 Image SliceView::read() const { return read_back(impl_->output, false); }
 

@@ -30,6 +30,10 @@ class Renderer {
   // What the user should know of the last upload ("shown at half resolution: ..."), or empty.
   const std::string& note() const;
 
+  // Until it is called again, views that are drawn call by call bring large changes of weights to the card in about so long
+  // altogether, and are not complete while some wait. Without frames each draw brings all.
+  void begin_frame(double upload_seconds);
+
   // Waits until everything drawn so far is done, for whoever measures.
   void finish();
 
@@ -98,6 +102,7 @@ class SliceView {
   explicit SliceView(Renderer& renderer);
   ~SliceView();
   void draw(const Scene& scene, const SliceCamera& camera, SliceDisplay display, const glm::ivec2& size);
+  bool complete() const;  // all weights of the last picture were there
   unsigned texture() const;
   Image read() const;
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include <epoxy/gl.h>
 
@@ -18,7 +20,7 @@ namespace limber::render {
 namespace {
 
 constexpr Format3D kTexels = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, true};
-constexpr std::int64_t kBatch = 16;  // slots worked out together: 3 MB
+constexpr std::size_t kRemembered = 64;  // changes: more than views miss
 
 // The texel of an influence.
 class Texels {
@@ -51,13 +53,9 @@ class Texels {
   std::vector<glm::vec3> swatches_;
 };
 
-// Padded coordinates, half open.
-struct Box {
-  glm::ivec3 low{1 << 30}, high{-(1 << 30)};
-  bool empty() const { return glm::any(glm::greaterThanEqual(low, high)); }
-  void add(const Box& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
-  glm::ivec3 size() const { return high - low; }
-};
+using Box = TexelBox;
+using Part = WeightTexture::Part;
+
 Box intersection(const Box& a, const Box& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
 
 Box box_of(const TissueVoxels::Brick& brick, int halvings) {
@@ -67,12 +65,6 @@ Box box_of(const TissueVoxels::Brick& brick, int halvings) {
 Box grown(const Box& box) { return {box.low - 1, box.high + 1}; }
 // With its apron.
 Box box_of_block(const glm::ivec3& block) { return {block * kBlock - kApron, (block + 1) * kBlock + kApron}; }
-
-// What is to be uploaded of a slot.
-struct Part {
-  int slot;
-  Box box;
-};
 
 std::vector<Part> parts_of(const BlockLayout& layout, const TissueVoxels& tissue, const std::vector<std::uint8_t>& changed, int halvings) {
   std::vector<Box> boxes(layout.block_of_slot.size());
@@ -97,24 +89,43 @@ static_assert(kBlock == 1 << 5);
 
 // Air beside tissue takes the mean of the tissue beside it, axis by axis: what is read a little outside, or filtered there,
 // is then what lies inside.
-void spread_into_air(std::vector<glm::u8vec4>& texels, const glm::ivec3& size) {
-  const std::array<std::ptrdiff_t, 3> stride = {1, size.x, std::ptrdiff_t{size.x} * size.y};
-  std::vector<std::pair<std::ptrdiff_t, glm::u8vec4>> found;
-  for (int axis = 0; axis < 3; ++axis) {
-    found.clear();
-    for (int z = 0; z < size.z; ++z)
-      for (int y = 0; y < size.y; ++y)
-        for (int x = 0; x < size.x; ++x) {
-          const std::ptrdiff_t at = x + y * stride[1] + z * stride[2];
-          if (texels[at].a != 0) continue;
-          const int place = glm::ivec3(x, y, z)[axis];
-          const glm::u8vec4 before = place > 0 ? texels[at - stride[axis]] : glm::u8vec4(0), after = place + 1 < size[axis] ? texels[at + stride[axis]] : glm::u8vec4(0);
-          if (before.a == 0 && after.a == 0) continue;
-          found.push_back({at, before.a == 0 ? after : after.a == 0 ? before : glm::u8vec4((glm::ivec4(before) + glm::ivec4(after)) / 2)});
+class SpreadIntoAir {
+ public:
+  SpreadIntoAir(std::vector<glm::u8vec4>& texels, const glm::ivec3& size) : texels_(texels) {
+    const std::array<std::ptrdiff_t, 3> stride = {1, size.x, std::ptrdiff_t{size.x} * size.y};
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y) {
+          const std::ptrdiff_t row = y * stride[1] + z * stride[2];
+          if (axis > 0) {
+            const int place = axis == 1 ? y : z;
+            look_at(row, size.x, place > 0 ? -stride[axis] : 0, place + 1 < size[axis] ? stride[axis] : 0);
+          } else if (size.x > 1) {
+            look_at(row, 1, 0, 1);
+            look_at(row + 1, size.x - 2, -1, 1);
+            look_at(row + size.x - 1, 1, -1, 0);
+          }
         }
-    for (const auto& [at, texel] : found) texels[at] = texel;
+      for (const auto& [at, texel] : found_) texels[static_cast<std::size_t>(at)] = texel;
+      found_.clear();
+    }
   }
-}
+
+ private:
+  // A row whose neighbours lie so far before and behind; 0: there are none.
+  void look_at(std::ptrdiff_t row, int count, std::ptrdiff_t back, std::ptrdiff_t on) {
+    const glm::u8vec4* texel = texels_.data() + row;
+    for (int x = 0; x < count; ++x, ++texel) {
+      if (texel->a != 0) continue;
+      const glm::u8vec4 before = texel[back], after = texel[on];  // without a neighbour the texel itself, which is air
+      if ((before.a | after.a) == 0) continue;
+      found_.push_back({row + x, before.a == 0 ? after : after.a == 0 ? before : glm::u8vec4((glm::ivec4(before) + glm::ivec4(after)) / 2)});
+    }
+  }
+
+  std::vector<glm::u8vec4>& texels_;
+  std::vector<std::pair<std::ptrdiff_t, glm::u8vec4>> found_;
+};
 
 // Where the volume is drawn coarser, a texel takes any of its tissue voxels.
 std::vector<glm::u8vec4> texels_of_tissue(const Box& box, const ShownWeights& shown, const Texels& texels, int halvings) {
@@ -143,7 +154,7 @@ std::vector<glm::u8vec4> texels_of_tissue(const Box& box, const ShownWeights& sh
 std::vector<glm::u8vec4> texels_of(const Box& box, const ShownWeights& shown, const Texels& texels, int halvings) {
   const Box around = grown(box);
   std::vector<glm::u8vec4> large = texels_of_tissue(around, shown, texels, halvings);
-  spread_into_air(large, around.size());
+  SpreadIntoAir(large, around.size());
   const glm::ivec3 size = box.size(), room = around.size();
   std::vector<glm::u8vec4> result;
   result.reserve(static_cast<std::size_t>(size.x) * size.y * size.z);
@@ -153,6 +164,18 @@ std::vector<glm::u8vec4> texels_of(const Box& box, const ShownWeights& shown, co
       result.insert(result.end(), row, row + size.x);
     }
   return result;
+}
+
+// Fills in the texels.
+std::vector<Part> worked_out(std::vector<Part> parts, const ShownWeights& shown, int halvings) {
+  const Texels texels(shown);
+  parallel_for(std::ssize(parts), 1, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      Part& part = parts[static_cast<std::size_t>(i)];
+      part.texels = texels_of(part.box, shown, texels, halvings);
+    }
+  });
+  return parts;
 }
 
 bool holds(const SkinWeights::Chunk& chunk, int bone, int other) {
@@ -169,7 +192,11 @@ std::string hex_vec3(const glm::vec3& colour) {
 
 }  // namespace
 
-WeightTexture::WeightTexture(const VolumeTexture& volume) {
+WeightTexture::WeightTexture(const VolumeTexture& volume) : index_(gl::Texture::create()) {
+  const std::size_t slots = volume.layout().block_of_slot.size();
+  waiting_.resize(slots);
+  edited_.resize(slots);
+  present_.resize(slots);
   const glm::ivec3 size = volume.layout().slots * kSlot;
   for (int a = 0; a < volume.layout().atlases; ++a) {
     atlases_.push_back(gl::Texture::create());
@@ -189,10 +216,14 @@ bool WeightTexture::region_differs(const ShownWeights& shown, std::int64_t brick
   return false;
 }
 
+bool WeightTexture::means_the_same(const ShownWeights& shown) const {
+  return shown_ && shown.tissue == shown_->tissue && shown.display == shown_->display && shown.swatches == shown_->swatches &&
+         shown.weights->chunk_count() == shown_->weights->chunk_count();
+}
+
 std::vector<std::uint8_t> WeightTexture::changed_bricks(const ShownWeights& shown) const {
   const std::int64_t bricks = std::ssize(shown.tissue->bricks());
-  std::vector<std::uint8_t> changed(static_cast<std::size_t>(bricks), 1);
-  if (!shown_ || shown.tissue != shown_->tissue || shown.display != shown_->display || shown.swatches != shown_->swatches || shown_->weights->chunk_count() != bricks) return changed;
+  std::vector<std::uint8_t> changed(static_cast<std::size_t>(bricks));
   const bool other_bone = shown.bone != shown_->bone && shown.display != WeightDisplay::Count;
   parallel_for(bricks, 256, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t b = begin; b < end; ++b)
@@ -202,49 +233,115 @@ std::vector<std::uint8_t> WeightTexture::changed_bricks(const ShownWeights& show
   return changed;
 }
 
-void WeightTexture::update(const VolumeTexture& volume, const ShownWeights& shown) {
-  texels_uploaded_ = 0;
-  ShownWeights now = shown;
-  now.contours = true;  // drawn, not uploaded
-  if (shown_ == now) return;
+void WeightTexture::change_to(const VolumeTexture& volume, const ShownWeights& shown) {
   if (shown.weights->size() != shown.tissue->size() || shown.weights->chunk_count() != std::ssize(shown.tissue->bricks()))
     throw std::logic_error("the weights are another volume's");
   if (shown.region && std::ssize(*shown.region) != shown.tissue->size()) throw std::logic_error("the region is another volume's");
   const BlockLayout& layout = volume.layout();
-  std::vector<Part> parts = parts_of(layout, *shown.tissue, changed_bricks(shown), volume.halvings());
-  if (change_.count == 0) {  // nothing is there yet
-    parts.clear();
+  std::vector<Part> parts;
+  if (means_the_same(shown)) {
+    parts = parts_of(layout, *shown.tissue, changed_bricks(shown), volume.halvings());
+  } else {
     for (int slot = 0; slot < std::ssize(layout.block_of_slot); ++slot) parts.push_back({slot, box_of_block(layout.block_of_slot[static_cast<std::size_t>(slot)])});
+    present_.assign(present_.size(), 0);
+    if (!upload_index(index_, layout, present_)) throw Error("the weights cannot be shown", "skin weights", "show the tissues");
   }
-  shown_.reset();  // until this has ended
-  const Texels texels(shown);
+  shown_ = shown;
+  ++edits_;
+  std::int64_t texels = 0;
+  for (const Part& part : parts) {
+    edited_[static_cast<std::size_t>(part.slot)] = edits_;
+    texels += part.box.texels();
+  }
+  if (texels <= kAtOnce) return upload(volume, worked_out(std::move(parts), shown, volume.halvings()));
+  for (const Part& part : parts) {
+    Box& waiting = waiting_[static_cast<std::size_t>(part.slot)];
+    waiting_count_ += waiting.empty();
+    waiting.add(part.box);
+  }
+}
+
+void WeightTexture::begin_lot(const VolumeTexture& volume) {
+  if (waiting_count_ == 0) return;
+  std::vector<Part> parts;
+  for (std::size_t slot = 0; slot < waiting_.size(); ++slot)
+    if (!waiting_[slot].empty()) parts.push_back({static_cast<int>(slot), waiting_[slot]});
+  const auto is_cut = [this](const Part& part) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (const auto& at = cuts_[static_cast<std::size_t>(axis)]; at && *at >= float(part.box.low[axis]) && *at <= float(part.box.high[axis])) return true;
+    return false;
+  };
+  const auto rank = [&](const Part& part) { return std::tuple(-edited_[static_cast<std::size_t>(part.slot)], !is_cut(part), part.slot); };
+  const std::size_t count = std::min<std::size_t>(kLot, parts.size());
+  std::partial_sort(parts.begin(), parts.begin() + std::ptrdiff_t(count), parts.end(), [&](const Part& a, const Part& b) { return rank(a) < rank(b); });
+  parts.resize(count);
+  lot_edit_ = edits_;
+  lot_ = std::async(std::launch::async, [parts, shown = *shown_, halvings = volume.halvings()] { return worked_out(parts, shown, halvings); });
+}
+
+void WeightTexture::take_over(const VolumeTexture& volume, UploadTime* time) {
+  for (;;) {
+    if (!lot_.valid()) begin_lot(volume);
+    if (!lot_.valid()) return;
+    if (time && time->used && (std::chrono::steady_clock::now() >= time->until || lot_.wait_until(time->until) != std::future_status::ready)) return;
+    std::vector<Part> parts = lot_.get();
+    if (time) time->used = true;
+    // What was changed meanwhile waits on.
+    std::erase_if(parts, [this](const Part& part) { return edited_[static_cast<std::size_t>(part.slot)] > lot_edit_; });
+    for (const Part& part : parts) waiting_[static_cast<std::size_t>(part.slot)] = {};
+    waiting_count_ -= static_cast<int>(parts.size());
+    begin_lot(volume);
+    upload(volume, parts);
+  }
+}
+
+void WeightTexture::upload(const VolumeTexture& volume, const std::vector<Part>& parts) {
+  if (parts.empty()) return;
+  const BlockLayout& layout = volume.layout();
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   Box whole;
-  std::vector<std::vector<glm::u8vec4>> batch(kBatch);
-  for (std::int64_t begin = 0; begin < std::ssize(parts); begin += kBatch) {
-    const std::int64_t end = std::min<std::int64_t>(begin + kBatch, std::ssize(parts));
-    parallel_for(end - begin, 1, [&](std::int64_t first, std::int64_t last) {
-      for (std::int64_t i = first; i < last; ++i)
-        batch[static_cast<std::size_t>(i)] = texels_of(parts[static_cast<std::size_t>(begin + i)].box, shown, texels, volume.halvings());
-    });
-    for (std::int64_t i = begin; i < end; ++i) {
-      const auto& [slot, box] = parts[static_cast<std::size_t>(i)];
-      const glm::ivec3 at = layout.place_of(slot) * kSlot + box.low - box_of_block(layout.block_of_slot[static_cast<std::size_t>(slot)]).low, size = box.size();
-      glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<std::size_t>(layout.atlas_of(slot))].name());
-      glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, size.x, size.y, size.z, kTexels.pixels, kTexels.type, batch[static_cast<std::size_t>(i - begin)].data());
-      texels_uploaded_ += std::int64_t{size.x} * size.y * size.z;
-      whole.add(box);
-    }
+  bool more_present = false;
+  for (const auto& [slot, box, texels] : parts) {
+    const glm::ivec3 at = layout.place_of(slot) * kSlot + box.low - box_of_block(layout.block_of_slot[static_cast<std::size_t>(slot)]).low, size = box.size();
+    glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<std::size_t>(layout.atlas_of(slot))].name());
+    glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, size.x, size.y, size.z, kTexels.pixels, kTexels.type, texels.data());
+    texels_uploaded_ += box.texels();
+    whole.add(box);
+    std::uint8_t& present = present_[static_cast<std::size_t>(slot)];
+    if (present || !waiting_[static_cast<std::size_t>(slot)].empty()) continue;
+    present = 1;
+    more_present = true;
   }
   gl::check_gl("the upload of weights");
-  // What is filtered reaches further.
-  if (!whole.empty()) change_ = {glm::vec3(whole.low) - 1.0f, glm::vec3(whole.high) + 1.0f, change_.count + 1};
-  shown_ = now;
+  if (more_present && !upload_index(index_, layout, present_)) throw Error("the weights cannot be shown", "skin weights", "show the tissues");
+  ++changes_;
+  last_changes_.push_back(grown(whole));  // what is filtered reaches further
+  if (last_changes_.size() > kRemembered) last_changes_.pop_front();
+}
+
+void WeightTexture::update(const VolumeTexture& volume, const ShownWeights& shown, UploadTime* time) {
+  texels_uploaded_ = 0;
+  ShownWeights now = shown;
+  now.contours = true;  // drawn, not uploaded
+  try {
+    if (shown_ != now) change_to(volume, now);
+    take_over(volume, time);
+  } catch (...) {
+    shown_.reset();  // all anew
+    throw;
+  }
+}
+
+std::optional<TexelBox> WeightTexture::changed_since(int count) const {
+  if (changes_ - count > std::ssize(last_changes_)) return std::nullopt;
+  Box box;
+  for (auto change = last_changes_.end() - (changes_ - count); change != last_changes_.end(); ++change) box.add(*change);
+  return box;
 }
 
 int WeightTexture::bind(const VolumeTexture& volume, gl::Program& program, int first) const {
   first = bind_atlases(program, "u_weights", atlases_, first);
-  program.set_texture("u_weight_index", first++, GL_TEXTURE_3D, volume.index().name());
+  program.set_texture("u_weight_index", first++, GL_TEXTURE_3D, index_.name());
   program.set("u_weight_texel", 1.0f / glm::vec3(volume.layout().slots * kSlot));
   program.set("u_weight_blocks", volume.layout().blocks);
   program.set("u_weight_region", shown_->region ? 1 : 0);

@@ -244,6 +244,16 @@ TEST_CASE("weights: a brick that changes is uploaded alone, and the picture is t
   CHECK(body.weights->texels_uploaded() <= 8 * 512);
   CHECK(body.weights->texels_uploaded() >= 512 * 6 / 8);
   CHECK(all > 100 * body.weights->texels_uploaded() / 2);
+  // Taken back and done again, it is as much.
+  const std::int64_t dab = body.weights->texels_uploaded();
+  for (int again = 0; again < 2; ++again) {
+    scene.weights->weights = block.weights;
+    draw(view, scene, camera, kSize);
+    CHECK(body.weights->texels_uploaded() == dab);
+    scene.weights->weights = std::make_shared<const SkinWeights>(changed);
+    draw(view, scene, camera, kSize);
+    CHECK(body.weights->texels_uploaded() == dab);
+  }
 
   Renderer fresh;
   CHECK(difference(after, picture_of(fresh, scene, camera, kSize)).mean == 0);
@@ -251,6 +261,91 @@ TEST_CASE("weights: a brick that changes is uploaded alone, and the picture is t
   scene.weights->weights = std::make_shared<const SkinWeights>(changed);
   draw(view, scene, camera, kSize);
   CHECK(body.weights->texels_uploaded() == 0);
+}
+
+TEST_CASE("weights: a change of everything comes to the card in several frames, a dab meanwhile in its own, and the picture is then that of all weights anew") {
+  Studio studio;
+  const Block block({140, 100, 120}, [](const glm::ivec3& v) { return 400 * v.x; });
+  Scene scene = block.scene();
+  const Camera camera = camera_of(block.volume->grid);
+  View3D view(studio.renderer);
+  SliceView slice(studio.renderer);
+  SliceCamera cut = slice_through(block, 60);
+  double now = 0;
+  auto& body = studio.renderer.parts().body(block.volume);
+  const int slots = static_cast<int>(body.volume->layout().block_of_slot.size());
+  REQUIRE(slots == 80);
+  // No time: one lot a frame, whatever the number of views.
+  const auto frame = [&] {
+    studio.renderer.begin_frame(0);
+    view.draw(scene, camera, kSize, now += 0.2);
+    const std::int64_t by_body = body.weights->texels_uploaded();
+    slice.draw(scene, cut, SliceDisplay::Labels, kSize);
+    CHECK(body.weights->texels_uploaded() == 0);
+    CHECK(slice.complete() == body.weights->complete());
+    return by_body;
+  };
+  const auto to_the_end = [&] {
+    int frames = 0;
+    do {
+      CHECK(frame() <= std::int64_t{WeightTexture::kLot} * kSlot * kSlot * kSlot);
+      ++frames;
+      if (!slice.complete()) CHECK(!view.complete());
+    } while (!slice.complete() && frames < 1000);
+    return frames;
+  };
+  const auto is_as_anew = [&] {
+    while (!view.complete()) CHECK(frame() == 0);
+    Renderer fresh;
+    View3D other(fresh);
+    double then = 0;
+    do other.draw(scene, camera, kSize, then += 0.2); while (!other.complete());
+    CHECK(difference(view.read(), other.read()).mean < 0.5);
+    view.draw(scene, camera, kSize, now += 0.2, 1);
+    CHECK(body.weights->texels_uploaded() == 0);
+    CHECK(difference(view.read(), picture_of(fresh, scene, camera, kSize)).mean == 0);
+    for (const int z : {12, 44, 60, 112}) {
+      SliceView there(studio.renderer), anew(fresh);
+      const SliceCamera whole{.centre = glm::dvec3(70, 50, z), .millimetres_per_pixel = 1.2};
+      there.draw(scene, whole, SliceDisplay::Labels, kSize);
+      anew.draw(scene, whole, SliceDisplay::Labels, kSize);
+      CHECK(difference(there.read(), anew.read()).mean == 0);
+    }
+  };
+  const int lots = (slots + WeightTexture::kLot - 1) / WeightTexture::kLot;
+  CHECK(to_the_end() == lots);  // at first
+  is_as_anew();
+
+  const auto before = scene.weights->weights;
+  const auto edited = block.of([](const glm::ivec3& v) { return 400 * v.x + 100; });
+  scene.weights->weights = edited;
+  CHECK(to_the_end() == lots);
+  is_as_anew();
+  // Taken back, with dabs before all is there: in a slot that is being worked out, and in the last one.
+  SkinWeights dabbed = *before;
+  const auto dab_at = [&](const glm::ivec3& voxel) {
+    const std::int64_t brick = block.tissue->brick_at(voxel);
+    dabbed.set_chunk(brick, SkinWeights::Chunk(dabbed.chunk(brick).size(), rigid_influence(1)));
+    scene.weights->weights = std::make_shared<const SkinWeights>(dabbed);
+    cut = {.centre = glm::dvec3(voxel), .millimetres_per_pixel = 0.25};
+    frame();
+    CHECK(!slice.complete());
+    CHECK(apart(test::pixel_of(slice.read(), kSize / 2), bytes(kExactOne)) <= 2);
+  };
+  scene.weights->weights = before;
+  frame();
+  dab_at({76, 44, 12});
+  dab_at({132, 92, 114});
+  to_the_end();
+  is_as_anew();
+
+  // Another display reads other texels: what is not there yet shows the tissue.
+  scene.weights->display = WeightDisplay::Dominant;
+  frame();
+  CHECK(!slice.complete());
+  CHECK(apart(test::pixel_of(slice.read(), kSize / 2), {230, 26, 26}) <= 2);
+  to_the_end();
+  is_as_anew();
 }
 
 TEST_CASE("weights: another bone, display or contours follow no ray again, and the picture is as drawn anew") {
