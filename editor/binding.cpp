@@ -111,10 +111,10 @@ void start_binding(Editor& editor, const Computation& computation) {
     scope.region = region_of(*part, *from.volume, tissue);
     const WeightEdit edit = recomputed({*from.volume, tissue, *from.tissues, *from.armature}, *part->edited.weights, *weights, part->bones, scope);
     *changed = edit.changed;
-    auto after = std::make_shared<const SkinWeights>(edit.weights);
-    return [from, after, edited = part->edited, changed](const Document& now) {
+    const EditedLayers made = edited_layers(part->edited, std::make_shared<const SkinWeights>(edit.weights));
+    return [from, made, edited = part->edited, changed](const Document& now) {
       require_same(now, from);
-      return *changed ? with_edited(now, edited, after) : now;
+      return *changed ? with_edited(now, edited, made) : now;
     };
   });
   editor.step_of_job[id] = StepOfWork::Skin;

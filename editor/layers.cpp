@@ -73,7 +73,7 @@ std::string why_not_paint_layer(const Editor& editor) {
 
 LayerToEdit layer_to_edit(Editor& editor) {
   const Document& document = editor.document();
-  LayerToEdit edited{document.layers, active_layer(editor), document.weights};
+  LayerToEdit edited{document.layers, active_layer(editor), document.weights, document.weights};
   if (!edited.layers) return edited;
   if (!edited.layer) {
     edited.weights = edited.layers->base;
@@ -85,25 +85,27 @@ LayerToEdit layer_to_edit(Editor& editor) {
   return edited;
 }
 
-Document with_edited(const Document& now, const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after) {
-  if (now.layers != edited.layers || (!now.layers && now.weights != edited.weights)) throw Error("the weights were changed meanwhile", "changing weights", "do it again");
-  Document next = now;
-  if (!edited.layers) {
-    next.weights = std::move(after);
-    return next;
-  }
+EditedLayers edited_layers(const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after) {
+  if (!edited.layers) return {after, nullptr, after};
   WeightLayers layers = *edited.layers;
   if (edited.layer) layers.layers[*edited.layer] = shared(painted_on(*layers.layers[*edited.layer], *edited.weights, *after));
-  else layers = over_base(layers, std::move(after));
-  auto came_out = shared(recomposed(layers, *edited.layers, *now.weights));
-  set_layers(next, std::move(layers), std::move(came_out));
+  else layers = over_base(layers, after);
+  auto came_out = shared(recomposed(layers, *edited.layers, *edited.came_out));
+  return {std::move(after), shared(std::move(layers)), std::move(came_out)};
+}
+
+Document with_edited(const Document& now, const LayerToEdit& edited, const EditedLayers& made) {
+  if (now.layers != edited.layers || now.weights != edited.came_out) throw Error("the weights were changed meanwhile", "changing weights", "do it again");
+  Document next = now;
+  next.layers = made.layers;
+  next.weights = made.weights;
   return next;
 }
 
-void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after) {
-  commit(editor, label, with_edited(editor.document(), edited, after));
+void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, const EditedLayers& made) {
+  commit(editor, label, with_edited(editor.document(), edited, made));
   // The canvas shows it: the next stroke need not put it together.
-  if (edited.layer) editor.skin->painting->canvas = {editor.document().layers, *edited.layer, std::move(after)};
+  if (edited.layer) editor.skin->painting->canvas = {editor.document().layers, *edited.layer, made.after};
 }
 
 void commit_layers(Editor& editor, const std::string& label, WeightLayers next) {

@@ -24,13 +24,21 @@ struct LayerToEdit {
   std::shared_ptr<const WeightLayers> layers;  // the document's; null: it has none
   std::optional<std::size_t> layer;            // none: the base, or the weights themselves
   std::shared_ptr<const SkinWeights> weights;  // as they are before the edit: what that layer's canvas shows
+  std::shared_ptr<const SkinWeights> came_out;  // the document's own
 };
 // The active layer's; the document has weights.
 LayerToEdit layer_to_edit(Editor& editor);
-// The document after what is edited became `after`. Throws Error where its layers or weights were changed meanwhile.
-Document with_edited(const Document& now, const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after);
+// The two parts of the document after what is edited became `after`. A large change takes a while: jobs work it out themselves.
+struct EditedLayers {
+  std::shared_ptr<const SkinWeights> after;
+  std::shared_ptr<const WeightLayers> layers;
+  std::shared_ptr<const SkinWeights> weights;
+};
+EditedLayers edited_layers(const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after);
+// The document with them. Throws Error where its layers or weights were changed meanwhile.
+Document with_edited(const Document& now, const LayerToEdit& edited, const EditedLayers& made);
 // As one edit.
-void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after);
+void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, const EditedLayers& made);
 
 // The layer that is painted; none: the base, or there are no layers.
 std::optional<std::size_t> active_layer(const Editor& editor);

@@ -227,7 +227,7 @@ void end_stroke(Editor& editor) {
       next.layers[*running->edited.layer] = std::make_shared<const WeightLayer>(mask_painted_on(next, *running->edited.layer, *running->mask, after));
       commit_layers(editor, running->label, std::move(next));
     } else {
-      commit_weights(editor, running->label, running->edited, std::make_shared<const SkinWeights>(after));
+      commit_weights(editor, running->label, running->edited, edited_layers(running->edited, std::make_shared<const SkinWeights>(after)));
     }
   }
   drop_stroke(editor);

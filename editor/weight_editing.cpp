@@ -2,6 +2,7 @@
 #include "editor/weight_editing.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "editor/painting.h"
 #include "editor/prepare.h"
@@ -32,7 +33,12 @@ TissueRegion region_of(const WeightsToEdit& what, const WeightOperation& operati
   });
 }
 
-EditedWeights done(const WeightsToEdit& what, const WeightOperation& operation, Progress& progress) {
+struct Done {
+  EditedWeights edited;
+  std::optional<EditedLayers> made;  // where something changed
+};
+
+Done done(const WeightsToEdit& what, const WeightOperation& operation, Progress& progress) {
   progress.update("where", 0);
   EditScope scope;
   scope.locked = what.settings.locked;
@@ -40,14 +46,17 @@ EditedWeights done(const WeightsToEdit& what, const WeightOperation& operation, 
   scope.rigid_bone_tissue = !operation.edits_bone_tissue;
   scope.region = region_of(what, operation);
   scope.progress = &progress;
-  return operation.work(what, scope);
+  Done result{operation.work(what, scope), {}};
+  if (result.edited.edit.changed > 0) result.made = edited_layers(what.layer, std::make_shared<const SkinWeights>(result.edited.edit.weights));
+  return result;
 }
 
 // What came of it, in words; true when it became an edit.
-bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& operation, EditedWeights outcome) {
+bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& operation, Done result) {
+  EditedWeights& outcome = result.edited;
   const WeightEdit& edit = outcome.edit;
   const Document& now = editor.document();
-  const bool others = now.layers != what.layer.layers || (!now.layers && now.weights != what.layer.weights);
+  const bool others = now.layers != what.layer.layers || now.weights != what.layer.came_out;
   if (others || now.volume != what.document.volume || now.armature != what.document.armature) {
     editor.messages.warn(operation.label, "The weights were changed meanwhile: it was dropped");
     return false;
@@ -60,7 +69,7 @@ bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& oper
     else editor.messages.info(operation.label, "All is so already");
     return false;
   }
-  commit_weights(editor, operation.label, what.layer, std::make_shared<const SkinWeights>(edit.weights));
+  commit_weights(editor, operation.label, what.layer, *result.made);
   const std::string changed = grouped(edit.changed) + (edit.changed == 1 ? " voxel" : " voxels");
   if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
   else if (!lock.empty()) editor.messages.warn(operation.label, changed + "; " + grouped(edit.blocked) + " kept: " + lock);
@@ -80,7 +89,7 @@ void perform(Editor& editor, const Fields& fields, const MakeWeightOperation& ma
   }
   const Selection selection = editor.selection;
   painting.edit_job = start_task(editor, operation.label, [=](Progress& progress) -> Finish {
-    auto outcome = std::make_shared<EditedWeights>(done(what, operation, progress));
+    auto outcome = std::make_shared<Done>(done(what, operation, progress));
     return [=](Editor& e) {
       e.skin->painting->edit_job.reset();
       if (!keep(e, what, operation, std::move(*outcome)) || fields.empty()) return;

@@ -82,14 +82,14 @@ void repair_problem(Editor& editor, int index) {
   start_task(editor, label, [found, index, label, of = editor.document(), tissue = tissue_voxels(*editor.views, editor.document()), edited = layer_to_edit(editor), scope = scope_of(editor)](Progress& progress) -> Finish {
     progress.update("weights", 0);
     const WeightEdit edit = repaired({*of.volume, *tissue, *of.tissues, *of.armature}, *edited.weights, found->problems[static_cast<std::size_t>(index)], scope);
-    auto after = edit.changed > 0 ? std::make_shared<const SkinWeights>(edit.weights) : nullptr;
+    const auto made = edit.changed > 0 ? std::optional(edited_layers(edited, std::make_shared<const SkinWeights>(edit.weights))) : std::nullopt;
     const auto first_lock = std::find(scope.locked.begin(), scope.locked.end(), 1);
     const int lock = edit.blocked_by >= 0 ? edit.blocked_by : first_lock != scope.locked.end() ? static_cast<int>(first_lock - scope.locked.begin()) : -1;
     return [=](Editor& e) {
-      if (!after && lock >= 0) return e.messages.toast_error(lock_message(*of.armature, lock), "Nothing else can take or give the weight here", "skin.unlock_all");
-      if (!after) return e.messages.info(label, "Nothing is different there");
+      if (!made && lock >= 0) return e.messages.toast_error(lock_message(*of.armature, lock), "Nothing else can take or give the weight here", "skin.unlock_all");
+      if (!made) return e.messages.info(label, "Nothing is different there");
       const bool fresh = !problems_stale(e);
-      commit_weights(e, label, edited, after);
+      commit_weights(e, label, edited, *made);
       if (e.skin->painting->problems != found) return;
       // The others are where they were.
       auto next = std::make_shared<FoundProblems>(*found);
