@@ -318,14 +318,17 @@ MirrorEdit mirrored(const StrokeBody& body, const SkinWeights& weights, const Mi
   const std::vector<int> pairs = mirror_pairs(body.armature);
   const AffineTransform world = world_from_voxel(body.volume.grid), to_voxel = voxel_from_world(body.volume.grid);
   const LabelSet bone = bone_labels(body);
+  const auto is_mirrored_to = [&](const glm::ivec3& voxel) {
+    return glm::dot(world * glm::dvec3(voxel) - settings.plane.point, settings.plane.normal) > 0;
+  };
   std::vector<std::uint8_t> unmatched(body.tissue.size(), 0);
   MirrorEdit edit{edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t place, const glm::ivec3& voxel) {
+    if (!is_mirrored_to(voxel)) return WeightChange{};
     const glm::dvec3 point = world * glm::dvec3(voxel);
-    if (glm::dot(point - settings.plane.point, settings.plane.normal) <= 0) return WeightChange{};
     const bool is_bone = bone[body.volume.at(voxel)] != 0;
     const auto source = nearest_voxel(body.volume.grid, to_voxel * settings.plane.place(point), settings.reach, [&](const glm::ivec3& v) {
       const Label label = body.volume.at(v);
-      return label != 0 && (bone[label] != 0) == is_bone;
+      return label != 0 && (bone[label] != 0) == is_bone && !is_mirrored_to(v);
     });
     if (!source) {
       unmatched[place] = 1;

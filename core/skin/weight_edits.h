@@ -78,8 +78,8 @@ WeightEdit with_levels(const StrokeBody& body, const SkinWeights& weights, int b
                        const EditScope& scope = {});
 
 // The side that the plane's normal points to takes over what the other side has, bone by bone of the pairs (mirror_pairs): each
-// voxel from the nearest tissue to its mirror image that is bone where it is bone, at most `reach` away. Bodies need not be
-// symmetric: voxels without a match keep their weights and are reported.
+// voxel from the nearest tissue of that side to its mirror image that is bone where it is bone, at most `reach` away. Bodies need
+// not be symmetric: voxels without a match keep their weights and are reported. Done twice it is as done once.
 struct MirrorSettings {
   MirrorPlane plane;
   double reach = 10;  // mm
