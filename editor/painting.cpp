@@ -39,10 +39,11 @@ struct Painting::Running {
   Document document;
   std::shared_ptr<const TissueVoxels> tissue;
   LayerToEdit edited;
-  // What comes out of the layers as the stroke goes on; the mask that it changes, where it paints one, and the bones of masks.
-  std::optional<SkinWeights> shown;
-  std::shared_ptr<const SkinWeights> mask;
-  Armature mask_bones;
+  // Of the layer: its canvas, or what stands for its mask or for what its bones share with what lies below, and the bones of that.
+  enum class Of { Canvas, Mask, Shares } of = Of::Canvas;
+  std::shared_ptr<const SkinWeights> before;
+  Armature bones;
+  std::optional<SkinWeights> shown;  // what comes out of the layers as the stroke goes on
   std::unique_ptr<Stroke> stroke;
   ViewPlace view;
   std::string label;
@@ -55,6 +56,11 @@ Painting::~Painting() = default;
 const char* name_of(BrushKind kind) {
   constexpr const char* kNames[] = {"Add", "Subtract", "Set", "Multiply", "Smooth", "Sharpen", "Average", "Smear", "Joint capsule"};
   return kNames[static_cast<int>(kind)];
+}
+
+Normalize normalize_of(const Editor& editor) {
+  const Painting& painting = *editor.skin->painting;
+  return painting.normalize == Normalize::WhenComposed && (!active_layer(editor) || painting.mask) ? Normalize::Unlocked : painting.normalize;
 }
 
 Falloff falloff_of(const Painting& painting) {
@@ -140,7 +146,8 @@ StrokeSettings stroke_settings(const Editor& editor, BrushKind kind) {
     for (const int bone : editor.selection.bones) add(bone);
   settings.locked.assign(weights.bones().size(), 0);
   for (std::size_t bone = 0; bone < settings.locked.size(); ++bone) settings.locked[bone] = is_locked(document, weights.bones()[bone]);
-  settings.normalize = painting.normalize;
+  settings.normalize = normalize_of(editor);
+  settings.relative_to_locks = painting.relative_to_locks;
 
   BrushFilter& filter = settings.filter;
   filter.depth = painting.depth;
@@ -180,9 +187,13 @@ void show_stroke(Editor& editor, Painting::Running& running) {
     for (const int brick : dirty) {
       const SkinWeights::Chunk& is = running.stroke->chunk(brick);
       const auto& layer = running.edited.layer;
-      running.shown->set_chunk(brick, running.mask ? composed_while_masked(*layers, *layer, brick, is)
-                                      : layer      ? composed_while_painted(*layers, *layer, brick, running.edited.weights->chunk(brick), is)
-                                                   : composed_over_base(*layers, brick, is));
+      const auto came_out = [&] {
+        if (!layer) return composed_over_base(*layers, brick, is);
+        if (running.of == Painting::Running::Of::Mask) return composed_while_masked(*layers, *layer, brick, is);
+        const SkinWeights::Chunk& was = running.before->chunk(brick);
+        return running.of == Painting::Running::Of::Shares ? composed_while_shared(*layers, *layer, brick, was, is) : composed_while_painted(*layers, *layer, brick, was, is);
+      };
+      running.shown->set_chunk(brick, came_out());
     }
     editor.views->preview_weights = std::make_shared<const SkinWeights>(*running.shown);
   } else {
@@ -222,16 +233,43 @@ void end_stroke(Editor& editor) {
   const int lock = stroke.blocked_count() > 0 ? stroke.blocked_by() : -1;
   if (!empty) {
     const SkinWeights after = stroke.finish();
-    if (running->mask) {
-      WeightLayers next = *running->edited.layers;
-      next.layers[*running->edited.layer] = std::make_shared<const WeightLayer>(mask_painted_on(next, *running->edited.layer, *running->mask, after));
-      commit_layers(editor, running->label, std::move(next));
-    } else {
+    if (running->of == Painting::Running::Of::Canvas) {
       commit_weights(editor, running->label, running->edited, edited_layers(running->edited, std::make_shared<const SkinWeights>(after)));
+    } else {
+      WeightLayers next = *running->edited.layers;
+      auto& layer = next.layers[*running->edited.layer];
+      layer = std::make_shared<const WeightLayer>(running->of == Painting::Running::Of::Mask ? mask_painted_on(next, *running->edited.layer, *running->before, after)
+                                                                                             : shares_painted_on(*layer, *running->before, after));
+      commit_layers(editor, running->label, std::move(next));
     }
   }
   drop_stroke(editor);
-  if (empty && lock >= 0 && !running->mask) editor.messages.toast_error(lock_message(*running->document.armature, lock), "Nothing else can take or give the weight here", "skin.unlock_all");
+  if (!empty || lock < 0 || running->of == Painting::Running::Of::Mask) return;
+  if (running->of == Painting::Running::Of::Shares && !is_locked(running->document, running->before->bones()[lock])) {
+    editor.messages.toast_error("The layer is full here", "Its other bones keep what they have while normalizing is left to the composition", "skin.normalize_unlocked");
+  } else {
+    editor.messages.toast_error(lock_message(running->bones, lock), "Nothing else can take or give the weight here", "skin.unlock_all");
+  }
+}
+
+}  // namespace
+
+namespace {
+
+// What lies below takes the place before all bones; of these only the painted ones may change.
+void keep_other_bones(const Armature& armature, StrokeSettings& settings) {
+  BoneSet kept(settings.locked.size() + 1, 1);
+  kept[kBelow] = 0;
+  const std::vector<int> pairs = mirror_pairs(armature);
+  const auto may_change = [&](int bone) { kept[bone + 1] = settings.locked[bone]; };
+  for (const int bone : settings.bones) {
+    may_change(bone);
+    if (settings.mirror) may_change(pairs[bone]);
+    if (settings.brush.kind == BrushKind::JointCapsule && armature.bones[bone].parent >= 0) may_change(armature.bones[bone].parent);
+  }
+  settings.locked = std::move(kept);
+  for (int& bone : settings.bones) ++bone;
+  settings.relative_to_locks = false;
 }
 
 }  // namespace
@@ -250,18 +288,27 @@ void begin_stroke(Editor& editor, BrushKind kind) {
   running->edited = layer_to_edit(editor);
   running->label = std::string(name_of(kind)) + " " + document.armature->bones[bone].name;
   StrokeSettings settings = stroke_settings(editor, kind);
-  std::shared_ptr<const SkinWeights> painted = running->edited.weights;
+  running->before = running->edited.weights;
+  running->bones = *document.armature;
   if (running->edited.layers) running->shown = *document.weights;
   if (editor.skin->painting->mask && running->edited.layer) {
     const WeightLayer& layer = *running->edited.layers->layers[*running->edited.layer];
     running->label = std::string(name_of(kind)) + " mask of " + layer.name;
-    painted = running->mask = std::make_shared<const SkinWeights>(mask_as_weights(layer));
-    for (const std::string& name : painted->bones()) running->mask_bones.bones.push_back({.name = name, .tail = {0, 0, 1}});
+    running->of = Painting::Running::Of::Mask;
+    running->before = std::make_shared<const SkinWeights>(mask_as_weights(layer));
+    running->bones.bones.clear();
+    for (const std::string& name : running->before->bones()) running->bones.bones.push_back({.name = name, .tail = {0, 0, 1}});
     settings.bones = {kCovering};
     settings.locked.clear();
     settings.rigid_bone_tissue = false;
+    settings.relative_to_locks = false;
+  } else if (settings.normalize == Normalize::WhenComposed) {
+    running->of = Painting::Running::Of::Shares;
+    running->before = std::make_shared<const SkinWeights>(shares_as_weights(*running->edited.layers->layers[*running->edited.layer]));
+    running->bones = with_below(*document.armature);
+    keep_other_bones(*document.armature, settings);
   }
-  running->stroke = std::make_unique<Stroke>(StrokeBody{*document.volume, *running->tissue, *document.tissues, running->mask ? running->mask_bones : *document.armature}, painted, settings);
+  running->stroke = std::make_unique<Stroke>(StrokeBody{*document.volume, *running->tissue, *document.tissues, running->bones}, running->before, settings);
   editor.skin->painting->running = running;
   paint_to(editor, editor.input.pointer);
   editor.drag = Drag{MouseButton::Left, [](Editor& e, const glm::vec2&) { paint_to(e, e.input.pointer); }, end_stroke, drop_stroke};

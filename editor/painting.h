@@ -48,7 +48,8 @@ struct Painting {
   double depth_mm = 25;
   PaintedTissue tissue = PaintedTissue::All;
   bool subtree = false;   // only where the active bone, the one it hangs on or one below it has most of the weight
-  Normalize normalize = Normalize::Unlocked;
+  Normalize normalize = Normalize::Unlocked;  // as chosen; see normalize_of
+  bool relative_to_locks = false;
 
   int dragged_point = -1;           // of the falloff's curve
   // Of weights (editor/layers.h).
@@ -98,6 +99,8 @@ void draw_brush(Editor& editor, const ViewPlace& view);
 
 // What the brushes may change, and the bones they paint, as set now.
 StrokeSettings stroke_settings(const Editor& editor, BrushKind kind);
+// The base and masks have none to leave it to: they are normalized as they are painted.
+Normalize normalize_of(const Editor& editor);
 Falloff falloff_of(const Painting& painting);
 // A curve of its own that begins as the shape is.
 void begin_falloff_curve(Painting& painting);

@@ -105,7 +105,7 @@ class Stroke::Work {
   const StrokeBody body_;
   std::shared_ptr<const SkinWeights> weights_;
   const Brush brush_;
-  const bool accumulate_;
+  const bool accumulate_, relative_to_locks_;
   WeightRules rules_;
   BrushReach reach_;
   AffineTransform voxel_from_world_;
@@ -160,6 +160,7 @@ Stroke::Work::Work(const StrokeBody& body, std::shared_ptr<const SkinWeights> we
       weights_(std::move(weights)),
       brush_(settings.brush),
       accumulate_(brush_.accumulate || brush_.kind == BrushKind::Smear),
+      relative_to_locks_(settings.relative_to_locks),
       rules_(body.armature, settings.locked, settings.normalize),
       reach_(body.volume, body.tissue, filter_of(body, settings)),
       voxel_from_world_(voxel_from_world(body.volume.grid)),
@@ -284,7 +285,7 @@ void Stroke::Work::dab_side(int side, const glm::dvec3& centre, double strength)
   if (brush_.kind == BrushKind::Average) find_average(sides_[side], reached, static_cast<float>(strength));
   // What looks around must not see what this dab does.
   const bool keep = looks_around() && accumulate_;
-  const bool plain = brush_.kind <= BrushKind::Multiply && sides_[side].bones.size() == 1 && (!mirror_ || same_bones_ || accumulate_);
+  const bool plain = brush_.kind <= BrushKind::Multiply && sides_[side].bones.size() == 1 && (!mirror_ || same_bones_ || accumulate_) && !relative_to_locks_;
   if (keep) next_.resize(reached.size());
 
   const std::int64_t count = std::ssize(reached.bricks), grain = count <= 2 * kBricksAtOnce ? count : kBricksAtOnce;
@@ -432,11 +433,12 @@ void Stroke::Work::apply(const Side& side, Influence& influence, const Target* t
     change = rules_.blend(influence, *target, cover);
   } else {
     const int before = WeightRules::sum_of(influence, side.bones);
+    const double full = relative_to_locks_ ? rules_.room(influence) : kFullWeight;
     double to = before;
     switch (brush_.kind) {
-      case BrushKind::Add: to = before + cover * kFullWeight; break;
-      case BrushKind::Subtract: to = before - cover * kFullWeight; break;
-      case BrushKind::Set: to = before + (brush_.value * kFullWeight - before) * cover; break;
+      case BrushKind::Add: to = before + cover * full; break;
+      case BrushKind::Subtract: to = before - cover * full; break;
+      case BrushKind::Set: to = before + (brush_.value * full - before) * cover; break;
       case BrushKind::Multiply: to = before * (1 + (brush_.value - 1) * cover); break;
       default: {
         double all = 0, group = 0;

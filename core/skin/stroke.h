@@ -50,6 +50,7 @@ struct StrokeSettings {
   std::vector<int> bones;  // painted; several as one. JointCapsule: the child bone of the joint (its head and its parent's tail)
   BoneSet locked;
   Normalize normalize = Normalize::Unlocked;
+  bool relative_to_locks = false;  // Add, Subtract, Set and Multiply take what locked bones leave of a voxel for the whole
   BrushFilter filter;
   bool rigid_bone_tissue = true;        // bone tissue is not painted
   std::optional<MirrorPlane> mirror;    // the same on the other side, on the bones of the other side (mirror_pairs)

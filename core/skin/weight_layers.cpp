@@ -217,40 +217,108 @@ SkinWeights::Chunk composed_while_masked(const WeightLayers& layers, std::size_t
   return composed_with(layers, index, brick, masked_brick(layers, index, brick, mask));
 }
 
-SkinWeights mask_as_weights(const WeightLayer& layer) {
-  static_assert(kNotCovering == 0);
+namespace {
+
+// What a stroke paints in place of a layer: made(influence, cover) for each voxel, bone 0 where the layer covers nothing.
+template <class Made>
+SkinWeights as_painted(const WeightLayer& layer, std::vector<std::string> bones, const Made& made) {
   std::map<std::size_t, std::shared_ptr<const SkinWeights::Chunk>> empty;  // by length
   std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
   for (std::int64_t b = 0; b < layer.weights.chunk_count(); ++b) {
     const std::size_t count = layer.weights.chunk(b).size();
     if (!layer.mask[b]) {
       auto& shared = empty[count];
-      if (!shared) shared = std::make_shared<const SkinWeights::Chunk>(count, rigid_influence(kNotCovering));
+      if (!shared) shared = std::make_shared<const SkinWeights::Chunk>(count, rigid_influence(0));
       chunks.push_back(shared);
       continue;
     }
     SkinWeights::Chunk chunk(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint16_t cover = (*layer.mask[b])[i];
-      chunk[i].bone = {kNotCovering, kCovering, 0, 0};
-      chunk[i].weight = {static_cast<std::uint16_t>(kFullWeight - cover), cover, 0, 0};
-      sort_influence(chunk[i]);
-    }
+    for (std::size_t i = 0; i < count; ++i) chunk[i] = made(layer.weights.chunk(b)[i], int{(*layer.mask[b])[i]});
     chunks.push_back(std::make_shared<const SkinWeights::Chunk>(std::move(chunk)));
   }
-  return {{"not covering", "covering"}, std::move(chunks)};
+  return {std::move(bones), std::move(chunks)};
+}
+
+// A brick that covers nothing any more is no part of the layer.
+void put(WeightLayer& layer, std::int64_t brick, PaintedBrick painted) {
+  const bool any = std::any_of(painted.mask.begin(), painted.mask.end(), [](std::uint16_t cover) { return cover != 0; });
+  layer.weights.set_chunk(brick, std::move(painted.weights));
+  layer.mask[brick] = any ? std::make_shared<const WeightLayer::Mask>(std::move(painted.mask)) : nullptr;
+}
+
+}  // namespace
+
+SkinWeights mask_as_weights(const WeightLayer& layer) {
+  static_assert(kNotCovering == 0);
+  return as_painted(layer, {"not covering", "covering"}, [](const Influence&, int cover) {
+    Influence made{{kNotCovering, kCovering, 0, 0}, {static_cast<std::uint16_t>(kFullWeight - cover), static_cast<std::uint16_t>(cover), 0, 0}};
+    sort_influence(made);
+    return made;
+  });
 }
 
 WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t index, const SkinWeights& before, const SkinWeights& after) {
   WeightLayer layer = layer_at(layers, index);
   for (std::int64_t b = 0; b < before.chunk_count(); ++b) {
-    if (before.shared_chunk(b) == after.shared_chunk(b)) continue;
-    PaintedBrick masked = masked_brick(layers, index, b, after.chunk(b));
-    const bool any = std::any_of(masked.mask.begin(), masked.mask.end(), [](std::uint16_t cover) { return cover != 0; });
-    layer.weights.set_chunk(b, std::move(masked.weights));
-    layer.mask[b] = any ? std::make_shared<const WeightLayer::Mask>(std::move(masked.mask)) : nullptr;
+    if (before.shared_chunk(b) != after.shared_chunk(b)) put(layer, b, masked_brick(layers, index, b, after.chunk(b)));
   }
   return layer;
+}
+
+// What shines through, then the bones
+
+Armature with_below(const Armature& armature) {
+  Armature more;
+  more.bones.push_back({.name = "what lies below", .tail = {0, 0, 1}});
+  for (Bone bone : armature.bones) {
+    bone.parent += 1;  // a root's is what lies below
+    more.bones.push_back(std::move(bone));
+  }
+  return more;
+}
+
+SkinWeights shares_as_weights(const WeightLayer& layer) {
+  static_assert(kBelow == 0);
+  std::vector<std::string> names{"what lies below"};
+  names.insert(names.end(), layer.weights.bones().begin(), layer.weights.bones().end());
+  return as_painted(layer, std::move(names), [](const Influence& own, int cover) {
+    std::vector<std::pair<int, double>> shares{{kBelow, kFullWeight - cover}};
+    for (int i = 0; i < 4; ++i)
+      if (own.weight[i]) shares.emplace_back(own.bone[i] + 1, double(own.weight[i]) * cover / kFullWeight);
+    Influence made = quantize(shares);
+    sort_influence(made);
+    return made;
+  });
+}
+
+namespace {
+
+PaintedBrick shared_brick(const WeightLayer& layer, std::int64_t brick, const SkinWeights::Chunk& was, const SkinWeights::Chunk& is) {
+  PaintedBrick painted{layer.weights.chunk(brick), layer.mask[brick] ? *layer.mask[brick] : WeightLayer::Mask(was.size(), 0)};
+  for (std::size_t i = 0; i < was.size(); ++i) {
+    if (was[i] == is[i]) continue;
+    std::vector<std::pair<int, double>> own;
+    int cover = 0;
+    for (int k = 0; k < 4; ++k)
+      if (is[i].weight[k] && is[i].bone[k] != kBelow) own.emplace_back(is[i].bone[k] - 1, is[i].weight[k]), cover += is[i].weight[k];
+    painted.mask[i] = static_cast<std::uint16_t>(cover);
+    if (!own.empty()) painted.weights[i] = quantize(own), sort_influence(painted.weights[i]);
+  }
+  return painted;
+}
+
+}  // namespace
+
+SkinWeights::Chunk composed_while_shared(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Chunk& before,
+                                         const SkinWeights::Chunk& after) {
+  return composed_with(layers, index, brick, shared_brick(layer_at(layers, index), brick, before, after));
+}
+
+WeightLayer shares_painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after) {
+  WeightLayer painted = layer;
+  for (std::int64_t b = 0; b < before.chunk_count(); ++b)
+    if (before.shared_chunk(b) != after.shared_chunk(b)) put(painted, b, shared_brick(layer, b, before.chunk(b), after.chunk(b)));
+  return painted;
 }
 
 WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWeights> base) {

@@ -62,6 +62,16 @@ SkinWeights::Chunk composed_while_masked(const WeightLayers& layers, std::size_t
 // The layer after its mask was changed. Where it did not cover before it now has what its canvas shows.
 WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t layer, const SkinWeights& before, const SkinWeights& after);
 
+// A layer as weights that a stroke can paint while its bones keep what they have (Normalize::WhenComposed): what lies below it
+// stands before its bones, as kBelow, and gives what the painted one gains. Where the others are locked nothing else can.
+constexpr int kBelow = 0;
+SkinWeights shares_as_weights(const WeightLayer& layer);
+Armature with_below(const Armature& armature);
+SkinWeights::Chunk composed_while_shared(const WeightLayers& layers, std::size_t layer, std::int64_t brick, const SkinWeights::Chunk& before,
+                                         const SkinWeights::Chunk& after);
+// The layer after its shares were changed: it covers as much as its bones have together.
+WeightLayer shares_painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after);
+
 // The mask becomes `cover` [0, 1] in the region (empty: everywhere). Where the layer did not cover before it now has what its
 // canvas shows.
 WeightLayer with_mask(const WeightLayers& layers, std::size_t layer, const TissueVoxels& tissue, const TissueRegion& region, double cover);

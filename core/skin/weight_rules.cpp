@@ -215,6 +215,13 @@ int WeightRules::heir(int bone, std::span<const int> group) const {
   return free ? nearby_ : -1;
 }
 
+int WeightRules::room(const Influence& influence) const {
+  int room = kFullWeight;
+  for (int i = 0; i < 4; ++i)
+    if (influence.weight[i] && locked_[influence.bone[i]]) room -= influence.weight[i];
+  return room;
+}
+
 int WeightRules::sum_of(const Influence& influence, std::span<const int> bones) {
   int sum = 0;
   for (int i = 0; i < 4; ++i)
@@ -223,7 +230,7 @@ int WeightRules::sum_of(const Influence& influence, std::span<const int> bones) 
 }
 
 WeightChange WeightRules::set(Influence& influence, int bone, int weight) const {
-  if (normalize_ == Normalize::Unlocked) {
+  if (normalize_ != Normalize::All) {
     bool free = true;
     if (any_locked_) {
       free = !locked_[bone];

@@ -22,6 +22,8 @@ using BoneSet = std::vector<std::uint8_t>;  // a byte per bone, not 0 for those 
 enum class Normalize {
   Unlocked,  // the painted bones get what was asked for, the unlocked others make room
   All,       // the painted bones make room too: all unlocked weights are scaled alike until they fit
+  WhenComposed,  // of a layer: its other bones stay as they are, what lies below it makes room (shares_as_weights in
+                 // weight_layers.h, where the others are locked); elsewhere as Unlocked
 };
 
 struct WeightChange {
@@ -36,6 +38,8 @@ class WeightRules {
   WeightRules(const Armature& armature, BoneSet locked, Normalize normalize = Normalize::Unlocked, int nearby = -1);
 
   bool is_locked(int bone) const { return locked_[bone] != 0; }
+  // What locks leave, [0, kFullWeight].
+  int room(const Influence& influence) const;
   // -1 where every other bone is locked. Not one of `group`.
   int heir(int bone, std::span<const int> group = {}) const;
 

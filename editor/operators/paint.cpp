@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "editor/icons.h"
+#include "editor/layers.h"
 #include "editor/painting.h"
 #include "editor/skin_display.h"
 #include "editor/tools/brush_tools.h"
@@ -36,6 +37,10 @@ Operator setting(const char* id, const char* label, const char* sentence, Value 
   return {id, label, "", "Brush", sentence, [=](Editor& e) { (*e.skin->painting).*member = value; }, nullptr, [=](const Editor& e) { return (*e.skin->painting).*member == value; }};
 }
 
+Operator normalizing(const char* id, const char* label, const char* sentence, Normalize how) {
+  return {id, label, "", "Brush", sentence, [how](Editor& e) { e.skin->painting->normalize = how; }, nullptr, [how](const Editor& e) { return normalize_of(e) == how; }};
+}
+
 Operator shape(const char* id, const char* label, const char* sentence, FalloffShape falloff) {
   return {id, label, "", "Brush", sentence,
           [falloff](Editor& e) {
@@ -43,6 +48,17 @@ Operator shape(const char* id, const char* label, const char* sentence, FalloffS
             e.skin->painting->falloff_curve.clear();
           },
           nullptr, [falloff](const Editor& e) { return e.skin->painting->falloff_curve.empty() && e.skin->painting->falloff == falloff; }};
+}
+
+std::string needs_layer(const Editor& editor) {
+  if (!active_layer(editor)) return "Choose a layer first: the base is normalized as it is painted";
+  return editor.skin->painting->mask ? "The layer's mask is painted, which has nothing to normalize" : "";
+}
+
+Operator leaving_normalizing() {
+  Operator off = normalizing("skin.normalize_off", "Normalize: off", "The layer's other bones keep what they have: what lies below it makes room for the painted bone, and weights are normalized when the layers are put together.", Normalize::WhenComposed);
+  off.why_not = needs_layer;
+  return off;
 }
 
 void scale_radius(Editor& editor, double by) { editor.skin->painting->radius = std::clamp(editor.skin->painting->radius * by, Painting::kLeastRadius, Painting::kMostRadius); }
@@ -97,8 +113,11 @@ std::vector<Operator> paint_operators() {
       setting("skin.paint_visible", "Visible tissue", "Tissues that are shown are painted.", &Painting::tissue, PaintedTissue::Visible),
       {"skin.subtree", "Below the bone", "", "Brush", "Only where the active bone, the one it hangs on or one below it has most of the weight is painted.", [](Editor& e) { e.skin->painting->subtree = !e.skin->painting->subtree; }, nullptr,
        [](const Editor& e) { return e.skin->painting->subtree; }},
-      setting("skin.normalize_unlocked", "Normalize: unlocked", "Other unlocked bones make room for what is painted.", &Painting::normalize, Normalize::Unlocked),
-      setting("skin.normalize_all", "Normalize: all", "All unlocked bones are scaled alike, the painted one too.", &Painting::normalize, Normalize::All),
+      normalizing("skin.normalize_unlocked", "Normalize: unlocked", "Other unlocked bones make room for what is painted.", Normalize::Unlocked),
+      normalizing("skin.normalize_all", "Normalize: all", "All unlocked bones are scaled alike, the painted one too.", Normalize::All),
+      leaving_normalizing(),
+      {"skin.relative_to_locks", "Relative to locks", "", "Brush", "What locked bones leave of a place counts as the whole: half of it is what a value of a half sets.",
+       [](Editor& e) { e.skin->painting->relative_to_locks = !e.skin->painting->relative_to_locks; }, nullptr, [](const Editor& e) { return e.skin->painting->relative_to_locks; }},
       {"skin.accumulate", "Accumulate", "", "Brush", "A stroke adds up where it comes over a place again.", [](Editor& e) { e.skin->painting->accumulate = !e.skin->painting->accumulate; }, nullptr,
        [](const Editor& e) { return e.skin->painting->accumulate; }},
       shape("skin.falloff_smooth", "Smooth falloff", "The brush fades in an S.", FalloffShape::Smooth),

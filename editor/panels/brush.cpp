@@ -113,13 +113,15 @@ void draw_brush_section(Editor& editor, Column& column) {
   painting.spacing = spacing / 100;
   if (painting.depth == BrushDepth::ToDepth) number("Depth", painting.depth_mm, 0.5, 200, "%.1f", "mm");
   if (painting.kind == BrushKind::JointCapsule) number("Blend", painting.blend_mm, 1, 300, "%.1f", "mm");
-  int normalize = static_cast<int>(painting.normalize);
+  int normalize = static_cast<int>(normalize_of(editor));
+  constexpr const char* kNormalize[] = {"skin.normalize_unlocked", "skin.normalize_all", "skin.normalize_off"};
   const Rect room = column.property("Normalize");
   push_path(editor, "Normalize");
-  if (choice_field(editor, room, {"Unlocked", "All"}, normalize)) painting.normalize = static_cast<Normalize>(normalize);
-  if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, normalize == 0 ? "skin.normalize_unlocked" : "skin.normalize_all"), room);
+  if (choice_field(editor, room, {"Unlocked", "All", "Off"}, normalize)) run(editor, kNormalize[normalize]);
+  if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, kNormalize[normalize]), room);
   pop_path(editor);
   checkbox(editor, "Below the bone", column.property("Only"), "Below the bone", painting.subtree);
+  checkbox(editor, "Relative to locks", column.property("Locks"), "Relative to locks", painting.relative_to_locks);
   draw_test_pose(editor, column);
   checkbox(editor, "Accumulate", column.property(""), "Accumulate", painting.accumulate);
   column.space(6);

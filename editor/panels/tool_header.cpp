@@ -196,7 +196,7 @@ void put_options(Editor& editor, Header& header) {
     if (header.fits(130, {"skin.reach_surface", "skin.reach_depth", "skin.reach_through"})) header.choice("Reach", {"skin.reach_surface", "skin.reach_depth", "skin.reach_through"});
     if (header.fits(90, {"skin.along_tissue"})) header.toggle("skin.along_tissue");
     if (header.fits(140, {"skin.paint_all", "skin.paint_soft", "skin.paint_chosen", "skin.paint_visible"})) header.choice("Painted tissue", {"skin.paint_all", "skin.paint_soft", "skin.paint_chosen", "skin.paint_visible"});
-    if (header.fits(180, {"skin.normalize_unlocked", "skin.normalize_all"})) header.choice("Normalize", {"skin.normalize_unlocked", "skin.normalize_all"});
+    if (header.fits(180, {"skin.normalize_unlocked", "skin.normalize_all", "skin.normalize_off"})) header.choice("Normalize", {"skin.normalize_unlocked", "skin.normalize_all", "skin.normalize_off"});
     if (header.fits(header.toggle_width(90), {"skin.posed"})) header.toggle("skin.posed");
     if (header.fits(header.toggle_width(110), {"edit.x_mirror"})) header.toggle("edit.x_mirror");
     if (header.fits(90, {"skin.contours"})) header.toggle("skin.contours");

@@ -104,6 +104,48 @@ TEST_CASE("layers: a stroke changes the active layer alone, comes out as painted
   CHECK(!test.editor->document().layers);
 }
 
+TEST_CASE("layers: with normalizing off a stroke takes from below, keeps the layer's other bones, and says when the layer is full") {
+  PaintEditor test;
+  test.play("move \"3D view/view\"\nkey Shift+Ctrl+L\nwait-idle");
+  run(*test.editor, "skin.normalize_off");
+  CHECK(normalize_of(*test.editor) == Normalize::WhenComposed);
+  Painting& painting = *test.editor->skin->painting;
+  painting.kind = BrushKind::Set;
+  painting.value = 0.6;
+  const glm::dvec3 centre(0, -std::sqrt(1600 - 400), 20);
+  const auto share_at_centre = [&](int bone) {
+    double share = -1, nearest = 1e9;
+    test.for_each([&](const glm::dvec3& p, const glm::ivec3&, const Influence& i) {
+      if (const double off = glm::distance(p, centre); off < nearest) nearest = off, share = i.of(bone);
+    });
+    return share;
+  };
+  test.play("move " + dab(test));
+  test.press();
+  REQUIRE(test.editor->views->preview_weights);
+  const SkinWeights seen = *test.editor->views->preview_weights;
+  test.release();
+  CHECK(test.weights() == seen);
+  CHECK(comes_out(test));
+  CHECK(share_at_centre(1) == doctest::Approx(0.6).epsilon(1e-3));
+  // The other bone gets what room is left, and then no more.
+  test.choose(0);
+  painting.value = 1;
+  stroke(test, dab(test));
+  CHECK(share_at_centre(1) == doctest::Approx(0.6).epsilon(1e-3));
+  CHECK(comes_out(test));
+  const int steps = test.steps();
+  test.choose(1);
+  stroke(test, dab(test));
+  CHECK(test.steps() == steps);
+  REQUIRE(test.editor->messages.toasts.size() == 1);
+  CHECK(test.editor->messages.toasts[0].line == "The layer is full here");
+  // The base has nothing to leave it to.
+  choose_layer(*test.editor, std::nullopt);
+  CHECK(normalize_of(*test.editor) == Normalize::Unlocked);
+  CHECK(!why_not(*test.editor, *find_operator(*test.editor, "skin.normalize_off")).empty());
+}
+
 TEST_CASE("layers: the base is painted below a layer, which keeps what it covers") {
   PaintEditor test;
   test.play("move \"3D view/view\"\nkey Shift+Ctrl+L\nwait-idle");

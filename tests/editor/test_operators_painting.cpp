@@ -73,6 +73,8 @@ std::vector<Proof> proofs_of_painting() {
       {"skin.subtree", "click \"Edit/Brush reach/Below the bone\"", is(&Painting::subtree, true)},
       {"skin.normalize_all", "click \"Edit/Brush reach/Normalize: all\"", is(&Painting::normalize, Normalize::All)},
       {"skin.normalize_unlocked", "click \"Edit/Brush reach/Normalize: unlocked\"", is(&Painting::normalize, Normalize::Unlocked)},
+      {"skin.normalize_off", "click \"Edit/Brush reach/Normalize: off\"", is(&Painting::normalize, Normalize::WhenComposed), Shows::Nothing, "move \"3D view/view\"\n key Shift+Ctrl+L\n wait-idle"},
+      {"skin.relative_to_locks", "click \"Edit/Brush reach/Relative to locks\"", is(&Painting::relative_to_locks, true)},
       {"skin.accumulate", "click \"Edit/Brush/Accumulate\"", is(&Painting::accumulate, true)},
       {"skin.falloff_sphere", "click \"Edit/Brush/Sphere falloff\"", is(&Painting::falloff, FalloffShape::Sphere)},
       {"skin.falloff_root", "click \"Edit/Brush/Root falloff\"", is(&Painting::falloff, FalloffShape::Root)},

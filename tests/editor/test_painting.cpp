@@ -37,6 +37,130 @@ TEST_CASE("painting: a stroke lands where the pointer is, in both projections an
     }
 }
 
+TEST_CASE("painting: each brush paints by the mouse as it is shown while it does, keeps what is locked, and is one edit that is undone and redone") {
+  for (const bool parallel : {false, true})
+    for (const BrushKind kind : {BrushKind::Add, BrushKind::Subtract, BrushKind::Set, BrushKind::Multiply, BrushKind::Smooth, BrushKind::Sharpen, BrushKind::Average, BrushKind::Smear, BrushKind::JointCapsule}) {
+      PaintEditor test(1, parallel);
+      INFO(name_of(kind), ", parallel ", parallel);
+      // Something to sharpen and to drag: a blend that falls along the ball.
+      Document blended = test.editor->document();
+      SkinWeights weights = *blended.weights;
+      const TissueVoxels tissue(*blended.volume);
+      const AffineTransform world = world_from_voxel(blended.volume->grid);
+      for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
+        SkinWeights::Chunk chunk = weights.chunk(brick);
+        tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+          const double fore = 1 / (1 + std::exp((world * glm::dvec3(v)).z / 6));
+          chunk[place - tissue.bricks()[brick].first] = quantize({{0, 1 - fore}, {1, fore}});
+        });
+        weights.set_chunk(brick, chunk);
+      }
+      blended.weights = std::make_shared<const SkinWeights>(std::move(weights));
+      test.editor->history.reset(blended, "Open blended limb");
+      test.play("wait-idle");
+      test.editor->skin->painting->kind = kind;
+      test.editor->skin->painting->value = 0.5;
+      test.editor->skin->painting->strength = 0.7;
+      const auto before = test.editor->document().weights;
+      const int steps = test.steps();
+      test.play("move " + test.at(-6, 4));
+      test.press();
+      test.play("move " + test.at(4, -3) + "\nmove " + test.at(8, 3));
+      REQUIRE(test.editor->views->preview_weights);
+      const SkinWeights seen = *test.editor->views->preview_weights;
+      test.release();
+      CHECK(test.steps() == steps + 1);
+      CHECK(test.last_edit() == std::string(name_of(kind)) + " Fore");
+      CHECK(test.weights() == seen);
+      CHECK(test.weights() != *before);
+      const Document& document = test.editor->document();
+      double gained = 0;
+      int wrong = 0;
+      test.for_each([&](const glm::dvec3& p, const glm::ivec3& voxel, const Influence& i) {
+        const int brick = tissue.brick_at(voxel);
+        const Influence& was = before->chunk(brick)[tissue.index_of(voxel) - tissue.bricks()[brick].first];
+        wrong += i.weight[0] + i.weight[1] + i.weight[2] + i.weight[3] != kFullWeight;
+        wrong += i != was && (document.volume->at(voxel) == 111 || std::abs(p.z) > 25);
+        gained += i.of(1) - was.of(1);
+      });
+      CHECK(wrong == 0);
+      if (kind == BrushKind::Add) CHECK(gained > 1);
+      if (kind == BrushKind::Subtract || kind == BrushKind::Multiply) CHECK(gained < -1);
+      test.play("key Ctrl+Z");
+      CHECK(test.editor->document().weights == before);
+      test.play("key Ctrl+Shift+Z");
+      CHECK(test.weights() == seen);
+
+      // With the other bone locked there is nothing to take from: not one bit.
+      test.play("key Ctrl+Z");
+      toggle_lock(*test.editor, 0);
+      const int unlocked = test.steps();
+      test.stroke(test.at(-6, 4), test.at(8, 3));
+      CHECK(test.steps() == unlocked);
+      CHECK(*test.editor->document().weights == *before);
+    }
+}
+
+TEST_CASE("painting: how a brush is set is how it paints: strength, spacing, accumulating, depth, falloff, distance, what is seen") {
+  const auto painted_by = [](const std::function<void(PaintEditor&)>& set, const std::function<void(PaintEditor&)>& paint = {}) {
+    PaintEditor test;
+    set(test);
+    if (paint) paint(test);
+    else test.stroke(test.at(0, 20), test.at(0, 20));
+    struct {
+      double weight = 0, deepest = 1e9, most = 0;
+      int voxels = 0;
+    } found;
+    test.for_each([&](const glm::dvec3& p, const glm::ivec3&, const Influence& i) {
+      if (p.z < 0 || i.of(1) == 0) return;
+      ++found.voxels;
+      found.weight += i.of(1);
+      found.most = std::max(found.most, i.of(1));
+      found.deepest = std::min(found.deepest, glm::length(p));
+    });
+    return found;
+  };
+  const auto plain = painted_by([](PaintEditor&) {});
+  REQUIRE(plain.voxels > 30);
+  CHECK(plain.most == 1);
+  CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->strength = 0.4; }).most == doctest::Approx(0.4).epsilon(1e-3));
+  CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->radius = 6; }).voxels < 0.4 * plain.voxels);
+  // Fading, a brush does less; the sharper, the less.
+  const auto smooth = painted_by([](PaintEditor& t) { run(*t.editor, "skin.falloff_smooth"); }), sharp = painted_by([](PaintEditor& t) { run(*t.editor, "skin.falloff_sharp"); });
+  CHECK(smooth.weight < 0.8 * plain.weight);
+  CHECK(sharp.weight < 0.8 * smooth.weight);
+  // Reach: the surface alone, then down to a depth, then through.
+  const auto surface = painted_by([](PaintEditor& t) { run(*t.editor, "skin.reach_surface"); });
+  const auto depth = painted_by([](PaintEditor& t) { run(*t.editor, "skin.reach_depth"), t.editor->skin->painting->depth_mm = 8; });
+  CHECK(surface.deepest > depth.deepest);
+  CHECK(depth.deepest > plain.deepest);
+  CHECK(depth.deepest > 40 - 8 - 4);
+  // Coming over a place again adds up only where it is asked to.
+  const auto twice = [](PaintEditor& t) {
+    t.play("move " + t.at(0, 20));
+    t.press();
+    for (int i = 0; i < 4; ++i) t.play("move " + t.at(14, 20) + "\nmove " + t.at(0, 20));
+    t.release();
+  };
+  const auto weak = [](PaintEditor& t) { t.editor->skin->painting->strength = 0.05; };
+  CHECK(painted_by(weak, twice).most == doctest::Approx(0.05).epsilon(1e-3));
+  CHECK(painted_by([&](PaintEditor& t) { weak(t), run(*t.editor, "skin.accumulate"); }, twice).most > 0.2);
+  // Wide apart, dabs leave gaps on the way.
+  const auto way = [](PaintEditor& t) { t.stroke(t.at(-18, 20), t.at(18, 20)); };
+  const auto close_by = painted_by([](PaintEditor& t) { t.editor->skin->painting->radius = 5; }, way);
+  CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->radius = 5, t.editor->skin->painting->spacing = 4; }, way).voxels < 0.8 * close_by.voxels);
+  // What is hidden keeps its weights where only what is seen is painted.
+  CHECK(painted_by([](PaintEditor& t) {
+          run(*t.editor, "skin.paint_visible");
+          Document next = t.editor->document();
+          Visibility visibility = next.visibility ? *next.visibility : Visibility{};
+          visibility.clip_plane = {.enabled = true, .point = {0, 0, 0}, .normal = {1, 0, 0}};
+          next.visibility = std::make_shared<const Visibility>(visibility);
+          t.editor->history.commit("Clip", next);
+          t.play("wait-idle");
+        }, [](PaintEditor& t) { t.stroke(t.at(-4, 20), t.at(-4, 20)); }).voxels < 0.9 * plain.voxels);
+}
+
 TEST_CASE("painting: it is seen while the button is down, Escape drops it, and a stroke that changes nothing is no edit") {
   PaintEditor test;
   const auto before = test.editor->document().weights;

@@ -58,6 +58,29 @@ TEST_CASE("stroke: each brush does to the painted bone what it says") {
   CHECK(after(BrushKind::Multiply, 0.5, 2) == doctest::Approx(0.6).epsilon(1e-4));
 }
 
+TEST_CASE("stroke: relative to locks, what a locked bone leaves counts as the whole, and the lock keeps every bit") {
+  SmallBody body = two_bone_bar(12, 40, 6);
+  body.armature.bones.push_back(bone_between("Hand", 1, {15, 15, 70}, {15, 15, 84}));
+  Painted painted(std::move(body));
+  painted.set([](const glm::ivec3&) { return quantize({{0, 0.4}, {1, 0.2}, {2, 0.4}}); });
+  const glm::ivec3 middle(2, 2, 22);
+  const auto after = [&](BrushKind kind, double strength, double value) {
+    StrokeSettings settings = brush_of(kind, 5);
+    settings.brush.strength = strength;
+    settings.brush.value = value;
+    settings.locked = {1, 0, 0};
+    settings.relative_to_locks = true;
+    const Influence made = at(painted.tissue, one_dab(painted, settings, {4, 4, 44}), middle);
+    CHECK(made.of(0) == at(painted.tissue, *painted.weights, middle).of(0));
+    return made.of(1);
+  };
+  CHECK(after(BrushKind::Set, 1, 0.5) == doctest::Approx(0.3).epsilon(1e-4));
+  CHECK(after(BrushKind::Set, 1, 1) == doctest::Approx(0.6).epsilon(1e-4));
+  CHECK(after(BrushKind::Add, 0.5, 0) == doctest::Approx(0.5).epsilon(1e-4));
+  CHECK(after(BrushKind::Subtract, 0.25, 0) == doctest::Approx(0.05).epsilon(1e-4));
+  CHECK(after(BrushKind::Multiply, 1, 2) == doctest::Approx(0.4).epsilon(1e-4));
+}
+
 TEST_CASE("stroke: whatever is painted, sums stay exact, locks and bone tissue keep every bit, and untouched bricks are shared") {
   std::mt19937 random(1);
   Phantom arm = make_arm_phantom(6);

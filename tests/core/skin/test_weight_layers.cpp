@@ -197,6 +197,53 @@ TEST_CASE("weight layers: a mask is painted like weights, to the last step of 1/
   for (const auto& mask : mask_painted_on(with(layers, 0, masked), 0, after, nothing).mask) CHECK(!mask);
 }
 
+TEST_CASE("weight layers: with normalizing left to the composition a bone takes from what lies below, and the layer's others keep theirs") {
+  SmallBody body = two_bone_bar();
+  body.armature.bones.push_back(bone_between("Hand", 1, {15, 15, 70}, {15, 15, 84}));
+  const Painted painted(std::move(body));
+  WeightLayers layers = with_new_layer({painted.weights, {}}, "Elbow");
+  const StrokeBody plain = painted.stroke_body();
+  const Armature bones = with_below(plain.armature);
+  const StrokeBody with_what_lies_below{plain.volume, plain.tissue, plain.tissues, bones};
+  const glm::ivec3 middle(2, 2, 22);
+  // Sets a bone where all others of the layer keep what they have.
+  const auto set = [&](int bone, double value) {
+    StrokeSettings settings;
+    settings.brush = {.kind = BrushKind::Set, .radius = 9, .value = value, .falloff = FalloffShape::Constant};
+    settings.bones = {bone + 1};
+    settings.locked.assign(4, 1);
+    settings.locked[kBelow] = settings.locked[bone + 1] = 0;
+    const auto before = std::make_shared<const SkinWeights>(shares_as_weights(*layers.layers[0]));
+    Stroke stroke(with_what_lies_below, before, settings);
+    stroke.to({4, 4, 44});
+    const SkinWeights after = stroke.finish();
+    const WeightLayers was = layers;
+    layers = with(layers, 0, shares_painted_on(*layers.layers[0], *before, after));
+    const SkinWeights all = composed(layers);
+    for (std::int64_t b = 0; b < all.chunk_count(); ++b) CHECK(composed_while_shared(was, 0, b, before->chunk(b), after.chunk(b)) == all.chunk(b));
+    return at(painted.tissue, all, middle);
+  };
+  const Influence below = at(painted.tissue, *painted.weights, middle);
+  REQUIRE(below.of(0) == 1);
+  // The layer has 0.3 of one bone and 0.5 of another, and below shows through the rest.
+  Influence made = set(1, 0.3);
+  CHECK(made.of(1) == doctest::Approx(0.3).epsilon(1e-4));
+  CHECK(made.of(0) == doctest::Approx(0.7).epsilon(1e-4));
+  made = set(2, 0.5);
+  CHECK(made.of(1) == doctest::Approx(0.3).epsilon(1e-4));
+  CHECK(made.of(2) == doctest::Approx(0.5).epsilon(1e-4));
+  CHECK(made.of(0) == doctest::Approx(0.2).epsilon(1e-4));
+  // No more than there is room for; what is given up shows what lies below again.
+  made = set(2, 1);
+  CHECK(made.of(1) == doctest::Approx(0.3).epsilon(1e-4));
+  CHECK(made.of(2) == doctest::Approx(0.7).epsilon(1e-4));
+  set(1, 0);
+  made = set(2, 0);
+  CHECK(made == below);
+  for (const auto& mask : layers.layers[0]->mask) CHECK(!mask);
+  CHECK(composed(layers) == *painted.weights);
+}
+
 TEST_CASE("weight layers: another base shows through where nothing covers, and no old brick of it is kept") {
   const Painted painted(two_bone_bar());
   const WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
