@@ -99,6 +99,7 @@ TEST_CASE("file browser: hidden files are shown on demand, and a new folder is m
     click "New folder"
     type posed
     key Return
+    wait-idle
     expect "text:This folder is empty"
     key Escape
   )");
