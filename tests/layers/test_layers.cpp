@@ -56,7 +56,7 @@ const std::vector<Door> kDoors = {
     {"bzip2", {"bzlib"}, {"core/volume/voxel_stream.cpp"}},
     {"TetGen", {"tetgen"}, {"core/mesh/tetrahedralize.cpp"}},
     {"CHOLMOD", {"cholmod", "suitesparse/"}, {"core/base/cholesky.cpp"}},
-    {"TBB", {"tbb/", "oneapi/"}, {"core/base/parallel.cpp"}},
+    {"TBB", {"tbb/", "oneapi/"}, {"core/base/parallel.cpp", "core/base/background.cpp"}},
     {"SQLite", {"sqlite3"}, {"core/project/", "tests/support/power_cut.cpp"}},
     {"zstd", {"zstd"}, {"core/project/"}},
     {"CLI11", {"CLI/"}, {"core/cmd/", "editor/main.cpp", "editor/commands/"}},
