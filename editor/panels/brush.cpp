@@ -121,9 +121,9 @@ void draw_brush_section(Editor& editor, Column& column) {
   if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, kNormalize[normalize]), room);
   pop_path(editor);
   checkbox(editor, "Below the bone", column.property("Only"), "Below the bone", painting.subtree);
-  checkbox(editor, "Relative to locks", column.property("Locks"), "Relative to locks", painting.relative_to_locks);
   draw_test_pose(editor, column);
   checkbox(editor, "Accumulate", column.property(""), "Accumulate", painting.accumulate);
+  checkbox(editor, "Relative to locks", column.property(""), "Relative to locks", painting.relative_to_locks);
   column.space(6);
   column.end_section();
 }

@@ -222,9 +222,9 @@ TEST_CASE("painting: in a slice the brush is the ball that the circle shows, and
   PaintEditor test;
   test.editor->skin->painting->distance = BrushDistance::Euclidean;
   test.play("click \"header/view.four\"\nwait-idle");
-  const ViewPlace* slice = nullptr;
+  std::optional<ViewPlace> slice;
   for (const ViewPlace& place : test.editor->layout.view_places)
-    if (place.id != ViewId::Body && axis_of(place.id) == render::SliceAxis::Axial) slice = &place;
+    if (place.id != ViewId::Body && axis_of(place.id) == render::SliceAxis::Axial) slice = place;
   REQUIRE(slice);
   test.editor->views->cross_hair = {0, 0, 15};
   slice_of(*test.editor->views, slice->id).fitted = false;

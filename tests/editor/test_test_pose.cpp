@@ -93,9 +93,9 @@ TEST_CASE("test pose: a stroke on the bent body lands where the pointer is seen,
     CHECK(glm::distance(seen, rest) > 15);
     std::string pixel;
     if (slice) {
-      const ViewPlace* place = nullptr;
+      std::optional<ViewPlace> place;
       for (const ViewPlace& view : test.editor->layout.view_places)
-        if (view.id != ViewId::Body) place = &view;
+        if (view.id != ViewId::Body) place = view;
       REQUIRE(place);
       SliceState& shown = slice_of(*test.editor->views, place->id);
       shown.camera.centre = test.editor->views->cross_hair = seen;

@@ -97,6 +97,7 @@ std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Pos
   const auto count = size_t(map->size.x) * map->size.y * map->size.z;
   map->nodes.assign(count, glm::u16vec4(0));
   map->cubes.assign(count, PreviewMap::kNothing);
+  map->apart.assign(count, 0);
   map->reach.resize(count);
   std::vector<glm::dvec3> moved(count);  // voxels
   const auto set = [&](const glm::ivec3& n, const glm::dvec3& by) {
