@@ -179,6 +179,7 @@ BENCHMARK_CAPTURE(brush_dab, arm_smooth_geodesic_16, arm, BrushKind::Smooth, Bru
 BENCHMARK_CAPTURE(brush_dab, body_add_euclidean_16, whole_body, BrushKind::Add, BrushDistance::Euclidean, 16, 0.12, BrushDepth::Through)->Apply(five_times);
 BENCHMARK_CAPTURE(brush_dab, body_add_geodesic_16, whole_body, BrushKind::Add, BrushDistance::Geodesic, 16, 0.6, BrushDepth::Through)->Apply(five_times);
 BENCHMARK_CAPTURE(brush_dab, body_add_geodesic_32, whole_body, BrushKind::Add, BrushDistance::Geodesic, 32, 4, BrushDepth::Through)->Apply(five_times);
+BENCHMARK_CAPTURE(brush_stroke, body_leg_16, whole_body, 16)->UseManualTime()->Iterations(1)->Apply(five_times);
 BENCHMARK_CAPTURE(brush_stroke, body_leg_32, whole_body, 32)->UseManualTime()->Iterations(1)->Apply(five_times);
 
 }  // namespace limber::bench
