@@ -14,7 +14,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kWidth = 322, kHeight = 56, kMargin = 8, kNeeded = 460;
+constexpr float kWidth = 322, kNarrow = 210, kHeight = 56, kMargin = 8, kNeeded = 460;  // narrow: a ramp in a small view
 
 Colour colour_of(const glm::vec3& srgb) { return rgb(srgb.r, srgb.g, srgb.b); }
 
@@ -93,12 +93,13 @@ bool draw_weight_legend(Editor& editor, const Rect& view) {
   const Look& look = editor.look;
   const auto weights = editor.views->scene.weights->weights;
   const glm::vec2 low{view.low.x + look.px(kMargin), view.high.y - look.px(kMargin + kHeight)};
-  const Rect box{low, low + glm::vec2(look.px(kWidth), look.px(kHeight))};
+  const render::WeightDisplay display = editor.views->scene.weights->display;
+  const float narrowest = look.px(display == render::WeightDisplay::Active ? kNarrow : kWidth);
+  const Rect box{low, low + glm::vec2(std::clamp(0.4f * view.width(), narrowest, look.px(kWidth)), look.px(kHeight))};
   fill(box, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
   const Pressed pressed = press_area(editor, "legend", box);
   if (pressed.hovered) operator_tooltip(editor, *find_operator(editor, "skin.display_pie"), box);
   if (pressed.clicked) run(editor, "skin.display_pie");
-  const render::WeightDisplay display = editor.views->scene.weights->display;
   const std::string title = display == render::WeightDisplay::Active  ? "Weight of " + editor.document().armature->bones[static_cast<std::size_t>(*skin_bone(editor))].name
                             : display == render::WeightDisplay::Count ? std::string("Bones that a place follows")
                                                                       : std::string(name_of(editor.skin->display));
