@@ -252,10 +252,6 @@ void end_stroke(Editor& editor) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 // What lies below takes the place before all bones; of these only the painted ones may change.
 void keep_other_bones(const Armature& armature, StrokeSettings& settings) {
   BoneSet kept(settings.locked.size() + 1, 1);

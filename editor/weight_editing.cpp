@@ -70,7 +70,8 @@ bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& oper
     return false;
   }
   commit_weights(editor, operation.label, what.layer, *result.made);
-  const std::string changed = grouped(edit.changed) + (edit.changed == 1 ? " voxel" : " voxels");
+  const bool was_off = what.settings.normalize == Normalize::WhenComposed;
+  const std::string changed = grouped(edit.changed) + (edit.changed == 1 ? " voxel" : " voxels") + (was_off ? ", normalized: only strokes leave that to the layers" : "");
   if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
   else if (!lock.empty()) editor.messages.warn(operation.label, changed + "; " + grouped(edit.blocked) + " kept: " + lock);
   else editor.messages.ok(operation.label, changed);

@@ -56,7 +56,7 @@ std::string needs_layer(const Editor& editor) {
 }
 
 Operator leaving_normalizing() {
-  Operator off = normalizing("skin.normalize_off", "Normalize: off", "The layer's other bones keep what they have: what lies below it makes room for the painted bone, and weights are normalized when the layers are put together.", Normalize::WhenComposed);
+  Operator off = normalizing("skin.normalize_off", "Normalize: off", "Strokes leave the layer's other bones what they have: what lies below it makes room for the painted bone, and weights are normalized when the layers are put together. Edits of the whole body normalize all the same.", Normalize::WhenComposed);
   off.why_not = needs_layer;
   return off;
 }
@@ -116,7 +116,7 @@ std::vector<Operator> paint_operators() {
       normalizing("skin.normalize_unlocked", "Normalize: unlocked", "Other unlocked bones make room for what is painted.", Normalize::Unlocked),
       normalizing("skin.normalize_all", "Normalize: all", "All unlocked bones are scaled alike, the painted one too.", Normalize::All),
       leaving_normalizing(),
-      {"skin.relative_to_locks", "Relative to locks", "", "Brush", "What locked bones leave of a place counts as the whole: half of it is what a value of a half sets.",
+      {"skin.relative_to_locks", "Relative to locks", "", "Brush", "To strokes that add, subtract, set or multiply, what locked bones leave of a place counts as the whole: half of it is what a value of a half sets.",
        [](Editor& e) { e.skin->painting->relative_to_locks = !e.skin->painting->relative_to_locks; }, nullptr, [](const Editor& e) { return e.skin->painting->relative_to_locks; }},
       {"skin.accumulate", "Accumulate", "", "Brush", "A stroke adds up where it comes over a place again.", [](Editor& e) { e.skin->painting->accumulate = !e.skin->painting->accumulate; }, nullptr,
        [](const Editor& e) { return e.skin->painting->accumulate; }},

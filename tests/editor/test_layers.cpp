@@ -18,6 +18,16 @@ bool comes_out(const PaintEditor& test) { return test.weights() == composed(laye
 std::string dab(const PaintEditor& test) { return test.at(0, 20); }
 void stroke(PaintEditor& test, const std::string& at) { test.stroke(at, at); }
 
+// A stroke that comes out as it was shown while the button was down.
+void stroke_as_shown(PaintEditor& test, const std::string& at) {
+  test.play("move " + at);
+  test.press();
+  REQUIRE(test.editor->views->preview_weights);
+  const SkinWeights seen = *test.editor->views->preview_weights;
+  test.release();
+  CHECK(test.weights() == seen);
+}
+
 // Two layers, of which the upper is painted.
 void layer(Stage& s) {
   Document next = s.document();
@@ -79,12 +89,7 @@ TEST_CASE("layers: a stroke changes the active layer alone, comes out as painted
   REQUIRE(test.editor->document().layers);
   CHECK(*test.editor->document().weights == *base);
   CHECK(active_layer(*test.editor) == 0);
-  test.play("move " + dab(test));
-  test.press();
-  REQUIRE(test.editor->views->preview_weights);
-  const SkinWeights seen = *test.editor->views->preview_weights;
-  test.release();
-  CHECK(test.weights() == seen);
+  stroke_as_shown(test, dab(test));
   CHECK(test.weights() != *base);
   CHECK(layers(test).base == base);
   CHECK(comes_out(test));
@@ -120,12 +125,7 @@ TEST_CASE("layers: with normalizing off a stroke takes from below, keeps the lay
     });
     return share;
   };
-  test.play("move " + dab(test));
-  test.press();
-  REQUIRE(test.editor->views->preview_weights);
-  const SkinWeights seen = *test.editor->views->preview_weights;
-  test.release();
-  CHECK(test.weights() == seen);
+  stroke_as_shown(test, dab(test));
   CHECK(comes_out(test));
   CHECK(share_at_centre(1) == doctest::Approx(0.6).epsilon(1e-3));
   // The other bone gets what room is left, and then no more.
@@ -153,12 +153,7 @@ TEST_CASE("layers: the base is painted below a layer, which keeps what it covers
   const auto covered = layers(test).layers[0];
   const auto base = layers(test).base;
   choose_layer(*test.editor, std::nullopt);
-  test.play("move " + test.at(5, 20));
-  test.press();
-  REQUIRE(test.editor->views->preview_weights);
-  const SkinWeights seen = *test.editor->views->preview_weights;
-  test.release();
-  CHECK(test.weights() == seen);
+  stroke_as_shown(test, test.at(5, 20));
   CHECK(layers(test).base != base);
   CHECK(*layers(test).base != *base);
   CHECK(layers(test).layers[0]->mask == covered->mask);

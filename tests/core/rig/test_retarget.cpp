@@ -283,7 +283,7 @@ TEST_CASE("retarget: feet that stand slide no more than the source's, stance by 
       MESSAGE(names, ": ", all.stances, " stances, mm strayed ", all.posed, ", the source's ", all.source);
       CHECK(all.stances > 2);
       CHECK(all.longer == 0);
-      CHECK(all.posed < 1.03 * all.source);
+      CHECK(all.posed < 1.01 * all.source + 0.5);  // mm, of the whole take
       CHECK(higher / frames < 15);  // mm
       CHECK(largest_difference(motion, rig, 7, map, Travel::Free) < 2);
     }
@@ -315,7 +315,7 @@ TEST_CASE("retarget: toes that stand while the heel is up slide no more than the
       MESSAGE(file, " on ", std::string(rig_file), ": ", all.stances, " stances, mm strayed ", all.posed, ", the source's ", all.source);
       CHECK(all.stances > 3);
       CHECK(all.longer == 0);
-      CHECK(all.posed < 1.05 * all.source);
+      CHECK(all.posed < 1.02 * all.source + 1);
     }
 }
 
