@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The shape that tissue takes when its bones move: nonlinear finite elements on a tet mesh, from rest to the pose in steps.
+// Bones are held by stiff springs to where their rig bones are; everything else finds the shape of least energy. Flesh keeps
+// its volume (nearly incompressible, without the locking of plain tets, patch_form.h) and is never turned inside out at any
+// iterate. With contact the air around the skin is meshed too and must not invert either, so that no surface can pass
+// through another (air_form.h) [Mueller et al. 2015, Air Meshes; Jiang et al. 2017].
+// Every step is solved by projected Newton (newton.h). Lengths in mm, stiffness in kPa. The same for any number of threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/base/progress.h"
+#include "core/base/rigid_transform.h"
+#include "core/fem/material.h"
+#include "core/mesh/tet_mesh.h"
+
+namespace limber {
+
+struct BoneWeight {
+  int bone;
+  double weight;
+};
+
+struct FemModel {
+  TetMesh mesh;                       // at rest
+  std::vector<TetMaterial> material;  // #T
+  std::vector<int> held_by;           // #V: the rig bone that holds the node, -1 free
+  std::vector<std::vector<BoneWeight>> influences;  // #V, sums of 1: where each step starts to search; the result does not hang on them
+  std::vector<std::string> bone_names;              // for messages; "bone 3" where there is none
+};
+
+// posed_from_rest of every rig bone at t, from 0 (where the solve starts) to 1 (the pose).
+using BonePath = std::function<std::vector<RigidTransform>(double t)>;
+
+struct SolveSettings {
+  bool contact = false;
+  double step_degrees = 7.5;        // of the joint that turns furthest
+  double step_tolerance_mm = 4;     // a step before the last ends when no node would move further than this
+  double tolerance_mm = 0.3;        // the last one
+  int step_iterations = 40;         // a step that needs more is tried again at half its length
+  double shortest_step_degrees = 0.9;  // shorter ones are not tried: the pose is out of reach
+};
+
+// What is known while solving, after every iteration. V lives only during the call.
+struct SolveStep {
+  double reached;    // of the path, [0, 1]: that this iteration works at
+  int iteration;     // so far, over all steps
+  double residual;   // furthest that a node wanted to move in it, mm
+  const Eigen::MatrixX3d& V;
+};
+
+struct SolvedPose {
+  // CPU seconds of all threads.
+  struct Seconds {
+    double air = 0, analysis = 0, assembly = 0, factorization = 0, search = 0, total = 0;
+  };
+  Eigen::MatrixX3d V;        // #V posed nodes
+  bool converged = false;    // false: V is the last good step, `reached` of the path
+  double reached = 0;        // [0, 1]
+  std::string blocked_by;    // what stands in the way, where it did not converge; else empty
+  int steps = 0, iterations = 0, factorizations = 0;
+  double residual = 0;       // furthest that a node wanted to move in the last iteration, mm
+  double min_det_f = 1;      // of tets with flesh, at the end
+  double min_det_f_of_path = 1;  // at the end of any step
+  double min_air_det_f = 1;  // of air tets that hold against contact, against their shape at the start of the step; of all steps
+  std::int64_t inverted = 0;  // tets with det F <= 0 at the end of any step, flesh, bone and air
+  int crossings_mended = 0;  // times that skin was found crossing and the last two steps were done again at half the angle
+  int air_meshes_kept = 0;   // times that the air could not be meshed and the former air went on
+  Seconds seconds;
+};
+
+// start  #V nodes that the path begins at (a neighbouring frame's result), none: rest
+// throws Error when the model's lists disagree in length, a tet is inverted at the start, or memory does not suffice
+SolvedPose solve_pose(const FemModel& model, const BonePath& path, double largest_angle_degrees, const SolveSettings& settings = {},
+                      Progress& progress = no_progress(), const std::function<void(const SolveStep&)>& on_step = {},
+                      const Eigen::MatrixX3d* start = nullptr);
+
+}  // namespace limber
