@@ -5,63 +5,11 @@
 #include <cmath>
 #include <map>
 
+#include "core/deform/claims.h"
 
 namespace limber {
 
 namespace {
-
-glm::ivec3 voxel_of(std::uint32_t cell, const glm::ivec3& size) {
-  return {int(cell % size.x), int(cell / size.x % size.y), int(cell / size.x / size.y)};
-}
-
-bool are_neighbours(const glm::ivec3& a, const glm::ivec3& b) {
-  return glm::all(glm::lessThanEqual(glm::abs(a - b), glm::ivec3(1)));
-}
-
-// Writes claims into a map by the rules of the head page.
-class Claims {
- public:
-  Claims(InverseMap& map, const LabelVolume& volume, const std::vector<int>& priority, const TissueDepth* depth)
-      : map_(map), volume_(volume), priority_(priority), depth_(depth) {}
-
-  void claim(std::uint32_t cell, const glm::ivec3& rest_voxel, const CellClaim& claim) {
-    const std::int64_t at = map_.index(claim.voxel);
-    const std::uint32_t holder = map_.cell[at];
-    bool wins = true;
-    if (holder != InverseMap::kNoCell) {
-      wins = is_better(cell, claim, at);
-      if (!are_neighbours(rest_voxel, voxel_of(holder, volume_.grid.size))) {
-        map_.flags[at] |= InverseMap::kOverlap;
-        map_.lost.push_back(volume_.voxels[wins ? holder : cell]);
-      }
-    }
-    if (!wins) return;
-    map_.use_row(claim.voxel);
-    map_.cell[at] = cell;
-    map_.rest[at] = claim.rest;
-    if (map_.has_volume_ratio) map_.posed_per_rest[at] = static_cast<float>(claim.posed_per_rest);
-    map_.flags[at] = (map_.flags[at] & ~InverseMap::kInverted) | (claim.posed_per_rest < 0 ? InverseMap::kInverted : 0);
-  }
-
- private:
-  bool is_better(std::uint32_t cell, const CellClaim& claim, std::int64_t at) const {
-    const bool inverted = claim.posed_per_rest < 0, holder_inverted = map_.flags[at] & InverseMap::kInverted;
-    if (inverted != holder_inverted) return holder_inverted;
-    const std::uint32_t holder = map_.cell[at];
-    const int mine = priority_[volume_.voxels[cell]], theirs = priority_[volume_.voxels[holder]];
-    if (mine != theirs) return mine > theirs;
-    if (depth_) {
-      const double my_depth = (*depth_)(glm::vec3(claim.rest)), their_depth = (*depth_)(map_.rest[at]);
-      if (my_depth != their_depth) return my_depth > their_depth;
-    }
-    return cell < holder;
-  }
-
-  InverseMap& map_;
-  const LabelVolume& volume_;
-  const std::vector<int>& priority_;
-  const TissueDepth* depth_;
-};
 
 // The steps from the first point of a straight row on, at least 0, after which its points can lie in a box. Empty when
 // first > last.
@@ -152,6 +100,24 @@ class RigidBrick {
   const PosedLattice::Corners* corners_ = nullptr;   // once they were needed
 };
 
+// The cells of a brick but for those of `without`; false where none is to be left out.
+bool rasterize_some(const PosedLattice& lattice, std::int64_t brick, const std::array<std::uint64_t, 8>& without, const VoxelRange& range,
+                    PosedLattice::Corners& room, Claims& claims) {
+  if (std::all_of(without.begin(), without.end(), [](std::uint64_t slice) { return slice == 0; })) return false;
+  const TissueVoxels::Brick& cells = lattice.tissue().bricks()[brick];
+  if (without == cells.mask) return true;
+  const PosedLattice::Corners& corners = lattice.corners(brick, room);
+  const Grid& grid = lattice.volume().grid;
+  lattice.tissue().for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+    const glm::ivec3 v = voxel - cells.corner;
+    if (without[v.z] >> (v.x + 8 * v.y) & 1) return;
+    cell_at(corners, cells.corner, v).rasterize(range, [&](const CellClaim& cell) {
+      claims.claim(static_cast<std::uint32_t>(grid.index(voxel)), voxel, cell);
+    });
+  });
+  return true;
+}
+
 VoxelRange voxels_of(const PosedLattice::FixedBox& box) { return {(box.low + (kFixedOne - 1)) >> 16, box.high >> 16}; }
 
 }  // namespace
@@ -180,7 +146,7 @@ void InverseMap::reset(const VoxelRange& new_range) {
 }
 
 void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::vector<std::int64_t>& bricks,
-                     const std::vector<int>& priority, const TissueDepth* depth) {
+                     const std::vector<int>& priority, const TissueDepth* depth, const TissueMask* without) {
   const TissueVoxels& tissue = lattice.tissue();
   const Grid& grid = lattice.volume().grid;
   Claims claims(map, lattice.volume(), priority, depth);
@@ -188,6 +154,7 @@ void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::ve
   for (std::int64_t brick : bricks) {
     const VoxelRange reach = intersect(voxels_of(lattice.bounds(brick)), map.range);
     if (reach.empty()) continue;
+    if (without && rasterize_some(lattice, brick, (*without)[brick], reach, room, claims)) continue;
     if (lattice.is_still(brick)) {
       tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
         const glm::ivec3 at = voxel - lattice.output().base;

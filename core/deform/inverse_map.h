@@ -13,6 +13,7 @@
 // would bend it. A voxel is painted where a rig bone's own motion, read backward, leads to bone tissue of that rig bone.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -51,10 +52,14 @@ struct InverseMap {
   }
 };
 
+// Some of the tissue: by brick, as the brick's own mask.
+using TissueMask = std::vector<std::array<std::uint64_t, 8>>;
+
 // Writes the claims of the cells of `bricks` (rising) into the map.
 //   priority  of the tissue, per label       depth  nullptr where no pose can make a fold
+//   without   cells that something else carries, or nullptr
 void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::vector<std::int64_t>& bricks,
-                     const std::vector<int>& priority, const TissueDepth* depth);
+                     const std::vector<int>& priority, const TissueDepth* depth, const TissueMask* without = nullptr);
 
 // Bone tissue that moves rigidly.
 class RigidBones {

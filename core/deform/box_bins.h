@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Which of many boxes reach into a box. Boxes are of whole voxels; they are sorted into cubic bins.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "core/deform/lattice.h"
+
+namespace limber {
+
+class BoxBins {
+ public:
+  BoxBins() = default;
+  //   boxes  #B; empty ones are never found       bin  voxels along each edge of a bin
+  BoxBins(std::vector<VoxelRange> boxes, int bin) : boxes_(std::move(boxes)), bin_(bin) {
+    VoxelRange all;
+    for (const VoxelRange& box : boxes_)
+      if (!box.empty()) all = all.empty() ? box : VoxelRange{glm::min(all.low, box.low), glm::max(all.high, box.high)};
+    if (all.empty()) return;
+    first_ = bin_of(all.low);
+    size_ = bin_of(all.high) - first_ + 1;
+    begin_.assign(std::size_t(size_.x) * size_.y * size_.z + 1, 0);
+    for_each_entry([&](std::int64_t bin_at, int) { ++begin_[bin_at + 1]; });
+    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+    entries_.resize(begin_.back());
+    std::vector<std::int64_t> end(begin_.begin(), begin_.end() - 1);
+    for_each_entry([&](std::int64_t bin_at, int box) { entries_[end[bin_at]++] = box; });
+  }
+
+  // The boxes that meet `range`, rising, written into `found`.
+  void meeting(const VoxelRange& range, std::vector<int>& found) const {
+    found.clear();
+    if (begin_.empty() || range.empty()) return;
+    const glm::ivec3 low = glm::max(bin_of(range.low) - first_, glm::ivec3(0)), high = glm::min(bin_of(range.high) - first_, size_ - 1);
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+          const std::int64_t at = x + std::int64_t{size_.x} * (y + std::int64_t{size_.y} * z);
+          for (std::int64_t e = begin_[at]; e < begin_[at + 1]; ++e)
+            if (!intersect(boxes_[entries_[e]], range).empty()) found.push_back(entries_[e]);
+        }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+  }
+
+ private:
+  glm::ivec3 bin_of(const glm::ivec3& voxel) const { return glm::ivec3(glm::floor(glm::dvec3(voxel) / double(bin_))); }
+
+  template <class Body>
+  void for_each_entry(const Body& body) const {
+    for (int b = 0; b < static_cast<int>(boxes_.size()); ++b) {
+      if (boxes_[b].empty()) continue;
+      const glm::ivec3 low = bin_of(boxes_[b].low) - first_, high = bin_of(boxes_[b].high) - first_;
+      for (int z = low.z; z <= high.z; ++z)
+        for (int y = low.y; y <= high.y; ++y)
+          for (int x = low.x; x <= high.x; ++x) body(x + std::int64_t{size_.x} * (y + std::int64_t{size_.y} * z), b);
+    }
+  }
+
+  std::vector<VoxelRange> boxes_;
+  int bin_ = 1;
+  glm::ivec3 first_{0}, size_{0};
+  std::vector<std::int64_t> begin_;
+  std::vector<int> entries_;
+};
+
+}  // namespace limber

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/posed_tets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "core/base/parallel.h"
+#include "core/deform/claims.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kFurthest = 32000;  // output voxels from the base; fixed point holds 32 768
+constexpr int kPosedBin = 16;        // voxels: a quarter of a tile of the output
+constexpr int kSide = TissueVoxels::kBrick + 1;
+
+glm::dvec3 in_mm(const Eigen::MatrixX3d& places, int row) { return {places(row, 0), places(row, 1), places(row, 2)}; }
+
+// body(brick) for the brick there and those around it that have tissue.
+template <class Body>
+void for_each_neighbour_brick(const TissueVoxels& tissue, const glm::ivec3& corner, const Body& body) {
+  for (int i = 0; i < 27; ++i) {
+    const glm::ivec3 at = corner + (glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1) * TissueVoxels::kBrick;
+    if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, tissue.grid_size()))) continue;
+    if (const int brick = tissue.brick_at(at); brick >= 0) body(brick);
+  }
+}
+
+// Rest voxel coordinates by posed ones, of a tet.
+struct TetMap {
+  glm::dvec3 from_posed, from_rest;
+  glm::dmat3 rest_from_posed;
+  double posed_per_rest;
+
+  TetMap(const std::array<FixedPoint, 4>& posed, const std::array<glm::dvec3, 4>& rest)
+      : from_posed(glm::dvec3(posed[0]) / double(kFixedOne)), from_rest(rest[0]) {
+    glm::dmat3 posed_edges, rest_edges;
+    for (int i = 0; i < 3; ++i) {
+      posed_edges[i] = glm::dvec3(posed[i + 1] - posed[0]) / double(kFixedOne);
+      rest_edges[i] = rest[i + 1] - rest[0];
+    }
+    rest_from_posed = rest_edges * glm::inverse(posed_edges);
+    posed_per_rest = glm::determinant(posed_edges) / glm::determinant(rest_edges);
+  }
+  glm::dvec3 rest(const glm::ivec3& voxel) const { return from_rest + rest_from_posed * (glm::dvec3(voxel) - from_posed); }
+};
+
+// Of a rest point, in tet's corners.
+glm::dvec4 shares_in(const std::array<glm::dvec3, 4>& rest, const glm::dvec3& point) {
+  const glm::dmat3 edges(rest[1] - rest[0], rest[2] - rest[0], rest[3] - rest[0]);
+  const glm::dvec3 s = glm::inverse(edges) * (point - rest[0]);
+  return {1 - s.x - s.y - s.z, s};
+}
+
+std::uint32_t index_of(const Grid& grid, const glm::ivec3& voxel) { return static_cast<std::uint32_t>(grid.index(voxel)); }
+
+// The point of a triangle nearest to p, by its corners' shares [Ericson 2004, Real-time collision detection, 5.1.5].
+glm::dvec3 nearest_in_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp), d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {0, 1 - w, w};
+  }
+  const double sum = va + vb + vc;
+  return {va / sum, vb / sum, vc / sum};
+}
+
+}  // namespace
+
+// The faces that one tet alone has, and how what lies outside moves with them.
+class PosedTets::Border {
+ public:
+  explicit Border(const PosedTets& tets) : tets_(tets) {
+    const TetMesh& mesh = *tets.mesh_;
+    struct Sorted {
+      std::array<int, 3> corners;
+      int tet, opposite;
+    };
+    std::vector<Sorted> all;
+    all.reserve(mesh.T.rows() * 4);
+    for (int t = 0; t < mesh.T.rows(); ++t)
+      for (int f = 0; f < 4; ++f) {
+        std::array<int, 3> c{mesh.T(t, (f + 1) & 3), mesh.T(t, (f + 2) & 3), mesh.T(t, (f + 3) & 3)};
+        std::sort(c.begin(), c.end());
+        all.push_back({c, t, f});
+      }
+    std::sort(all.begin(), all.end(), [](const Sorted& a, const Sorted& b) { return a.corners != b.corners ? a.corners < b.corners : a.tet < b.tet; });
+    std::vector<VoxelRange> boxes;
+    for (size_t i = 0; i < all.size(); ++i) {
+      const bool twin = (i > 0 && all[i - 1].corners == all[i].corners) || (i + 1 < all.size() && all[i + 1].corners == all[i].corners);
+      if (twin) continue;
+      faces_.push_back({all[i].corners, all[i].tet});
+      glm::dvec3 low(INFINITY), high(-INFINITY);
+      for (int node : all[i].corners) {
+        low = glm::min(low, tets.rest_[node]);
+        high = glm::max(high, tets.rest_[node]);
+      }
+      boxes.push_back({glm::ivec3(glm::floor(low)), glm::ivec3(glm::ceil(high))});
+    }
+    bins_ = BoxBins(std::move(boxes), TissueVoxels::kBrick);
+  }
+
+  // Where a rest point outside the mesh goes.
+  FixedPoint carried(const glm::dvec3& rest) const {
+    const Grid& grid = tets_.lattice_->volume().grid;
+    const glm::dvec3 world = world_from_voxel(grid) * rest;
+    const double least_spacing = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
+    std::vector<int> near;
+    double least = INFINITY;
+    int face = -1;
+    glm::dvec3 shares(0);
+    const int furthest = 2 * std::max({grid.size.x, grid.size.y, grid.size.z}) + 64;
+    for (int reach = 2; least > reach * least_spacing * reach * least_spacing && reach <= 2 * furthest; reach *= 2) {
+      bins_.meeting({glm::ivec3(glm::floor(rest)) - reach, glm::ivec3(glm::ceil(rest)) + reach}, near);
+      for (int f : near) {
+        const auto& c = faces_[f].corners;
+        const Eigen::MatrixX3d& V = tets_.mesh_->V;
+        const glm::dvec3 s = nearest_in_triangle(world, in_mm(V, c[0]), in_mm(V, c[1]), in_mm(V, c[2]));
+        const glm::dvec3 off = s.x * in_mm(V, c[0]) + s.y * in_mm(V, c[1]) + s.z * in_mm(V, c[2]) - world;
+        if (const double squared = glm::dot(off, off); squared < least) {
+          least = squared;
+          face = f;
+          shares = s;
+        }
+      }
+    }
+    glm::dvec3 from(0), moved(0);  // of the nearest point
+    for (int i = 0; i < 3; ++i) {
+      from += shares[i] * in_mm(tets_.mesh_->V, faces_[face].corners[i]);
+      moved += shares[i] * in_mm(tets_.moved_, faces_[face].corners[i]);
+    }
+    const glm::dvec3 off = world - from;
+    const Eigen::Vector3d turned = turn(faces_[face].tet) * Eigen::Vector3d(off.x, off.y, off.z);
+    const glm::dvec3 shift = moved + glm::dvec3(turned.x(), turned.y(), turned.z()) - off;
+    return tets_.fixed(tets_.lattice_->output().from_rest(rest + voxel_from_world(grid).linear * shift));
+  }
+
+ private:
+  struct Face {
+    std::array<int, 3> corners;
+    int tet;
+  };
+
+  // The rotation of a tet's motion; exactly none where it does not move.
+  Eigen::Matrix3d turn(int tet) const {
+    Eigen::Matrix3d rest, moved;
+    const auto corners = tets_.mesh_->T.row(tet);
+    for (int i = 0; i < 3; ++i) {
+      rest.col(i) = (tets_.mesh_->V.row(corners[i + 1]) - tets_.mesh_->V.row(corners[0])).transpose();
+      moved.col(i) = (tets_.moved_.row(corners[i + 1]) - tets_.moved_.row(corners[0])).transpose();
+    }
+    if (moved.isZero(0)) return Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity() + moved * rest.inverse();
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Matrix3d u = svd.matrixU();
+    if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
+    return u * svd.matrixV().transpose();
+  }
+
+  const PosedTets& tets_;
+  std::vector<Face> faces_;
+  BoxBins bins_;
+};
+
+// What one brick's tissue comes to.
+struct PosedTets::BrickOutcome {
+  FixedPoint low{INT32_MAX}, high{INT32_MIN};  // of its posed corners
+  std::vector<Rider> riders;
+};
+
+PosedTets::PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const PosedLattice& lattice, TissueMask in_mesh, Progress& progress)
+    : mesh_(&mesh), lattice_(&lattice), in_mesh_(std::move(in_mesh)), moved_(posed - mesh.V) {
+  place_nodes();
+  find_instead_of();
+  const auto tets = static_cast<int>(mesh.T.rows());
+  std::vector<VoxelRange> rest_boxes(tets), posed_boxes(tets);
+  for (int t = 0; t < tets; ++t) {
+    posed_boxes[t] = voxels_in_box(posed_corners(t));
+    glm::dvec3 low(INFINITY), high(-INFINITY);
+    for (const glm::dvec3& corner : rest_corners(t)) {
+      low = glm::min(low, corner);
+      high = glm::max(high, corner);
+    }
+    rest_boxes[t] = {glm::ivec3(glm::floor(low)), glm::ivec3(glm::ceil(high))};
+  }
+  bins_ = BoxBins(std::move(posed_boxes), kPosedBin);
+  const BoxBins rest_bins(std::move(rest_boxes), TissueVoxels::kBrick);
+  const Border border(*this);
+
+  std::vector<BrickOutcome> outcomes(lattice.tissue().bricks().size());
+  parallel_for(std::ssize(outcomes), 8, [&](std::int64_t begin, std::int64_t end) {
+    for (auto brick = begin; brick < end && !progress.cancelled(); ++brick) run_brick(brick, rest_bins, border, outcomes[brick]);
+  });
+  progress.update("pose", 1);
+  FixedPoint low(INT32_MAX), high(INT32_MIN);
+  for (const BrickOutcome& outcome : outcomes) {
+    low = glm::min(low, outcome.low);
+    high = glm::max(high, outcome.high);
+    riders_.insert(riders_.end(), outcome.riders.begin(), outcome.riders.end());
+  }
+  if (low.x <= high.x) posed_tissue_ = voxels_in_box(std::array{low, high});
+  std::vector<VoxelRange> rider_boxes;
+  for (const Rider& rider : riders_) rider_boxes.push_back(voxels_in_box(rider.corners));
+  rider_bins_ = BoxBins(std::move(rider_boxes), kPosedBin);
+}
+
+bool PosedTets::is_in_mesh(const glm::ivec3& voxel) const {
+  if (!lattice_->volume().grid.contains(voxel)) return false;
+  const TissueVoxels& tissue = lattice_->tissue();
+  const int brick = tissue.brick_at(voxel);
+  return brick >= 0 && (in_mesh_[brick][voxel.z & 7] >> ((voxel.x & 7) + 8 * (voxel.y & 7)) & 1);
+}
+
+void PosedTets::find_instead_of() {
+  const TissueVoxels& tissue = lattice_->tissue();
+  instead_of_ = in_mesh_;
+  parallel_for(std::ssize(in_mesh_), 64, [&](std::int64_t begin, std::int64_t end) {
+    for (auto brick = begin; brick < end; ++brick) {
+      const glm::ivec3 first = tissue.bricks()[brick].corner;
+      bool borders = false;  // on tissue outside the mesh's charge
+      for_each_neighbour_brick(tissue, first, [&](int near) { borders |= in_mesh_[near] != tissue.bricks()[near].mask; });
+      if (!borders) continue;
+      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+        bool inside = true;
+        for (int i = 0; i < 27 && inside; ++i) {
+          const glm::ivec3 near = voxel + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+          inside = is_in_mesh(near) || lattice_->volume().at_or_air(near) == 0;
+        }
+        if (!inside) instead_of_[brick][voxel.z & 7] &= ~(std::uint64_t{1} << ((voxel.x & 7) + 8 * (voxel.y & 7)));
+      });
+    }
+  });
+}
+
+void PosedTets::place_nodes() {
+  const Grid& grid = lattice_->volume().grid;
+  const AffineTransform voxel = voxel_from_world(grid);
+  for (int i = 0; i < mesh_->V.rows(); ++i) {
+    const glm::dvec3 at = voxel * in_mm(mesh_->V, i);
+    rest_.push_back(glm::round(at * double(kFixedOne)) / double(kFixedOne));
+    // Not moved is not rounded twice.
+    posed_.push_back(fixed(lattice_->output().from_rest(rest_[i] + voxel.linear * in_mm(moved_, i))));
+  }
+}
+
+FixedPoint PosedTets::fixed(const glm::dvec3& at) const {
+  if (!(std::abs(at.x) < kFurthest && std::abs(at.y) < kFurthest && std::abs(at.z) < kFurthest))
+    throw Error("the pose tears the tissue too far apart", "tissue that bends", "check the pose and the rig, or use a coarser spacing");
+  return {std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne)};
+}
+
+std::array<FixedPoint, 4> PosedTets::posed_corners(int tet) const {
+  const auto corners = mesh_->T.row(tet);
+  return {posed_[corners[0]], posed_[corners[1]], posed_[corners[2]], posed_[corners[3]]};
+}
+
+std::array<glm::dvec3, 4> PosedTets::rest_corners(int tet) const {
+  const auto corners = mesh_->T.row(tet);
+  return {rest_[corners[0]], rest_[corners[1]], rest_[corners[2]], rest_[corners[3]]};
+}
+
+// Where a rest point goes with a tet.
+FixedPoint PosedTets::carried(int tet, const glm::dvec3& rest) const {
+  const glm::dvec4 shares = shares_in(rest_corners(tet), rest);
+  glm::dvec3 moved(0);
+  for (int i = 0; i < 4; ++i) moved += shares[i] * in_mm(moved_, mesh_->T(tet, i));
+  return fixed(lattice_->output().from_rest(rest + voxel_from_world(lattice_->volume().grid).linear * moved));
+}
+
+void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Border& border, BrickOutcome& outcome) const {
+  const TissueVoxels& tissue = lattice_->tissue();
+  const TissueVoxels::Brick& cells = tissue.bricks()[brick];
+  const auto& mine = in_mesh_[brick];
+  if (std::all_of(mine.begin(), mine.end(), [](std::uint64_t slice) { return slice == 0; })) return;
+
+  // The tets that hold the corners and the centres of the brick's voxels at rest.
+  std::array<int, kSide * kSide * kSide> tet_of;
+  tet_of.fill(-1);
+  std::array<std::uint64_t, 8> centre_held{};
+  std::vector<int> near;
+  rest_bins.meeting({cells.corner - 1, cells.corner + kSide}, near);
+  for (int t : near) {
+    const auto rest = rest_corners(t);
+    std::array<FixedPoint, 4> from_brick;
+    for (int i = 0; i < 4; ++i) from_brick[i] = FixedPoint((rest[i] - glm::dvec3(cells.corner)) * double(kFixedOne));
+    rasterize_tet(from_brick, {glm::ivec3(0), glm::ivec3(TissueVoxels::kBrick - 1)},
+                  [&](const glm::ivec3& v, int) { centre_held[v.z] |= std::uint64_t{1} << (v.x + 8 * v.y); });
+    for (FixedPoint& corner : from_brick) corner += kFixedOne / 2;
+    rasterize_tet(from_brick, {glm::ivec3(0), glm::ivec3(kSide - 1)}, [&](const glm::ivec3& v, int) { tet_of[PosedLattice::place(v.x, v.y, v.z)] = t; });
+  }
+
+  std::array<std::optional<FixedPoint>, kSide * kSide * kSide> posed;
+  tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+    const glm::ivec3 v = voxel - cells.corner;
+    if (!(mine[v.z] >> (v.x + 8 * v.y) & 1)) return;
+    Rider rider{voxel, {}};
+    bool rides = !(centre_held[v.z] >> (v.x + 8 * v.y) & 1);
+    for (int i = 0; i < 8; ++i) {
+      const glm::ivec3 corner = v + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
+      const int at = PosedLattice::place(corner.x, corner.y, corner.z);
+      const glm::dvec3 rest = glm::dvec3(cells.corner + corner) - 0.5;
+      if (!posed[at]) posed[at] = tet_of[at] >= 0 ? carried(tet_of[at], rest) : border.carried(rest);
+      rides |= tet_of[at] < 0;
+      rider.corners[i] = *posed[at];
+      outcome.low = glm::min(outcome.low, *posed[at]);
+      outcome.high = glm::max(outcome.high, *posed[at]);
+    }
+    if (rides) outcome.riders.push_back(rider);
+  });
+}
+
+bool PosedTets::reaches(const VoxelRange& range) const {
+  std::vector<int> found;
+  bins_.meeting(range, found);
+  if (found.empty()) rider_bins_.meeting(range, found);
+  return !found.empty();
+}
+
+void PosedTets::rasterize(InverseMap& map, const std::vector<int>& priority, const TissueDepth* depth) const {
+  const LabelVolume& volume = lattice_->volume();
+  Claims claims(map, volume, priority, depth);
+  std::vector<int> near;
+  bins_.meeting(map.range, near);
+  for (int t : near) {
+    const auto posed = posed_corners(t);
+    std::optional<TetMap> tet;
+    rasterize_tet(posed, map.range, [&](const glm::ivec3& voxel, int) {
+      if (!tet) tet.emplace(posed, rest_corners(t));
+      const glm::dvec3 rest(glm::vec3(tet->rest(voxel)));  // as the map will hold it
+      const glm::ivec3 rest_voxel(glm::floor(rest + 0.5));
+      if (!is_in_mesh(rest_voxel)) return;
+      claims.claim(index_of(volume.grid, rest_voxel), rest_voxel, {voxel, rest, tet->posed_per_rest});
+    });
+  }
+}
+
+void PosedTets::rasterize_riders(InverseMap& map, const std::vector<int>& priority, const TissueDepth* depth) const {
+  const LabelVolume& volume = lattice_->volume();
+  Claims claims(map, volume, priority, depth);
+  std::vector<int> near;
+  rider_bins_.meeting(map.range, near);
+  for (int r : near)
+    PosedCell(riders_[r].corners.data(), 2, 4, riders_[r].voxel).rasterize(map.range, [&](const CellClaim& claim) {
+      claims.claim_empty(index_of(volume.grid, riders_[r].voxel), riders_[r].voxel, claim);
+    });
+}
+
+}  // namespace limber
