@@ -15,16 +15,11 @@
 #include <Eigen/Core>
 
 #include "core/base/progress.h"
-#include "core/base/rigid_transform.h"
+#include "core/deform/skinning.h"
 #include "core/fem/material.h"
 #include "core/mesh/tet_mesh.h"
 
 namespace limber {
-
-struct BoneWeight {
-  int bone;
-  double weight;
-};
 
 struct FemModel {
   TetMesh mesh;                       // at rest
