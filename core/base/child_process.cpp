@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/base/child_process.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cmath>
 #include <csignal>
+#include <fstream>
 
 #include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,15 +19,30 @@ namespace limber {
 
 namespace {
 
-constexpr rlim_t kProcessorSeconds = 20;
+using Clock = std::chrono::steady_clock;
 
-void become_harmless() {
-  for (int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM}) ::signal(signal, SIG_DFL);
-  const rlimit seconds{kProcessorSeconds, kProcessorSeconds}, no_core{0, 0};
+constexpr int kAskMilliseconds = 50;  // whether the user has cancelled
+
+// Pages of this process's address space, in bytes.
+std::size_t mapped_bytes() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+rlim_t whole_seconds(double seconds) { return static_cast<rlim_t>(std::clamp(std::ceil(seconds), 1.0, 1e9)); }
+
+void become_harmless(const ChildLimits& limits, std::size_t memory, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);
+  for (int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM, SIGXCPU}) ::signal(signal, SIG_DFL);
+  const rlim_t most = whole_seconds(limits.processor_seconds);
+  const rlimit seconds{most, most + 1}, no_core{0, 0}, space{memory, memory};
   ::setrlimit(RLIMIT_CPU, &seconds);
   ::setrlimit(RLIMIT_CORE, &no_core);
+  if (memory > 0) ::setrlimit(RLIMIT_AS, &space);
   const int nowhere = ::open("/dev/null", O_WRONLY);
-  if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+  if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO), ::dup2(nowhere, STDOUT_FILENO);
 }
 
 void write_all(int to, const void* bytes, std::size_t size) {
@@ -35,28 +56,67 @@ void write_all(int to, const void* bytes, std::size_t size) {
   }
 }
 
+enum class Ending { closed, too_much, too_late, cancelled };
+
 // Up to one byte more than `most`.
-std::string read_all(int from, std::size_t most) {
-  std::string bytes;
+Ending read_all(int from, std::size_t most, Clock::time_point latest, const Progress& progress, std::string& bytes) {
   char block[1 << 16];
   while (bytes.size() <= most) {
+    if (progress.cancelled()) return Ending::cancelled;
+    if (Clock::now() >= latest) return Ending::too_late;
+    pollfd ready{from, POLLIN, 0};
+    const int events = ::poll(&ready, 1, kAskMilliseconds);
+    if (events == 0 || (events < 0 && errno == EINTR)) continue;
     const ssize_t done = ::read(from, block, sizeof block);
     if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) break;
+    if (done <= 0) return Ending::closed;
     bytes.append(block, static_cast<std::size_t>(done));
   }
-  return bytes;
+  return Ending::too_much;
+}
+
+// How the child ended. One that closed its end of the pipe and lives on gets as long as the rest.
+int status_of(pid_t child, Clock::time_point latest, const Progress& progress, Ending& ending) {
+  int status = 0;
+  while (ending == Ending::closed) {
+    const pid_t ended = ::waitpid(child, &status, WNOHANG);
+    if (ended == child) return status;
+    if (Clock::now() >= latest) ending = Ending::too_late;
+    else if (progress.cancelled()) ending = Ending::cancelled;
+    else ::usleep(1000);
+  }
+  ::kill(child, SIGKILL);
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+Clock::time_point after(double seconds) {
+  constexpr double kForever = 1e8;
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, kForever)));
+}
+
+std::string failure_of(Ending ending, int status) {
+  if (ending == Ending::too_much) return "it answered more than expected";
+  if (ending == Ending::too_late) return "it took too long";
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return "it took too much processor time";
+  if (WIFSIGNALED(status)) return "it crashed (signal " + std::to_string(WTERMSIG(status)) + ")";
+  if (WIFEXITED(status) && WEXITSTATUS(status) != 0) return "it gave up (exit code " + std::to_string(WEXITSTATUS(status)) + ")";
+  return {};
 }
 
 }  // namespace
 
-std::optional<std::string> run_in_child(const std::function<bool(const Send&)>& work, std::size_t most) {
+ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size_t most, const ChildLimits& limits, const Progress& progress) {
+  constexpr const char* kNoProcess = "no process could be started for it";
+  const std::size_t memory = limits.memory_bytes > 0 ? mapped_bytes() + limits.memory_bytes : 0;
+  const Clock::time_point latest = after(limits.seconds);
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
-  const pid_t child = ::fork();
+  if (::pipe2(ends, O_CLOEXEC) != 0) return {std::nullopt, kNoProcess};
+  const pid_t parent = ::getpid(), child = ::fork();
   if (child == 0) {
     ::close(ends[0]);
-    become_harmless();
+    become_harmless(limits, memory, parent);
     bool done = false;
     try {
       done = work([&](const void* bytes, std::size_t size) { write_all(ends[1], bytes, size); });
@@ -65,14 +125,21 @@ std::optional<std::string> run_in_child(const std::function<bool(const Send&)>& 
     ::_exit(done ? 0 : 1);
   }
   ::close(ends[1]);
-  std::string sent = child > 0 ? read_all(ends[0], most) : std::string();
-  ::close(ends[0]);  // a child that sends too much ends here
-  if (child < 0) return std::nullopt;
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  if (child < 0) {
+    ::close(ends[0]);
+    return {std::nullopt, kNoProcess};
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || sent.size() > most) return std::nullopt;
-  return sent;
+  std::string sent;
+  Ending ending = read_all(ends[0], most, latest, progress, sent);
+  ::close(ends[0]);
+  const int status = status_of(child, latest, progress, ending);
+  if (ending == Ending::cancelled) throw Cancelled();
+  if (std::string failure = failure_of(ending, status); !failure.empty()) return {std::nullopt, std::move(failure)};
+  return {std::move(sent), {}};
+}
+
+std::optional<std::string> run_in_child(const std::function<bool(const Send&)>& work, std::size_t most) {
+  return run_in_child(work, most, ChildLimits{}).sent;
 }
 
 }  // namespace limber

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/base/child_process.h"
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <stdexcept>
+#include <thread>
+
+#include <unistd.h>
 
 #include <doctest/doctest.h>
+
+#include "tests/support/sanitizer.h"
 
 using namespace limber;
 
@@ -34,4 +41,52 @@ TEST_CASE("child process: a crash, an exception, a failure or too many bytes are
       },
       100));
   CHECK(run_in_child([](const Send&) { return true; }, 0) == "");
+}
+
+TEST_CASE("child process: the reason of a failure is told") {
+  const auto why = [](const std::function<bool(const Send&)>& work, const ChildLimits& limits = {}) {
+    const ChildAnswer answer = run_in_child(work, 10, limits);
+    CHECK_FALSE(answer.sent);
+    return answer.failure;
+  };
+  CHECK(why([](const Send&) -> bool { std::abort(); }) == "it crashed (signal 6)");
+  CHECK(why([](const Send&) -> bool { std::_Exit(3); }) == "it gave up (exit code 3)");
+  CHECK(why([](const Send&) { return false; }) == "it gave up (exit code 1)");
+  CHECK(why([](const Send& send) { return send("01234567890", 11), true; }) == "it answered more than expected");
+  CHECK(why([](const Send&) { return ::sleep(100) == 0; }, {.seconds = 0.1}) == "it took too long");
+  // One that has said all it has to say and does not end.
+  CHECK(why([](const Send&) { return ::closefrom(3), ::sleep(100) == 0; }, {.seconds = 0.1}) == "it took too long");
+  CHECK(why(
+            [](const Send&) {
+              for (volatile int spins = 0;;) spins = spins + 1;
+              return true;
+            },
+            {.processor_seconds = 1}) == "it took too much processor time");
+#ifndef LIMBER_ADDRESS_SANITIZER
+  const std::size_t most = 64 << 20;
+  const auto takes = [](std::size_t bytes) {
+    return [bytes](const Send&) {
+      void* block = std::malloc(bytes);
+      if (block) std::memset(block, 1, bytes);
+      return block != nullptr;
+    };
+  };
+  CHECK(run_in_child(takes(most / 4), 10, {.memory_bytes = most}).sent);
+  CHECK(why(takes(most * 2), {.memory_bytes = most}) == "it gave up (exit code 1)");
+#endif
+}
+
+TEST_CASE("child process: a cancel ends the child and the wait within 100 ms") {
+  struct : Progress {
+  } progress;
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point asked;
+  std::jthread user([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(80));
+    asked = Clock::now();
+    progress.cancel();
+  });
+  CHECK_THROWS_AS(run_in_child([](const Send&) { return ::sleep(100) == 0; }, 10, {}, progress), Cancelled);
+  const double waited = std::chrono::duration<double>(Clock::now() - asked).count();
+  CHECK(waited < 0.1);
 }

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/mesh/tetrahedralize.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <unordered_map>
+
+#include <tetgen.h>
+
+#include "core/base/child_process.h"
+
+namespace limber {
+
+namespace {
+
+using Row = std::array<int, 3>;
+
+struct Polyhedra {
+  std::vector<double> points;  // xyz
+  std::vector<Row> triangles;
+};
+
+// What the child sends: this, then points (xyz) and tets.
+struct Head {
+  int problem;  // TetGen's number for what it found wrong, 0 = nothing
+  int points, tets;
+};
+
+std::string name_of_problem(int code) {
+  switch (code) {
+    case 1: return "it ran out of memory";
+    case 3: return "the surface crosses itself";
+    case 4: return "the surface has a feature too small for it";
+    case 5: return "two facets of the surface lie too close together";
+    default: return "it stopped with its error " + std::to_string(code);
+  }
+}
+
+// Points and triangles in TetGen's own structure. It deletes what its counts say, also where memory ends halfway.
+void fill(tetgenio& in, const Polyhedra& input) {
+  in.pointlist = new REAL[input.points.size()];
+  in.numberofpoints = static_cast<int>(input.points.size() / 3);
+  std::copy(input.points.begin(), input.points.end(), in.pointlist);
+  in.facetlist = new tetgenio::facet[input.triangles.size()];
+  for (const Row& triangle : input.triangles) {
+    tetgenio::facet& facet = in.facetlist[in.numberoffacets++];
+    tetgenio::init(&facet);
+    facet.polygonlist = new tetgenio::polygon[1];
+    facet.numberofpolygons = 1;
+    tetgenio::init(facet.polygonlist);
+    facet.polygonlist->vertexlist = new int[3];
+    facet.polygonlist->numberofvertices = 3;
+    std::copy(triangle.begin(), triangle.end(), facet.polygonlist->vertexlist);
+  }
+}
+
+bool tetgen_in_child(const Polyhedra& input, const char* switches, const Send& send) {
+  tetgenio in, out;
+  Head head{};
+  try {
+    fill(in, input);
+    std::string words = switches;
+    tetrahedralize(words.data(), &in, &out);
+    head = {0, out.numberofpoints, out.numberoftetrahedra};
+    if (out.numberofcorners != 4) return false;
+  } catch (int problem) {
+    head.problem = problem;
+  } catch (const std::bad_alloc&) {
+    head.problem = 1;
+  }
+  send(&head, sizeof head);
+  send(out.pointlist, sizeof(REAL) * 3 * head.points);
+  send(out.tetrahedronlist, sizeof(int) * 4 * head.tets);
+  return true;
+}
+
+struct Answer {
+  std::vector<double> points;
+  Eigen::MatrixX4i T;  // positively oriented
+  std::string failure;
+};
+
+Answer run_tetgen(const Polyhedra& input, const char* switches, const TetrahedralizeLimits& limits, const Progress& progress) {
+  const ChildLimits child{limits.seconds, 4 * limits.seconds, limits.memory_bytes};
+  const ChildAnswer answer = run_in_child(
+      [&](const Send& send) {
+        if (limits.at_start) limits.at_start();
+        return tetgen_in_child(input, switches, send);
+      },
+      limits.memory_bytes, child, progress);
+  if (!answer.sent) return {{}, {}, answer.failure};
+  Head head;
+  if (answer.sent->size() < sizeof head) return {{}, {}, "it ended without an answer"};
+  std::memcpy(&head, answer.sent->data(), sizeof head);
+  if (head.problem != 0) return {{}, {}, name_of_problem(head.problem)};
+  const std::size_t point_bytes = sizeof(double) * 3 * head.points, tet_bytes = sizeof(int) * 4 * head.tets;
+  if (head.points < 0 || head.tets <= 0 || answer.sent->size() != sizeof head + point_bytes + tet_bytes) return {{}, {}, "it ended without an answer"};
+
+  Answer result;
+  result.points.resize(3 * static_cast<std::size_t>(head.points));
+  std::memcpy(result.points.data(), answer.sent->data() + sizeof head, point_bytes);
+  std::vector<int> corners(4 * static_cast<std::size_t>(head.tets));
+  std::memcpy(corners.data(), answer.sent->data() + sizeof head + point_bytes, tet_bytes);
+  result.T.resize(head.tets, 4);
+  for (int tet = 0; tet < head.tets; ++tet) {
+    const int* c = &corners[4 * static_cast<std::size_t>(tet)];
+    for (int i = 0; i < 4; ++i)
+      if (c[i] < 0 || c[i] >= head.points) return {{}, {}, "it answered with nodes that do not exist"};
+    result.T.row(tet) << c[0], c[1], c[2], c[3];
+  }
+  return result;
+}
+
+struct RowHash {
+  std::size_t operator()(const Row& row) const {
+    std::uint64_t mixed = 0;
+    for (const int corner : row) mixed = (mixed ^ static_cast<std::uint32_t>(corner)) * 0x9e3779b97f4a7c15u, mixed ^= mixed >> 29;
+    return mixed;
+  }
+};
+
+Row sorted(Row row) {
+  std::sort(row.begin(), row.end());
+  return row;
+}
+
+// Whether b is a turned by none, one or two corners; the same triangle otherwise faces the other way.
+bool same_way(const Row& a, const Row& b) {
+  const auto start = std::find(b.begin(), b.end(), a[0]) - b.begin();
+  return b[(start + 1) % 3] == a[1];
+}
+
+// The region of every tet, by the triangles around it. Fails where a triangle is missing or two disagree.
+std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& triangles, const std::vector<std::array<std::uint16_t, 2>>& sides,
+                         std::vector<std::uint16_t>& region) {
+  std::unordered_map<Row, int, RowHash> triangle_of;
+  triangle_of.reserve(2 * triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    if (!triangle_of.emplace(sorted(triangles[i]), static_cast<int>(i)).second) return "the surface has a triangle twice";
+
+  const auto neighbours = neighbours_of(T);
+  std::vector<int> found(triangles.size(), 0);
+  std::vector<std::int32_t> known(T.rows(), -1);
+  std::vector<int> front;
+  // Across its own faces first, so that every wall is known; then from tet to tet where there is none.
+  std::vector<std::array<bool, 4>> wall(T.rows(), {false, false, false, false});
+  for (int tet = 0; tet < T.rows(); ++tet)
+    for (int face = 0; face < 4; ++face) {
+      const Row corners{T(tet, kTetFaces[face][0]), T(tet, kTetFaces[face][1]), T(tet, kTetFaces[face][2])};
+      const auto at = triangle_of.find(sorted(corners));
+      if (at == triangle_of.end()) {
+        if (neighbours[tet][face] < 0) return "its tetrahedra end where the surface does not";
+        continue;
+      }
+      wall[tet][face] = true;
+      const bool behind = same_way(corners, triangles[at->second]);
+      found[at->second] |= behind ? 1 : 2;
+      const int here = sides[at->second][behind];
+      if (known[tet] >= 0 && known[tet] != here) return "a tetrahedron lies in two regions";
+      if (known[tet] < 0) front.push_back(tet);
+      known[tet] = here;
+    }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const bool open_front = sides[i][0] == RegionSurface::kAir, open_back = sides[i][1] == RegionSurface::kAir;
+    if ((!(found[i] & 2) && !open_front) || (!(found[i] & 1) && !open_back)) return "a triangle of the surface is missing";
+  }
+  for (std::size_t next = 0; next < front.size(); ++next) {
+    const int tet = front[next];
+    for (int face = 0; face < 4; ++face) {
+      const int other = neighbours[tet][face];
+      if (other < 0 || wall[tet][face]) continue;
+      if (known[other] >= 0 && known[other] != known[tet]) return "a region leaks into another";
+      if (known[other] < 0) known[other] = known[tet], front.push_back(other);
+    }
+  }
+  if (static_cast<Eigen::Index>(front.size()) != T.rows()) return "a tetrahedron lies in no region";
+  region.assign(known.begin(), known.end());
+  return {};
+}
+
+bool finite(const Eigen::MatrixX3d& V) { return V.size() == 0 || V.allFinite(); }
+
+std::vector<double> xyz_of(const Eigen::MatrixX3d& V) {
+  std::vector<double> points(V.size());
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(points.data(), V.rows(), 3) = V;
+  return points;
+}
+
+bool starts_with(const std::vector<double>& points, const std::vector<double>& beginning) {
+  return points.size() >= beginning.size() && std::equal(beginning.begin(), beginning.end(), points.begin());
+}
+
+}  // namespace
+
+Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const TetrahedralizeLimits& limits, const Progress& progress) {
+  if (surface.F.rows() == 0) return {std::nullopt, "the surface is empty"};
+  if (!finite(surface.V)) return {std::nullopt, "the surface has places that are no numbers"};
+  Polyhedra input{xyz_of(surface.V), {}};
+  for (const auto& f : surface.F.rowwise()) input.triangles.push_back({f[0], f[1], f[2]});
+  // p a surface's inside, q 2/0 a circumsphere of at most two shortest edges and no bound on angles, Y nothing new on the
+  // surface, M coplanar triangles stay apart, J nodes keep their numbers, Q no words.
+  Answer answer = run_tetgen(input, "pq2/0YMJQ", limits, progress);
+  if (!answer.failure.empty()) return {std::nullopt, std::move(answer.failure)};
+  if (!starts_with(answer.points, input.points)) return {std::nullopt, "it moved nodes of the surface"};
+
+  std::vector<std::uint16_t> region;
+  if (std::string failure = find_regions(answer.T, input.triangles, surface.sides, region); !failure.empty()) return {std::nullopt, std::move(failure)};
+
+  // Pockets of air go, and nodes that only they have; the surface's stay all, at the front.
+  std::vector<int> new_number(answer.points.size() / 3, -1);
+  int nodes = static_cast<int>(surface.V.rows());
+  for (int i = 0; i < nodes; ++i) new_number[i] = i;
+  TetMesh mesh;
+  mesh.T.resize(std::count_if(region.begin(), region.end(), [](auto r) { return r != RegionSurface::kAir; }), 4);
+  for (Eigen::Index tet = 0; tet < answer.T.rows(); ++tet) {
+    if (region[tet] == RegionSurface::kAir) continue;
+    for (int i = 0; i < 4; ++i) {
+      int& number = new_number[answer.T(tet, i)];
+      if (number < 0) number = nodes++;
+      mesh.T(std::ssize(mesh.region), i) = number;
+    }
+    mesh.region.push_back(region[tet]);
+  }
+  mesh.V.resize(nodes, 3);
+  for (std::size_t i = 0; i < new_number.size(); ++i)
+    if (new_number[i] >= 0) mesh.V.row(new_number[i]) << answer.points[3 * i], answer.points[3 * i + 1], answer.points[3 * i + 2];
+  for (const auto& tet : mesh.T.rowwise())
+    if (signed_volume(mesh.V, tet) <= 0) return {std::nullopt, "a tetrahedron is flat"};
+  return {std::move(mesh), {}};
+}
+
+AirTets tetrahedralize_air(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, double margin, const TetrahedralizeLimits& limits,
+                           const Progress& progress) {
+  AirTets air;
+  air.box.setZero();
+  const auto fail = [&](std::string why) {
+    air.failure = std::move(why);
+    return std::move(air);
+  };
+  if (F.rows() == 0) return fail("the surface is empty");
+  // Only the surface's own nodes, in their order.
+  std::vector<int> place_of(V.rows(), -1), node_at;
+  for (const auto& f : F.rowwise())
+    for (const int corner : f) place_of[corner] = 0;
+  for (int i = 0; i < V.rows(); ++i)
+    if (place_of[i] == 0) place_of[i] = static_cast<int>(node_at.size()), node_at.push_back(i);
+  Eigen::MatrixX3d nodes(node_at.size() + 8, 3);
+  for (std::size_t i = 0; i < node_at.size(); ++i) nodes.row(i) = V.row(node_at[i]);
+  if (!nodes.topRows(node_at.size()).allFinite()) return fail("the surface has places that are no numbers");
+
+  const Eigen::RowVector3d low = nodes.topRows(node_at.size()).colwise().minCoeff().array() - margin;
+  const Eigen::RowVector3d high = nodes.topRows(node_at.size()).colwise().maxCoeff().array() + margin;
+  for (int corner = 0; corner < 8; ++corner)
+    for (int axis = 0; axis < 3; ++axis) air.box(corner, axis) = (corner >> axis & 1 ? high : low)[axis];
+  nodes.bottomRows(8) = air.box;
+
+  Polyhedra input{xyz_of(nodes), {}};
+  std::vector<std::array<std::uint16_t, 2>> sides;
+  for (const auto& f : F.rowwise()) {
+    input.triangles.push_back({place_of[f[0]], place_of[f[1]], place_of[f[2]]});
+    sides.push_back({RegionSurface::kAir, TetMesh::kSoft});
+  }
+  constexpr int kBoxFaces[12][3] = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
+                                    {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+  const int first = static_cast<int>(node_at.size());
+  for (const auto& f : kBoxFaces) {
+    input.triangles.push_back({first + f[0], first + f[1], first + f[2]});
+    sides.push_back({RegionSurface::kAir, RegionSurface::kAir});
+  }
+  Answer answer = run_tetgen(input, "pYMJQ", limits, progress);
+  if (!answer.failure.empty()) return fail(std::move(answer.failure));
+  if (!starts_with(answer.points, input.points)) return fail("it moved nodes of the surface");
+  std::vector<std::uint16_t> region;
+  if (std::string failure = find_regions(answer.T, input.triangles, sides, region); !failure.empty()) return fail(std::move(failure));
+
+  Eigen::MatrixX4i T(std::count(region.begin(), region.end(), RegionSurface::kAir), 4);
+  Eigen::Index row = 0;
+  for (Eigen::Index tet = 0; tet < answer.T.rows(); ++tet) {
+    if (region[tet] != RegionSurface::kAir) continue;
+    for (int i = 0; i < 4; ++i) {
+      const int corner = answer.T(tet, i);
+      if (corner >= nodes.rows()) return fail("the air needs nodes of its own");
+      T(row, i) = corner < first ? node_at[corner] : static_cast<int>(V.rows()) + corner - first;
+    }
+    ++row;
+  }
+  air.T = std::move(T);
+  return air;
+}
+
+}  // namespace limber
