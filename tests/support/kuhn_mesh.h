@@ -2,13 +2,16 @@
 // A box of tets for tests: a lattice of cubes, each split into six around its main diagonal [Kuhn 1960].
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <map>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <glm/glm.hpp>
 
 #include "core/mesh/tet_mesh.h"
-#include "core/volume/grid.h"
+#include "core/volume/label_volume.h"
 
 namespace limber::test {
 
@@ -44,6 +47,42 @@ inline TetMesh kuhn_mesh(const Grid& grid, const glm::dvec3& low, const glm::dve
         }
   mesh.region.assign(row, TetMesh::kSoft);
   return mesh;
+}
+
+// The cubes of `side` voxels that hold any of the regions (0 none, 1 soft, 2 + bone), all of one if most of its voxels are.
+inline TetMesh kuhn_mesh_of(const LabelVolume& regions, int side) {
+  const glm::ivec3 cubes = (regions.grid.size + side - 1) / side;
+  TetMesh mesh = kuhn_mesh(regions.grid, glm::dvec3(-0.5), glm::dvec3(cubes * side) - 0.5, cubes);
+  std::vector<int> kept_tets, place(mesh.V.rows(), -1);
+  std::vector<std::uint16_t> region;
+  for (int c = 0; c < cubes.x * cubes.y * cubes.z; ++c) {
+    const glm::ivec3 first = glm::ivec3(c % cubes.x, c / cubes.x % cubes.y, c / cubes.x / cubes.y) * side;
+    std::map<Label, int> counts;
+    for (int i = 0; i < side * side * side; ++i)
+      if (const Label label = regions.at_or_air(first + glm::ivec3(i % side, i / side % side, i / side / side))) ++counts[label];
+    if (counts.empty()) continue;
+    const auto most = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
+    for (int t = 0; t < 6; ++t) {
+      kept_tets.push_back(6 * c + t);
+      region.push_back(static_cast<std::uint16_t>(most - 1));
+    }
+  }
+  TetMesh kept;
+  std::vector<int> nodes;
+  kept.T.resize(std::ssize(kept_tets), 4);
+  for (size_t t = 0; t < kept_tets.size(); ++t)
+    for (int i = 0; i < 4; ++i) {
+      int& at = place[mesh.T(kept_tets[t], i)];
+      if (at < 0) {
+        at = static_cast<int>(nodes.size());
+        nodes.push_back(mesh.T(kept_tets[t], i));
+      }
+      kept.T(t, i) = at;
+    }
+  kept.V.resize(std::ssize(nodes), 3);
+  for (size_t n = 0; n < nodes.size(); ++n) kept.V.row(n) = mesh.V.row(nodes[n]);
+  kept.region = region;
+  return kept;
 }
 
 }  // namespace limber::test

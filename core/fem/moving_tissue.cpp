@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/fem/moving_tissue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "core/volume/distance.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kCell = 4;             // voxels
+constexpr double kWhole = 0.98;      // of the weight on one motion: such tissue goes with it
+constexpr std::array<double, 4> kOnTheWay{0.25, 0.5, 0.75, 1.0};  // places of the path that are looked at
+
+bool alike(const RigidTransform& a, const RigidTransform& b) {
+  const double turn = std::abs(glm::dot(a.rotation, b.rotation));
+  return turn > 1 - 1e-14 && glm::length(a.translation - b.translation) < 1e-6;
+}
+
+std::vector<int> first_alike_on_path(const BonePath& path) {
+  std::vector<std::vector<RigidTransform>> ways;
+  for (double t : kOnTheWay) ways.push_back(path(t));
+  std::vector<int> first(ways[0].size());
+  for (int i = 0; i < std::ssize(first); ++i) {
+    first[i] = i;
+    for (int k = 0; k < i && first[i] == i; ++k)
+      if (first[k] == k && std::all_of(ways.begin(), ways.end(), [&](const auto& motions) { return alike(motions[i], motions[k]); })) first[i] = k;
+  }
+  return first;
+}
+
+// The motion that has most of an influence, and how much.
+struct Main {
+  int motion;
+  double share;
+};
+Main main_motion(const Influence& influence, const std::vector<int>& moves_as) {
+  std::array<std::pair<int, int>, 4> sums{};
+  int count = 0;
+  for (int i = 0; i < 4 && influence.weight[i]; ++i) {
+    const int motion = moves_as[influence.bone[i]];
+    int at = 0;
+    while (at < count && sums[at].first != motion) ++at;
+    if (at == count) sums[count++] = {motion, 0};
+    sums[at].second += influence.weight[i];
+  }
+  const auto best = std::max_element(sums.begin(), sums.begin() + count, [](const auto& a, const auto& b) { return a.second < b.second; });
+  return {best->first, best->second / double(kFullWeight)};
+}
+
+// The box of cells around all tissue, with one of nothing around it.
+class Cells {
+ public:
+  Cells(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as)
+      : grid_(volume.grid), tissue_(tissue) {
+    box_.lowest = glm::ivec3(-1);
+    box_.size = tissue.brick_grid() * (TissueVoxels::kBrick / kCell) + 2;
+    motion_.assign(box_.voxel_count(), kAir);
+    mixed_.assign(box_.voxel_count(), 0);
+    for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
+      auto influence = weights.chunk(brick).begin();
+      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
+        const Main main = main_motion(*influence++, moves_as);
+        const std::int64_t at = box_.index(v / kCell);
+        if (motion_[at] == kAir) motion_[at] = main.motion;
+        if (main.share < kWhole || motion_[at] != main.motion) mixed_[at] = 1;
+      });
+    }
+    mark_borders();
+  }
+
+  const std::vector<std::uint8_t>& mixed() const { return mixed_; }
+  glm::dvec3 spacing() const { return grid_.spacing * double(kCell); }
+
+  // Squared distance in mm to the cells of a set.
+  std::vector<float> squared_distance_to(const std::vector<std::uint8_t>& seeds, Progress& progress) const {
+    return squared_distance(box_, seeds, spacing(), progress);
+  }
+
+  // Cells that one of the looked-at places of the path brings near to cells of another motion that were far away at rest.
+  std::vector<std::uint8_t> brought_near(const BonePath& path, double near_mm) const {
+    std::vector<std::uint8_t> near(box_.voxel_count(), 0);
+    const AffineTransform world = world_from_voxel(grid_);
+    for (double t : kOnTheWay) {
+      const auto motions = path(t);
+      std::unordered_map<std::uint64_t, std::vector<Placed>> bins;
+      std::vector<std::pair<glm::ivec3, Placed>> all;
+      for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
+        if (motion_[at] == kAir) return;
+        const glm::dvec3 rest = world * ((glm::dvec3(cell) + 0.5) * double(kCell) - 0.5), posed = motions[motion_[at]] * rest;
+        const glm::ivec3 bin(glm::floor(posed / near_mm));
+        all.push_back({bin, {at, rest, posed}});
+        bins[key(bin)].push_back(all.back().second);
+      });
+      // Cells of one limb that lie near each other at rest are no news.
+      const double far = 3 * std::max({near_mm, spacing().x, spacing().y, spacing().z});
+      for (const auto& [bin, mine] : all)
+        for (int i = 0; i < 27 && !near[mine.at]; ++i) {
+          const auto found = bins.find(key(bin + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
+          if (found == bins.end()) continue;
+          for (const Placed& other : found->second)
+            if (motion_[other.at] != motion_[mine.at] && glm::distance(mine.posed, other.posed) < near_mm && glm::distance(mine.rest, other.rest) > far)
+              near[mine.at] = 1;
+        }
+    }
+    return near;
+  }
+
+  // The tissue of cells that pass.
+  template <class Passes>
+  TissueMask mask(const Passes& passes) const {
+    TissueMask mask(tissue_.bricks().size(), std::array<std::uint64_t, 8>{});
+    for (size_t b = 0; b < mask.size(); ++b) {
+      const TissueVoxels::Brick& brick = tissue_.bricks()[b];
+      for (int c = 0; c < 8; ++c) {
+        const glm::ivec3 step(c & 1, c >> 1 & 1, c >> 2);
+        if (!passes(box_.index(brick.corner / kCell + step))) continue;
+        const std::uint64_t columns = 0x0f0f0f0fULL << (kCell * step.x + 8 * kCell * step.y);
+        for (int z = 0; z < kCell; ++z) mask[b][kCell * step.z + z] |= brick.mask[kCell * step.z + z] & columns;
+      }
+    }
+    return mask;
+  }
+
+ private:
+  static constexpr int kAir = -1;
+  struct Placed {
+    std::int64_t at;
+    glm::dvec3 rest, posed;
+  };
+
+  static std::uint64_t key(const glm::ivec3& bin) {
+    const auto part = [](int v) { return std::uint64_t(v + (1 << 20)) & 0x1fffff; };
+    return part(bin.x) | part(bin.y) << 21 | part(bin.z) << 42;
+  }
+
+  template <class Body>
+  void for_each_cell(const Body& body) const {
+    for (int z = 0; z < box_.size.z; ++z)
+      for (int y = 0; y < box_.size.y; ++y)
+        for (int x = 0; x < box_.size.x; ++x) {
+          const glm::ivec3 cell = box_.lowest + glm::ivec3(x, y, z);
+          body(cell, box_.index(cell));
+        }
+  }
+
+  // Cells beside such as move otherwise bend too, though each follows its motion wholly.
+  void mark_borders() {
+    for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
+      if (motion_[at] == kAir) return;
+      for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 next = cell;
+        ++next[axis];
+        const std::int64_t there = box_.index(next);
+        if (motion_[there] != kAir && motion_[there] != motion_[at]) mixed_[at] = mixed_[there] = 1;
+      }
+    });
+  }
+
+  const Grid& grid_;
+  const TissueVoxels& tissue_;
+  VoxelBox box_;
+  std::vector<int> motion_;
+  std::vector<std::uint8_t> mixed_;
+};
+
+bool has_any(const std::vector<std::uint8_t>& set) {
+  return std::any_of(set.begin(), set.end(), [](std::uint8_t in) { return in != 0; });
+}
+
+}  // namespace
+
+bool MovingTissue::empty() const {
+  return std::all_of(free.begin(), free.end(), [](const auto& brick) { return brick == std::array<std::uint64_t, 8>{}; });
+}
+
+MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const BonePath& path,
+                           const MovingSettings& settings, Progress& progress) {
+  MovingTissue result;
+  result.moves_as = first_alike_on_path(path);
+  const Cells cells(volume, tissue, weights, result.moves_as);
+  std::vector<std::uint8_t> seeds = cells.mixed();
+  if (settings.contact && has_any(seeds)) {
+    const auto near = cells.brought_near(path, settings.near_mm);
+    for (size_t i = 0; i < seeds.size(); ++i) seeds[i] |= near[i];
+  }
+  const std::vector<float> squared = cells.squared_distance_to(seeds, progress);
+  const auto within = [&](double mm) {
+    return cells.mask([&](std::int64_t at) { return squared[at] <= mm * mm; });
+  };
+  result.free = within(settings.margin_mm);
+  result.meshed = within(settings.margin_mm + settings.rim_mm);
+  return result;
+}
+
+SkinWeights with_rigid_rest(const SkinWeights& weights, const TissueVoxels& tissue, const MovingTissue& moving) {
+  SkinWeights rigid = weights;
+  for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
+    const TissueVoxels::Brick& cells = tissue.bricks()[brick];
+    if (moving.free[brick] == cells.mask) continue;
+    SkinWeights::Chunk chunk = weights.chunk(brick);
+    auto influence = chunk.begin();
+    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+      const glm::ivec3 v = voxel - cells.corner;
+      Influence& mine = *influence++;
+      const bool is_whole = mine.weight[0] == kFullWeight;
+      if (!is_whole && !(moving.free[brick][v.z] >> (v.x + 8 * v.y) & 1)) mine = rigid_influence(main_motion(mine, moving.moves_as).motion);
+    });
+    rigid.set_chunk(brick, std::move(chunk));
+  }
+  return rigid;
+}
+
+}  // namespace limber

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What of a body a pose bends. Tissue whose bones all move alike goes with them as a rigid body and needs no elements; so
+// the cost of a pose follows what moves, not the size of the body.
+//
+// Tissue bends where its influences (or those of its neighbours) lie on bones that move differently. Elasticity carries
+// further than weights do, so what lies within a margin of it may bend too, and so may what the pose brings near to another
+// part of the body, where contact can press it in. Around that lies a rim that is meshed but held, on which the mesh meets
+// what is not meshed. All of it is decided in cells of 4^3 voxels.
+#pragma once
+
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/deform/inverse_map.h"
+#include "core/fem/solve_pose.h"
+#include "core/skin/skin_weights.h"
+
+namespace limber {
+
+struct MovingSettings {
+  double margin_mm = 30;   // around what bends by its weights
+  double rim_mm = 20;      // held, around that
+  bool contact = false;    // parts that the pose brings within `near_mm` of each other may bend, and a margin around them
+  double near_mm = 16;
+};
+
+struct MovingTissue {
+  std::vector<int> moves_as;  // per bone of the weights: the first bone that moves as it does, all along the path
+  TissueMask free;            // may bend
+  TissueMask meshed;          // free, and the rim around it
+
+  bool empty() const;         // nothing bends
+};
+
+//   weights  bone tissue follows one bone wholly       path  of the bones of the weights
+MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const BonePath& path,
+                           const MovingSettings& settings = {}, Progress& progress = no_progress());
+
+// The weights of what is not free made whole: each voxel of it on the one bone that its motion is.
+SkinWeights with_rigid_rest(const SkinWeights& weights, const TissueVoxels& tissue, const MovingTissue& moving);
+
+}  // namespace limber

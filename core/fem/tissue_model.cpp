@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/fem/tissue_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "core/deform/rasterize.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kReach = 16;               // voxels: as far as tissue is looked for from a node that lies in air
+constexpr double kMostPoisson = 0.499;   // what volume terms are made for; 0.5 cannot be computed with
+
+TetMaterial material_of(const Tissue& tissue) {
+  const double nu = std::clamp(tissue.poisson_ratio, 0.0, kMostPoisson);
+  return {std::max(1e-3, tissue.young_modulus / (2 * (1 + nu))), nu};
+}
+
+// Tissue near places of the world.
+class Surroundings {
+ public:
+  Surroundings(const LabelVolume& volume, const TissueVoxels& tissue) : volume_(volume), tissue_(tissue), voxel_(voxel_from_world(volume.grid)) {}
+
+  // The nearest voxel that passes, mm counted; false where there is none around.
+  template <class Passes>
+  bool nearest(const Eigen::RowVector3d& world, const Passes& passes, glm::ivec3& found) const {
+    const glm::dvec3 at = voxel_ * glm::dvec3(world[0], world[1], world[2]), spacing = volume_.grid.spacing;
+    const glm::ivec3 middle(glm::floor(at + 0.5));
+    const double least_spacing = std::min({spacing.x, spacing.y, spacing.z});
+    double least = INFINITY;
+    for (int reach = 0; reach <= kReach && least > std::pow(std::max(reach - 1, 0) * least_spacing, 2); ++reach)
+      for_each_in_shell(reach, [&](const glm::ivec3& step) {
+        const glm::ivec3 v = middle + step;
+        const glm::dvec3 off = (glm::dvec3(v) - at) * spacing;
+        const double squared = glm::dot(off, off);
+        if (squared >= least || !volume_.grid.contains(v) || volume_.at(v) == 0 || !passes(v)) return;
+        least = squared;
+        found = v;
+      });
+    return least < INFINITY;
+  }
+
+ private:
+  template <class Body>
+  static void for_each_in_shell(int reach, const Body& body) {
+    for (int z = -reach; z <= reach; ++z)
+      for (int y = -reach; y <= reach; ++y) {
+        const bool whole = std::abs(z) == reach || std::abs(y) == reach;
+        for (int x = -reach; x <= reach; x += whole || reach == 0 ? 1 : 2 * reach) body(glm::ivec3(x, y, z));
+      }
+  }
+
+  const LabelVolume& volume_;
+  const TissueVoxels& tissue_;
+  AffineTransform voxel_;
+};
+
+bool is_in(const TissueMask& mask, const TissueVoxels& tissue, const glm::ivec3& v) {
+  const int brick = tissue.brick_at(v);
+  return brick >= 0 && (mask[brick][v.z & 7] >> ((v.x & 7) + 8 * (v.y & 7)) & 1);
+}
+
+const Influence& influence_at(const SkinWeights& weights, const TissueVoxels& tissue, const glm::ivec3& v) {
+  const int brick = tissue.brick_at(v);
+  return weights.chunk(brick)[tissue.index_of(v) - tissue.bricks()[brick].first];
+}
+
+// Of the tissue in the 27 voxels around one of tissue.
+std::vector<BoneWeight> influences_around(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
+                                          const std::vector<int>& moves_as, const glm::ivec3& voxel) {
+  std::map<int, std::int64_t> sums;
+  std::int64_t total = 0;
+  for (int i = 0; i < 27; ++i) {
+    const glm::ivec3 v = voxel + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+    if (volume.at_or_air(v) == 0) continue;
+    const Influence& influence = influence_at(weights, tissue, v);
+    for (int k = 0; k < 4 && influence.weight[k]; ++k) sums[moves_as[influence.bone[k]]] += influence.weight[k];
+    total += kFullWeight;
+  }
+  std::vector<BoneWeight> result;
+  for (const auto& [bone, sum] : sums) result.push_back({bone, double(sum) / double(total)});
+  return result;
+}
+
+// Counts by tet of the labels whose voxels lie in it.
+void count_voxels(TissueModel& model, const LabelVolume& volume) {
+  const TetMesh& mesh = model.fem.mesh;
+  const AffineTransform voxel = voxel_from_world(volume.grid);
+  std::vector<FixedPoint> node;
+  for (int i = 0; i < mesh.V.rows(); ++i)
+    node.push_back(FixedPoint(glm::round(voxel * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2)) * double(kFixedOne))));
+  const VoxelRange whole{glm::ivec3(0), volume.grid.size - 1};
+  std::map<Label, int> counts;
+  for (int t = 0; t < mesh.T.rows(); ++t) {
+    model.first.push_back(static_cast<std::int32_t>(model.counts.size()));
+    counts.clear();
+    rasterize_tet({node[mesh.T(t, 0)], node[mesh.T(t, 1)], node[mesh.T(t, 2)], node[mesh.T(t, 3)]}, whole, [&](const glm::ivec3& v, int) {
+      if (const Label label = volume.at(v)) ++counts[label];
+    });
+    for (const auto& [label, voxels] : counts) model.counts.push_back({label, voxels});
+  }
+  model.first.push_back(static_cast<std::int32_t>(model.counts.size()));
+}
+
+void choose_materials(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                      const TissueModelSettings& settings) {
+  std::vector<TetMaterial> of_label(65536);
+  LabelSet is_soft(65536, 1);
+  for (const Tissue& each : tissues.tissues) {
+    of_label[each.label] = material_of(each);
+    is_soft[each.label] = !is_bone(each.kind);
+  }
+  const Surroundings around(volume, tissue);
+  const TetMesh& mesh = model.fem.mesh;
+  for (int t = 0; t < mesh.T.rows(); ++t) {
+    const bool in_bone = mesh.region[t] != TetMesh::kSoft;
+    if (model.joint[t] || in_bone) {
+      model.fem.material.push_back(model.joint[t] ? settings.joint : settings.bone);
+      continue;
+    }
+    double mu = 0, nu = 0;
+    int voxels = 0;
+    for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i) {
+      const auto& [label, count] = model.counts[i];
+      if (!is_soft[label]) continue;
+      mu += count * of_label[label].shear_modulus;
+      nu += count * of_label[label].poisson_ratio;
+      voxels += count;
+    }
+    glm::ivec3 nearest(0);
+    if (voxels == 0 && around.nearest((mesh.V.row(mesh.T(t, 0)) + mesh.V.row(mesh.T(t, 1)) + mesh.V.row(mesh.T(t, 2)) + mesh.V.row(mesh.T(t, 3))) / 4,
+                                      [&](const glm::ivec3& v) { return is_soft[volume.at(v)] != 0; }, nearest)) {
+      mu = of_label[volume.at(nearest)].shear_modulus;
+      nu = of_label[volume.at(nearest)].poisson_ratio;
+      voxels = 1;
+    }
+    model.fem.material.push_back(voxels > 0 ? TetMaterial{mu / voxels, nu / voxels} : settings.joint);
+  }
+}
+
+// By the regions of the tets at each node, then by what does not bend; joints are what lies between two bones.
+void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const MovingTissue& moving) {
+  constexpr int kNone = -1, kSeveral = -2;
+  const TetMesh& mesh = model.fem.mesh;
+  std::vector<int> bone(mesh.V.rows(), kNone);
+  for (int t = 0; t < mesh.T.rows(); ++t) {
+    if (mesh.region[t] == TetMesh::kSoft) continue;
+    const int mine = TetMesh::bone_of(mesh.region[t]);
+    for (int i = 0; i < 4; ++i) {
+      int& holder = bone[mesh.T(t, i)];
+      holder = holder == kNone || holder == mine ? mine : kSeveral;
+    }
+  }
+  for (int t = 0; t < mesh.T.rows(); ++t) {
+    int first = kNone;
+    bool between = false;
+    for (int i = 0; i < 4; ++i) {
+      const int holder = bone[mesh.T(t, i)];
+      between |= holder == kSeveral || (holder >= 0 && first >= 0 && holder != first);
+      if (holder >= 0) first = holder;
+    }
+    model.joint.push_back(between);
+  }
+
+  const Surroundings around(volume, tissue);
+  for (int i = 0; i < mesh.V.rows(); ++i) {
+    glm::ivec3 voxel(0);
+    const bool found = around.nearest(mesh.V.row(i), [&](const glm::ivec3& v) { return is_in(moving.meshed, tissue, v); }, voxel);
+    int holder = bone[i] == kSeveral ? kNone : bone[i];
+    if (bone[i] == kNone && found && !is_in(moving.free, tissue, voxel)) holder = moving.moves_as[influence_at(weights, tissue, voxel).bone[0]];
+    model.fem.held_by.push_back(holder);
+    if (found)
+      model.fem.influences.push_back(influences_around(weights, volume, tissue, moving.moves_as, voxel));
+    else
+      model.fem.influences.push_back({{std::max(holder, 0), 1.0}});
+    if (holder >= 0) model.fem.influences.back() = {{holder, 1.0}};
+  }
+}
+
+}  // namespace
+
+LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone, const SkinWeights& weights,
+                            const MovingTissue& moving) {
+  LabelVolume regions{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
+  for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
+    auto influence = weights.chunk(brick).begin();
+    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
+      const int bone = (influence++)->bone[0];
+      if (is_in(moving.meshed, tissue, v)) regions.at(v) = is_bone[volume.at(v)] ? static_cast<Label>(2 + moving.moves_as[bone]) : Label{1};
+    });
+  }
+  return regions;
+}
+
+TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const SkinWeights& weights,
+                         const MovingTissue& moving, TetMesh mesh, const TissueModelSettings& settings) {
+  TissueModel model;
+  model.fem.mesh = std::move(mesh);
+  model.fem.bone_names = weights.bones();
+  choose_holders(model, volume, tissue, weights, moving);
+  count_voxels(model, volume);
+  choose_materials(model, volume, tissue, tissues, settings);
+  return model;
+}
+
+std::vector<double> volume_ratios(const TetMesh& mesh, const Eigen::MatrixX3d& V) {
+  const auto volume = [&](const Eigen::MatrixX3d& P, int t) {
+    Eigen::Matrix3d edges;
+    for (int i = 0; i < 3; ++i) edges.col(i) = (P.row(mesh.T(t, i + 1)) - P.row(mesh.T(t, 0))).transpose();
+    return edges.determinant();
+  };
+  std::vector<double> ratios;
+  for (int t = 0; t < mesh.T.rows(); ++t) ratios.push_back(volume(V, t) / volume(mesh.V, t));
+  return ratios;
+}
+
+std::map<Label, double> volume_change_percent(const TissueModel& model, const Eigen::MatrixX3d& V) {
+  const std::vector<double> ratios = volume_ratios(model.fem.mesh, V);
+  std::map<Label, std::pair<double, double>> before_after;
+  for (size_t t = 0; t < ratios.size(); ++t)
+    for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i) {
+      auto& [before, after] = before_after[model.counts[i].label];
+      before += model.counts[i].voxels;
+      after += model.counts[i].voxels * ratios[t];
+    }
+  std::map<Label, double> change;
+  for (const auto& [label, sums] : before_after) change[label] = 100 * (sums.second / sums.first - 1);
+  return change;
+}
+
+}  // namespace limber

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A body's tissue as the model that solve_pose takes: what each tet is made of, which bone holds which node.
+//
+// Material. A tet of 4 to 12 mm holds many voxels, and skin is often one voxel thick: so a tet's shear modulus is the mean
+// over the soft voxels whose centres lie in it (by Young's modulus and Poisson ratio of the tissue table), and its Poisson
+// ratio their mean. A tet without any takes the nearest soft voxel's.
+//
+// Bones. Nodes of a bone's tets are held by it; nodes of what is meshed but does not bend (moving_tissue.h) by the bone that
+// tissue goes with. A node of two bones that move differently is held by none. Tets between two bones are the joint: soft and
+// compressible, for there the mesh is far coarser than the gap and fluid that let a joint turn.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "core/fem/moving_tissue.h"
+#include "core/volume/tissue_table.h"
+
+namespace limber {
+
+struct TissueModelSettings {
+  TetMaterial joint{.shear_modulus = 1, .poisson_ratio = 0.3};  // kPa
+  TetMaterial bone{.shear_modulus = 100, .poisson_ratio = 0.3};  // of tets that are held at every node
+};
+
+struct TissueModel {
+  struct VoxelCount {
+    Label label;
+    int voxels;
+  };
+  FemModel fem;
+  std::vector<std::int32_t> first;  // #T + 1: where a tet's counts begin
+  std::vector<VoxelCount> counts;   // of the voxels whose centres lie in each tet
+  std::vector<std::uint8_t> joint;  // #T: 1 between two bones
+};
+
+// What is to be meshed: 0 air or not in the mesh, 1 soft tissue, 2 + bone (as moves_as) bone tissue.
+LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone, const SkinWeights& weights,
+                            const MovingTissue& moving);
+
+//   weights  bone tissue follows one bone wholly
+//   mesh     of regions_to_mesh; its regions are 1 + bone, as moves_as
+TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const SkinWeights& weights,
+                         const MovingTissue& moving, TetMesh mesh, const TissueModelSettings& settings = {});
+
+// How much the voxels of each label, with the tets they lie in, gained or lost.    V  #V posed nodes
+std::map<Label, double> volume_change_percent(const TissueModel& model, const Eigen::MatrixX3d& V);
+
+// det F of every tet.
+std::vector<double> volume_ratios(const TetMesh& mesh, const Eigen::MatrixX3d& V);
+
+}  // namespace limber

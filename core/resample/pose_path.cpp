@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/pose_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace limber {
+
+Pose part_of_pose(const Pose& pose, double t) {
+  if (t == 1) return pose;
+  Pose part = pose;
+  for (glm::dquat& turn : part.rotation) turn = t == 0 || turn == glm::dquat(1, 0, 0, 0) ? glm::dquat(1, 0, 0, 0) : glm::slerp(glm::dquat(1, 0, 0, 0), turn, t);
+  part.root_translation *= t;
+  return part;
+}
+
+std::vector<RigidTransform> bone_motions(const std::vector<std::string>& bones, const Armature& armature, const Pose& pose) {
+  const std::vector<RigidTransform> posed = posed_from_rest(armature, pose);
+  std::vector<RigidTransform> motions;
+  for (const std::string& name : bones) motions.push_back(posed[require_bone(armature, name)]);
+  return motions;
+}
+
+double largest_angle_degrees(const Pose& pose) {
+  double largest = 0;
+  for (const glm::dquat& turn : pose.rotation)
+    largest = std::max(largest, 2 * std::atan2(glm::length(glm::dvec3(turn.x, turn.y, turn.z)), std::abs(turn.w)));
+  return largest * 180 / std::numbers::pi;
+}
+
+}  // namespace limber

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/fem/tissue_model.h"
+
+#include <doctest/doctest.h>
+
+#include "core/resample/pose_path.h"
+#include "tests/support/bent_tube.h"
+#include "tests/support/kuhn_mesh.h"
+
+using namespace limber;
+
+namespace {
+
+struct Body {
+  test::BentTube tube;
+  TissueVoxels tissue;
+  LabelSet is_bone = LabelSet(65536, 0);
+
+  explicit Body(const Grid& grid = {}, int length = 44) : tube(test::bent_tube(grid, length)), tissue(tube.volume) { is_bone[test::kBone] = 1; }
+
+  BonePath path(double degrees) const {
+    return [this, degrees](double t) { return bone_motions(tube.weights.bones(), tube.rig, part_of_pose(tube.pose(degrees), t)); };
+  }
+  MovingTissue moving(double degrees, const MovingSettings& settings = {}) const {
+    return moving_tissue(tube.volume, tissue, tube.weights, path(degrees), settings);
+  }
+};
+
+std::int64_t count(const TissueMask& mask) {
+  std::int64_t voxels = 0;
+  for (const auto& brick : mask)
+    for (std::uint64_t slice : brick) voxels += std::popcount(slice);
+  return voxels;
+}
+
+bool has(const TissueMask& mask, const TissueVoxels& tissue, const glm::ivec3& v) {
+  return mask[tissue.brick_at(v)][v.z & 7] >> ((v.x & 7) + 8 * (v.y & 7)) & 1;
+}
+
+TissueModel model_of(const Body& body, const MovingTissue& moving, int side) {
+  const LabelVolume regions = regions_to_mesh(body.tube.volume, body.tissue, body.is_bone, body.tube.weights, moving);
+  return tissue_model(body.tube.volume, body.tissue, body.tube.tissues, body.tube.weights, moving, test::kuhn_mesh_of(regions, side));
+}
+
+}  // namespace
+
+TEST_CASE("moving tissue: nothing bends at rest or when the whole body turns") {
+  const Body body;
+  CHECK(body.moving(0).empty());
+  Pose turned = rest_pose(body.tube.rig);
+  turned.rotation[0] = glm::angleAxis(1.0, glm::normalize(glm::dvec3(1, 2, 3)));
+  turned.root_translation = {5, 6, 7};
+  const BonePath path = [&](double t) { return bone_motions(body.tube.weights.bones(), body.tube.rig, part_of_pose(turned, t)); };
+  const MovingTissue moving = moving_tissue(body.tube.volume, body.tissue, body.tube.weights, path);
+  CHECK(moving.empty());
+  CHECK(moving.moves_as == std::vector<int>{0, 0});
+}
+
+TEST_CASE("moving tissue: what bends lies around the joint, in a rim that is held, however long the limb is") {
+  std::vector<std::int64_t> free, meshed;
+  for (int length : {120, 240}) {
+    const Body body({}, length);
+    const MovingTissue moving = body.moving(50, {.margin_mm = 10, .rim_mm = 8});
+    CHECK(moving.moves_as == std::vector<int>{0, 1});
+    free.push_back(count(moving.free));
+    meshed.push_back(count(moving.meshed));
+    CHECK(free.back() > 0);
+    CHECK(meshed.back() > free.back());
+    bool inside = true, near = true, rim = true;
+    body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
+      const bool is_free = has(moving.free, body.tissue, v), is_meshed = has(moving.meshed, body.tissue, v);
+      const int off = std::abs(v.z - length / 2);
+      if (off < 8) inside &= is_free;          // where weights blend
+      if (off > 6 + 10 + 8) near &= !is_free;  // beyond the margin and two cells
+      if (off > 6 + 10 + 8 + 8) rim &= !is_meshed;
+      if (is_free) rim &= is_meshed;
+    });
+    CHECK(inside);
+    CHECK(near);
+    CHECK(rim);
+
+    const SkinWeights rigid = with_rigid_rest(body.tube.weights, body.tissue, moving);
+    bool whole = true, kept = true;
+    for (std::int64_t b = 0; b < rigid.chunk_count(); ++b) {
+      auto now = rigid.chunk(b).begin();
+      auto before = body.tube.weights.chunk(b).begin();
+      body.tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
+        if (has(moving.free, body.tissue, v))
+          kept &= *now == *before;
+        else
+          whole &= now->weight[0] == kFullWeight;
+        ++now;
+        ++before;
+      });
+    }
+    CHECK(whole);
+    CHECK(kept);
+  }
+  CHECK(free[0] == free[1]);
+  CHECK(meshed[0] == meshed[1]);
+}
+
+TEST_CASE("moving tissue: with contact also what the pose brings together may bend") {
+  const Body body({}, 160);
+  const MovingSettings without{.margin_mm = 8, .rim_mm = 8, .contact = false, .near_mm = 10};
+  MovingSettings with = without;
+  with.contact = true;
+  const MovingTissue apart = body.moving(165, without), close = body.moving(165, with), open = body.moving(40, with);
+  CHECK(count(close.free) > 1.5 * count(apart.free));
+  CHECK(count(open.free) == count(body.moving(40, without).free));
+}
+
+TEST_CASE("tissue model: bones hold the nodes of their tets, the rim is held, and what lies between two bones is the joint") {
+  for (const Grid& grid : {Grid{}, test::oblique_grid()}) {
+    const Body body(grid, 120);
+    const MovingTissue moving = body.moving(50, {.margin_mm = 12, .rim_mm = 10});
+    const TissueModel model = model_of(body, moving, 4);
+    const TetMesh& mesh = model.fem.mesh;
+    REQUIRE(model.fem.held_by.size() == std::size_t(mesh.V.rows()));
+    REQUIRE(model.fem.influences.size() == std::size_t(mesh.V.rows()));
+    REQUIRE(model.fem.material.size() == std::size_t(mesh.T.rows()));
+    int near = 0, far = 0, free = 0, joint = 0;
+    bool held = true, sums = true;
+    for (int t = 0; t < mesh.T.rows(); ++t) {
+      joint += model.joint[t];
+      if (mesh.region[t] == TetMesh::kSoft || model.joint[t]) continue;
+      for (int i = 0; i < 4; ++i) held &= model.fem.held_by[mesh.T(t, i)] == TetMesh::bone_of(mesh.region[t]);
+    }
+    const AffineTransform voxel = voxel_from_world(grid);
+    for (int i = 0; i < mesh.V.rows(); ++i) {
+      double sum = 0;
+      for (const BoneWeight& influence : model.fem.influences[i]) sum += influence.weight;
+      sums &= std::abs(sum - 1) < 1e-12;
+      const int holder = model.fem.held_by[i];
+      (holder < 0 ? free : holder == 0 ? near : far) += 1;
+      const double z = (voxel * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2))).z;
+      if (holder >= 0) held &= (holder == 1) == (z > 60);
+    }
+    CHECK(held);
+    CHECK(sums);
+    CHECK(near > 0);
+    CHECK(far > 0);
+    CHECK(free > 0);
+    CHECK(joint == 0);  // the bones end four voxels from the joint, more than a tet
+  }
+  // Bones that meet.
+  Body body;
+  for (int z = 14; z < 30; ++z)
+    for (int y = 10; y < 15; ++y)
+      for (int x = 9; x < 14; ++x) body.tube.volume.at({x, y, z}) = test::kBone;
+  for (std::int64_t b = 0; b < body.tube.weights.chunk_count(); ++b) {
+    SkinWeights::Chunk chunk = body.tube.weights.chunk(b);
+    auto influence = chunk.begin();
+    body.tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
+      if (body.tube.volume.at(v) == test::kBone) *influence = rigid_influence(v.z >= 22);
+      ++influence;
+    });
+    body.tube.weights.set_chunk(b, std::move(chunk));
+  }
+  const TissueModel model = model_of(body, body.moving(50), 2);
+  int joint = 0;
+  for (int t = 0; t < model.fem.mesh.T.rows(); ++t) {
+    if (!model.joint[t]) continue;
+    ++joint;
+    CHECK(model.fem.material[t].shear_modulus == 1);
+    CHECK(model.fem.material[t].poisson_ratio == 0.3);
+  }
+  CHECK(joint > 0);
+}
+
+TEST_CASE("tissue model: a tet is as stiff as its voxels in the mean, and a mesh that grows says so for each label") {
+  Body body;
+  for (Tissue& tissue : body.tube.tissues.tissues)
+    if (tissue.label == test::kFat) {
+      tissue.young_modulus = 6;
+      tissue.poisson_ratio = 0.5;  // more than can be computed with
+    } else if (tissue.label == test::kSkin) {
+      tissue.young_modulus = 30;
+      tissue.poisson_ratio = 0.25;
+    }
+  const TissueModel model = model_of(body, body.moving(50), 4);
+  const double fat = 6 / (2 * 1.499), skin = 30 / 2.5;
+  int fat_only = 0, mixed = 0, empty = 0;
+  std::int64_t voxels = 0;
+  for (int t = 0; t < model.fem.mesh.T.rows(); ++t) {
+    double fats = 0, skins = 0, bones = 0;
+    for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i) {
+      voxels += model.counts[i].voxels;
+      (model.counts[i].label == test::kFat ? fats : model.counts[i].label == test::kSkin ? skins : bones) += model.counts[i].voxels;
+    }
+    if (model.fem.mesh.region[t] != TetMesh::kSoft) continue;
+    const TetMaterial& material = model.fem.material[t];
+    if (fats + skins == 0) {
+      ++empty;
+      CHECK((material.shear_modulus == doctest::Approx(fat) || material.shear_modulus == doctest::Approx(skin)));
+      continue;
+    }
+    (skins == 0 ? fat_only : mixed) += 1;
+    CHECK(material.shear_modulus == doctest::Approx((fats * fat + skins * skin) / (fats + skins)));
+    CHECK(material.poisson_ratio == doctest::Approx((fats * 0.499 + skins * 0.25) / (fats + skins)));
+  }
+  CHECK(fat_only > 0);
+  CHECK(mixed > 0);
+  CHECK(empty > 0);
+  CHECK(voxels == body.tissue.size());
+
+  Eigen::MatrixX3d grown = model.fem.mesh.V;
+  for (const auto& [label, percent] : volume_change_percent(model, grown)) CHECK(std::abs(percent) < 1e-10);
+  grown.col(2) *= 1.03;
+  for (const Label label : {test::kSkin, test::kFat, test::kBone}) CHECK(volume_change_percent(model, grown).at(label) == doctest::Approx(3));
+}
