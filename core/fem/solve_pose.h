@@ -16,6 +16,7 @@
 
 #include "core/base/progress.h"
 #include "core/deform/skinning.h"
+#include "core/fem/fem_energy.h"
 #include "core/fem/material.h"
 #include "core/mesh/tet_mesh.h"
 
@@ -50,10 +51,6 @@ struct SolveStep {
 };
 
 struct SolvedPose {
-  // CPU seconds of all threads.
-  struct Seconds {
-    double air = 0, analysis = 0, assembly = 0, factorization = 0, search = 0, total = 0;
-  };
   Eigen::MatrixX3d V;        // #V posed nodes
   bool converged = false;    // false: V is the last good step, `reached` of the path
   double reached = 0;        // [0, 1]
@@ -66,7 +63,7 @@ struct SolvedPose {
   std::int64_t inverted = 0;  // tets with det F <= 0 at the end of any step, flesh, bone and air
   int crossings_mended = 0;  // times that skin was found crossing and the last two steps were done again at half the angle
   int air_meshes_kept = 0;   // times that the air could not be meshed and the former air went on
-  Seconds seconds;
+  FemSeconds seconds;
 };
 
 // start  #V nodes that the path begins at (a neighbouring frame's result), none: rest

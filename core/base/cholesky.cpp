@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/base/cholesky.h"
+
+#include <algorithm>
+#include <cassert>
+#include <string>
+#include <utility>
+
+#include <cholmod.h>
+
+#include "core/base/error.h"
+
+// Of the OpenMP runtime that CHOLMOD itself is linked with.
+extern "C" void omp_set_max_active_levels(int);
+extern "C" int omp_get_max_active_levels(void);
+
+namespace limber {
+
+namespace {
+// Debian's CHOLMOD starts four threads inside a factorization, which on few cores doubles what it costs. Nested regions that
+// are not active run on the calling thread.
+class OneThread {
+ public:
+  OneThread() : before_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
+  ~OneThread() { omp_set_max_active_levels(before_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int before_;
+};
+
+// Positions of A's entries, without values.
+cholmod_sparse pattern_of(std::vector<int>& column, std::vector<int>& row) {
+  cholmod_sparse A{};
+  A.nrow = A.ncol = column.size() - 1;
+  A.nzmax = row.size();
+  A.p = column.data();
+  A.i = row.data();
+  A.stype = -1;
+  A.itype = CHOLMOD_INT;
+  A.xtype = CHOLMOD_PATTERN;
+  A.dtype = CHOLMOD_DOUBLE;
+  A.sorted = A.packed = 1;
+  return A;
+}
+}  // namespace
+
+void BlockGraphBuilder::add(std::span<const int> element) {
+  for (int node : element)
+    if (node >= 0) node_.push_back(node);
+  first_.push_back(std::ssize(node_));
+}
+
+BlockGraph BlockGraphBuilder::build() const {
+  // The elements of every node.
+  std::vector<std::int64_t> first(node_count_ + 1, 0);
+  for (int node : node_) ++first[node + 1];
+  for (int i = 0; i < node_count_; ++i) first[i + 1] += first[i];
+  std::vector<int> element(node_.size());
+  std::vector<std::int64_t> next(first.begin(), first.end() - 1);
+  for (int e = 0; e + 1 < int(first_.size()); ++e)
+    for (auto k = first_[e]; k < first_[e + 1]; ++k) element[next[node_[k]]++] = e;
+
+  BlockGraph graph;
+  graph.first.reserve(node_count_ + 1);
+  std::vector<int> seen_by(node_count_, -1);
+  for (int i = 0; i < node_count_; ++i) {
+    seen_by[i] = i;
+    const auto begin = std::ssize(graph.neighbour);
+    for (auto k = first[i]; k < first[i + 1]; ++k)
+      for (auto n = first_[element[k]]; n < first_[element[k] + 1]; ++n)
+        if (std::exchange(seen_by[node_[n]], i) != i) graph.neighbour.push_back(node_[n]);
+    std::sort(graph.neighbour.begin() + begin, graph.neighbour.end());
+    graph.first.push_back(std::ssize(graph.neighbour));
+  }
+  return graph;
+}
+
+struct Cholesky::Factor {
+  cholmod_common common;
+  cholmod_factor* factor = nullptr;
+  cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
+  double operations = 0;
+
+  std::vector<int> rank;                        // #nodes: place in the ordering
+  std::vector<std::int64_t> below_first{0};     // #nodes + 1, by rank
+  std::vector<int> below;                       // ranks of the blocks below the diagonal, rising
+  std::vector<int> column, row;                 // scalar pattern, whole blocks, in ranks
+  std::vector<double> value, right_side;
+
+  Factor() {
+    cholmod_start(&common);
+    common.print = 0;
+  }
+  ~Factor() {
+    cholmod_free_dense(&solution, &common);
+    cholmod_free_dense(&work_y, &common);
+    cholmod_free_dense(&work_e, &common);
+    cholmod_free_factor(&factor, &common);
+    cholmod_finish(&common);
+  }
+  Factor(const Factor&) = delete;
+  Factor& operator=(const Factor&) = delete;
+
+  // Negative states of CHOLMOD are failures; of them only memory depends on the input.
+  void require(const char* what) const {
+    if (common.status >= 0) return;
+    throw Error("not enough memory for a system of " + std::to_string(rank.size()) + " mesh nodes",
+                std::string(what) + " (CHOLMOD status " + std::to_string(common.status) + ")", "use a coarser mesh, or more memory");
+  }
+
+  void order(const BlockGraph& graph);
+  void expand(const BlockGraph& graph);
+  void analyse();
+};
+
+// Nested dissection of the nodes, then by postorder of the elimination tree, so that supernodes are contiguous.
+void Cholesky::Factor::order(const BlockGraph& graph) {
+  const int n = graph.node_count();
+  rank.resize(n);
+  std::vector<int> node_column{0}, node_row;
+  node_row.reserve(graph.neighbour.size() / 2 + n);
+  for (int i = 0; i < n; ++i) {
+    node_row.push_back(i);
+    for (auto k = graph.first[i]; k < graph.first[i + 1]; ++k)
+      if (graph.neighbour[k] > i) node_row.push_back(graph.neighbour[k]);
+    node_column.push_back(int(node_row.size()));
+  }
+  cholmod_sparse A = pattern_of(node_column, node_row);
+  common.nmethods = 1;
+  common.method[0].ordering = CHOLMOD_METIS;
+  common.postorder = true;
+  common.supernodal = CHOLMOD_SIMPLICIAL;
+  cholmod_factor* nodes = cholmod_analyze(&A, &common);
+  require("ordering");
+  for (int k = 0; k < n; ++k) rank[static_cast<int*>(nodes->Perm)[k]] = k;
+  cholmod_free_factor(&nodes, &common);
+}
+
+void Cholesky::Factor::expand(const BlockGraph& graph) {
+  const int n = graph.node_count();
+  std::vector<int> node_of(n);
+  for (int i = 0; i < n; ++i) node_of[rank[i]] = i;
+  for (int r = 0; r < n; ++r) {
+    const int i = node_of[r];
+    const auto begin = std::ssize(below);
+    for (auto k = graph.first[i]; k < graph.first[i + 1]; ++k)
+      if (rank[graph.neighbour[k]] > r) below.push_back(rank[graph.neighbour[k]]);
+    std::sort(below.begin() + begin, below.end());
+    below_first.push_back(std::ssize(below));
+  }
+
+  const std::int64_t entries = 9 * (n + std::ssize(below));
+  if (entries > std::int64_t{1} << 30) common.status = CHOLMOD_TOO_LARGE;
+  require("assembly");
+  column.assign(1, 0);
+  row.reserve(entries);
+  for (int r = 0; r < n; ++r)
+    for (int c = 0; c < 3; ++c) {
+      for (int k = 0; k < 3; ++k) row.push_back(3 * r + k);
+      for (auto b = below_first[r]; b < below_first[r + 1]; ++b)
+        for (int k = 0; k < 3; ++k) row.push_back(3 * below[b] + k);
+      column.push_back(int(row.size()));
+    }
+  value.assign(entries, 0);
+}
+
+void Cholesky::Factor::analyse() {
+  cholmod_sparse A = pattern_of(column, row);
+  common.method[0].ordering = CHOLMOD_NATURAL;
+  common.postorder = false;
+  common.supernodal = CHOLMOD_SUPERNODAL;
+  common.quick_return_if_not_posdef = true;
+  factor = cholmod_analyze(&A, &common);
+  require("analysis");
+  operations = common.fl;
+}
+
+Cholesky::Cholesky(const BlockGraph& graph) : factor_(std::make_unique<Factor>()) {
+  const OneThread one_thread;
+  factor_->order(graph);
+  factor_->expand(graph);
+  factor_->analyse();
+}
+
+Cholesky::~Cholesky() = default;
+Cholesky::Cholesky(Cholesky&&) noexcept = default;
+Cholesky& Cholesky::operator=(Cholesky&&) noexcept = default;
+
+int Cholesky::node_count() const { return int(factor_->rank.size()); }
+int Cholesky::rank(int node) const { return factor_->rank[node]; }
+
+Cholesky::Place Cholesky::place(int row, int column) const {
+  const int r = factor_->rank[row], c = factor_->rank[column];
+  const auto begin = factor_->below_first[c], end = factor_->below_first[c + 1];
+  const std::int64_t stride = 3 * (1 + end - begin);
+  const std::int64_t first = factor_->column[3 * c];
+  if (r == c) return {first, stride};
+  const auto at = std::lower_bound(factor_->below.begin() + begin, factor_->below.begin() + end, r);
+  assert(at != factor_->below.begin() + end && *at == r);
+  return {first + 3 * (1 + (at - factor_->below.begin() - begin)), stride};
+}
+
+std::span<double> Cholesky::values() { return factor_->value; }
+void Cholesky::clear() { std::fill(factor_->value.begin(), factor_->value.end(), 0.0); }
+
+bool Cholesky::factorize() {
+  const OneThread one_thread;
+  cholmod_sparse A = pattern_of(factor_->column, factor_->row);
+  A.x = factor_->value.data();
+  A.xtype = CHOLMOD_REAL;
+  factor_->common.status = CHOLMOD_OK;
+  cholmod_factorize(&A, factor_->factor, &factor_->common);
+  factor_->require("factorization");
+  return factor_->common.status != CHOLMOD_NOT_POSDEF && factor_->factor->minor == factor_->factor->n;
+}
+
+void Cholesky::solve(std::span<double> b) {
+  const OneThread one_thread;
+  const int n = node_count();
+  assert(std::ssize(b) == 3 * n);
+  auto& right = factor_->right_side;
+  right.resize(3 * n);
+  for (int i = 0; i < n; ++i) std::copy_n(&b[3 * i], 3, &right[3 * rank(i)]);
+  cholmod_dense B{};
+  B.nrow = B.d = B.nzmax = right.size();
+  B.ncol = 1;
+  B.x = right.data();
+  B.xtype = CHOLMOD_REAL;
+  B.dtype = CHOLMOD_DOUBLE;
+  cholmod_solve2(CHOLMOD_A, factor_->factor, &B, nullptr, &factor_->solution, nullptr, &factor_->work_y, &factor_->work_e, &factor_->common);
+  factor_->require("solution");
+  const double* x = static_cast<const double*>(factor_->solution->x);
+  for (int i = 0; i < n; ++i) std::copy_n(&x[3 * rank(i)], 3, &b[3 * i]);
+}
+
+std::int64_t Cholesky::factor_size() const { return std::int64_t(factor_->factor->xsize); }
+double Cholesky::factor_operations() const { return factor_->operations; }
+
+}  // namespace limber

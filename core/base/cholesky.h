@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Solves symmetric sparse systems of 3x3 blocks, one row of blocks per node of a mesh, by supernodal Cholesky factorization
+// [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD] with nested dissection of the node graph [Karypis & Kumar 1998, METIS].
+// Ordered and analysed once per graph, factorized for as many values as one likes. Works on one thread, so that its results
+// do not depend on how many there are.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace limber {
+
+// Which nodes meet in a block: the neighbours of node i are neighbour[first[i] .. first[i + 1]), rising, without i itself,
+// and each also has i as its neighbour.
+struct BlockGraph {
+  std::vector<std::int64_t> first{0};  // #nodes + 1
+  std::vector<int> neighbour;
+
+  int node_count() const { return int(first.size()) - 1; }
+};
+
+// The graph in which the nodes of every element meet. Elements are `size` nodes each, -1 is no node.
+class BlockGraphBuilder {
+ public:
+  explicit BlockGraphBuilder(int node_count) : node_count_(node_count) {}
+  void add(std::span<const int> element);
+  BlockGraph build() const;
+
+ private:
+  int node_count_;
+  std::vector<std::int64_t> first_{0};
+  std::vector<int> node_;
+};
+
+class Cholesky {
+ public:
+  // Where the block of two nodes lies in values(): entry (row, column) at `at` + column * `stride` + row.
+  struct Place {
+    std::int64_t at;
+    std::int64_t stride;
+  };
+
+  // throws Error when memory does not suffice
+  explicit Cholesky(const BlockGraph& graph);
+  ~Cholesky();
+  Cholesky(Cholesky&&) noexcept;
+  Cholesky& operator=(Cholesky&&) noexcept;
+
+  int node_count() const;
+  // Of the ordering that keeps the factor sparse. Only blocks whose row node comes at or after their column node are stored;
+  // of a node's own block only the lower triangle is read.
+  int rank(int node) const;
+  // row, column  nodes that are the same or meet in the graph, rank(row) >= rank(column)
+  Place place(int row, int column) const;
+
+  std::span<double> values();
+  void clear();  // all values to zero
+
+  // False when the matrix is not positive definite: nothing to solve with then.
+  bool factorize();
+  // Solves in place: 3 numbers per node, in the graph's own order. After a factorize() that was true.
+  void solve(std::span<double> b);
+
+  std::int64_t factor_size() const;  // numbers in the factor, 8 bytes each
+  double factor_operations() const;  // floating point operations of a factorization
+
+ private:
+  struct Factor;
+  std::unique_ptr<Factor> factor_;
+};
+
+}  // namespace limber

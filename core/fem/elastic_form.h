@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The elastic energy of a list of tets with its forces and its curvature, for flesh and for the air between skins alike.
+// Adding to forces and matrix runs in parallel without a lock: neighbouring tets form chunks, chunks of one colour share no
+// node, and colours take turns, so that every sum has one order.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/base/cholesky.h"
+#include "core/fem/places.h"
+#include "core/fem/tet_energy.h"
+
+namespace limber {
+
+enum class Curvature { Projected, Exact };  // without or with what is negative in a tet's
+
+// Ranges of elements in an order in which ranges of one colour, which share no node, stand together.
+struct ColouredChunks {
+  struct Chunk {
+    std::int64_t begin, end;
+  };
+  std::vector<Chunk> chunks;
+  std::vector<std::int64_t> colour_first{0};  // #colours + 1
+
+  // body(chunk) for all, in parallel within a colour.
+  void for_each(const std::function<void(const Chunk&)>& body) const;
+};
+
+// nodes_of(element, visit) calls visit(node) for its nodes; `cut` holds where chunks may end, rising, the number of elements last.
+ColouredChunks colour_chunks(const std::vector<std::int64_t>& cut, int node_count,
+                             const std::function<void(std::int64_t, const std::function<void(int)>&)>& nodes_of);
+
+class ElasticForm {
+ public:
+  struct Tet {
+    std::array<int, 4> node;
+    std::array<Eigen::Vector3d, 4> slope;  // of the node's linear hat function at rest, 1/mm: F = sum of x_a slope_a^T
+    double volume;                         // at rest, mm3
+    TetEnergy energy;
+  };
+
+  ElasticForm() = default;
+  // T  #T corners with positive volume at `rest`, in an order that keeps neighbours close; chunk ends at multiples of 48 tets,
+  // or where `may_cut` says (rising, #T last).
+  ElasticForm(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy, const std::vector<std::int64_t>& may_cut = {});
+
+  std::int64_t size() const { return std::ssize(tets_); }
+  const Tet& tet(std::int64_t t) const { return tets_[t]; }
+
+  void connect(BlockGraphBuilder& graph, std::span<const int> unknown) const;
+  // Where the blocks of every tet lie in a matrix over unknown[node] (-1: the node is none). Changes the order of tets' nodes.
+  void bind(const Cholesky& matrix, std::span<const int> unknown);
+
+  // det F of every tet.
+  void volume_ratios(const Places& x, std::vector<double>& J) const;
+  // Infinite where a tet is inverted.
+  double value(const Places& x, const std::vector<double>& J) const;
+  // pressure  of every tet, kPa, or empty
+  void add_derivatives(const Places& x, std::span<const double> pressure, Curvature curvature, Places& gradient, std::span<double> matrix) const;
+  void add_gradient(const Places& x, std::span<const double> pressure, Places& gradient) const;
+
+  Eigen::Matrix3d deformation(const Places& x, std::int64_t t) const;
+
+ private:
+  std::vector<Tet> tets_;
+  std::vector<std::array<Cholesky::Place, 10>> places_;  // lower triangle of node pairs, row by row; at -1: not in the matrix
+  ColouredChunks chunks_;
+};
+
+}  // namespace limber

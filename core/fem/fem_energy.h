@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// All that a step's shape is the least energy of: flesh (elastic_form.h) with its patches (patch_form.h), the springs of the
+// bones (pin_form.h), and with contact the air between skins (air_form.h); and the matrix of its curvature.
+// Nodes deep in a bone, whose tets all belong to that bone alone, are no unknowns: they go where the bone goes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/fem/elastic_form.h"
+#include "core/fem/material.h"
+#include "core/fem/patch_form.h"
+#include "core/fem/pin_form.h"
+#include "core/fem/step_bound.h"
+
+namespace limber {
+
+// Nothing of the solver but its cost, in CPU seconds of all threads.
+struct FemSeconds {
+  double air = 0, analysis = 0, assembly = 0, factorization = 0, search = 0, total = 0;
+};
+
+// Adds the CPU time of the process, while it lives, to a sum.
+class CpuTimer {
+ public:
+  explicit CpuTimer(double& sum);
+  ~CpuTimer();
+  CpuTimer(const CpuTimer&) = delete;
+  CpuTimer& operator=(const CpuTimer&) = delete;
+
+ private:
+  double& sum_;
+  double start_;
+};
+
+class FemEnergy {
+ public:
+  // Flesh: T and material of the tets that deform, #T each. weak_barrier_kpa ends the oscillation of single tets near J 0.
+  FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material, double weak_barrier_kpa, int patch_size = 8);
+
+  // Springs, and what moves without being asked: `carried` nodes go to `carried_target`. Keeps the matrix when the nodes are
+  // those of the last call.
+  void hold(PinForm pins, std::vector<int> carried, Places carried_target);
+  // Air that resists (form, may be empty) and volume that must not invert although it costs nothing (guarded).
+  void set_air(ElasticForm air, Eigen::MatrixX4i air_tets, Eigen::MatrixX4i guarded);
+
+  int node_count() const { return node_count_; }
+
+  // Infinite where a tet is inverted.
+  double value(const Places& x);
+  void gradient(const Places& x, Places& gradient);
+  // The Newton step at x: false when the curvature is not positive definite. Also says what the energy falls by along it, to
+  // first order (above 0).
+  bool newton_step(const Places& x, Curvature curvature, Places& step, double& slope);
+  StepBound largest_step(const Places& x, const Places& step, double limit) const;
+
+  enum class Part { Flesh, Guarded, Air };
+  // Corners of the tet that a StepBound names.
+  Eigen::RowVector4i bounding_tet(const StepBound& bound) const;
+  Part part_of(const StepBound& bound) const;
+
+  double min_ratio(const Places& x) const;      // smallest det F of flesh
+  double min_air_ratio(const Places& x) const;  // of air that resists; 1 without
+  const Eigen::MatrixX4i& volume_tets() const { return bounded_; }  // all that must stay positive: flesh, guarded, air
+
+  Cholesky& matrix();  // of the last newton_step()
+  int factorizations() const { return factorizations_; }
+  FemSeconds& seconds() { return seconds_; }
+
+ private:
+  void prepare();
+  void ratios(const Places& x);
+  void assemble(const Places& x, Curvature curvature, Places& gradient);
+
+  int node_count_;
+  Eigen::MatrixX4i flesh_tets_, air_tets_, guarded_, bounded_;
+  ElasticForm flesh_, air_;
+  PatchForm patches_;
+  PinForm pins_;
+  std::vector<int> carried_;
+  Places carried_target_;
+
+  std::vector<int> unknown_;  // #nodes: row of blocks in the matrix, -1 none
+  std::vector<int> node_of_;  // #rows
+  std::unique_ptr<Cholesky> matrix_;
+  std::vector<double> J_, air_J_, pressure_, right_side_;
+  int factorizations_ = 0;
+  FemSeconds seconds_;
+};
+
+}  // namespace limber

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/fem/newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber {
+
+namespace {
+constexpr double kSufficient = 1e-4;   // of the first-order decrease that a step must bring [Armijo 1966]
+constexpr double kFurthest = 8;        // times the full step
+constexpr int kHalvings = 24;          // of a step, before the search is given up
+constexpr double kNearStep = 0.4;      // the exact curvature is tried after a step at least this long,
+constexpr double kNearMove = 1;        // by no more than this, mm
+constexpr int kLongestWait = 8;
+
+double longest(const Places& step) { return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0; }
+
+// The exact curvature's turn.
+class ExactTurns {
+ public:
+  bool now() const { return near_ && pause_ == 0; }
+  void succeeded() { wait_ = 1; }
+  void indefinite() { pause_ = wait_, wait_ = std::min(2 * wait_, kLongestWait); }
+  void stepped(double length, double move) {
+    near_ = length > kNearStep && move < kNearMove;
+    pause_ = std::max(pause_ - 1, 0);
+  }
+
+ private:
+  bool near_ = false;
+  int pause_ = 0, wait_ = 1;
+};
+
+// x + length step of lower energy, in place; the length, 0 if none was found.
+double search(FemEnergy& energy, Places& x, double& value, const Places& step, double slope, double bound) {
+  const double rounding = 1e-13 * std::abs(value);
+  double length = std::min(1.0, bound);
+  Places there;
+  double best = value;
+  for (int k = 0;; ++k, length *= 0.5) {
+    if (k == kHalvings) return 0;
+    there = x + length * step;
+    best = energy.value(there);
+    if (best <= value - kSufficient * length * slope + rounding) break;
+  }
+  // Forward tracking.
+  if (length == 1) {
+    Places further;
+    for (double next = 2; next <= std::min(kFurthest, bound); next *= 2) {
+      further = x + next * step;
+      const double lower = energy.value(further);
+      if (!(lower < best - rounding)) break;
+      best = lower;
+      length = next;
+      there.swap(further);
+    }
+  }
+  x.swap(there);
+  value = best;
+  return length;
+}
+}  // namespace
+
+NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settings, Progress& progress,
+                      const std::function<void(int, double)>& on_iteration) {
+  NewtonResult result;
+  ExactTurns exact;
+  double value = energy.value(x);
+  Places step;
+  while (result.iterations < settings.iterations) {
+    if (progress.cancelled()) throw Cancelled();
+    double slope = 0;
+    if (!(exact.now() && energy.newton_step(x, Curvature::Exact, step, slope))) {
+      if (exact.now()) exact.indefinite();
+      if (!energy.newton_step(x, Curvature::Projected, step, slope)) break;
+    } else {
+      exact.succeeded();
+    }
+    ++result.iterations;
+    result.residual = longest(step);
+
+    {
+      const CpuTimer timer(energy.seconds().search);
+      result.bound = energy.largest_step(x, step, kFurthest);
+    }
+    const double length = search(energy, x, value, step, slope, result.bound.length);
+    result.shortest_search = std::min(result.shortest_search, length);
+    exact.stepped(length, result.residual);
+    if (on_iteration) on_iteration(result.iterations, result.residual);
+    if (length == 0) {
+      // Nothing lower along a step too short to matter is the end; along a longer one it is a dead end.
+      result.converged = result.residual < settings.tolerance_mm;
+      break;
+    }
+    if (result.residual < settings.tolerance_mm && length >= kNearStep) {
+      result.converged = true;
+      break;
+    }
+  }
+  return result;
+}
+
+}  // namespace limber

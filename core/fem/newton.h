@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Projected Newton to the shape of least energy. No iterate ever has an inverted tet: every step is bounded exactly
+// (step_bound.h) and searched along, and a search that finds nothing lower does not move.
+// The projected curvature is positive definite, but near the end slower than the exact one, which is tried there and, where it
+// is indefinite, left alone for 1, 2, 4, 8 iterations. A full step that lowers the energy is tried at 2, 4, 8 times its length.
+#pragma once
+
+#include <functional>
+
+#include "core/base/progress.h"
+#include "core/fem/fem_energy.h"
+
+namespace limber {
+
+struct NewtonSettings {
+  double tolerance_mm = 0.3;  // ends when no node would move further than this
+  int iterations = 40;
+};
+
+struct NewtonResult {
+  bool converged = false;
+  int iterations = 0;
+  double residual = 0;              // furthest that a node wanted to move in the last iteration, mm
+  double shortest_search = 1;       // of all steps taken, in shares of the full step
+  StepBound bound{1, -1};           // of the last step
+};
+
+// x  in: positive tets; out: the least energy found, never higher than where it began
+// on_iteration(iteration, residual) after each
+NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settings, Progress& progress = no_progress(),
+                      const std::function<void(int, double)>& on_iteration = {});
+
+}  // namespace limber

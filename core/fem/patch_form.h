@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Nearly incompressible flesh without locking: the stiff part of the volume term acts on the mean of J over a patch of about
+// eight tets that share faces, not on each tet [after de Souza Neto, Pires & Owen 2005, F-bar patches]:
+//   K/2 V (Jbar - 1)^2,   Jbar = sum of V_t J_t / V
+// On its tets it acts as a pressure p = K (Jbar - 1), and its own curvature is of rank one.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/cholesky.h"
+#include "core/fem/elastic_form.h"
+
+namespace limber {
+
+// Tets in an order in which every patch stands together.
+struct PatchOrder {
+  std::vector<std::int64_t> tet;        // #T
+  std::vector<std::int64_t> first{0};   // #patches + 1
+};
+
+// Patches grow from tet to tet over faces, to the neighbour that shares most nodes with the patch, in the order of a curve
+// through space [Morton 1966]. Only tets of `bulk` above 0 share a patch, and only those whose shear is within a factor of
+// eight of the patch's first; the others are patches of their own.
+//   bulk, shear  #T, kPa
+PatchOrder grow_patches(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<double>& bulk, const std::vector<double>& shear, int size = 8);
+
+class PatchForm {
+ public:
+  PatchForm() = default;
+  // first  as in PatchOrder, over the tets of `tets`, in whose order `bulk` stands; a patch takes the mean of its tets' by volume
+  PatchForm(const ElasticForm& tets, const std::vector<std::int64_t>& first, const std::vector<double>& bulk, int node_count);
+
+  void connect(BlockGraphBuilder& graph, std::span<const int> unknown) const;
+  void bind(const ElasticForm& tets, const Cholesky& matrix, std::span<const int> unknown);
+
+  // J  of every tet
+  double value(const std::vector<double>& J) const;
+  void pressures(const std::vector<double>& J, std::vector<double>& pressure) const;  // kPa, of every tet
+  void add_curvature(const ElasticForm& tets, const Places& x, std::span<double> matrix) const;
+
+ private:
+  struct Patch {
+    std::int64_t begin, end;  // of its tets
+    double bulk, volume;
+    std::int64_t node_begin, node_end;    // in node_
+    std::int64_t place_begin;             // in place_: lower triangle of node pairs, row by row
+  };
+  double mean_ratio(const Patch& patch, const std::vector<double>& J) const;
+
+  std::vector<Patch> patches_;  // with bulk above 0
+  std::vector<double> tet_volume_;
+  std::vector<int> node_;
+  std::vector<std::array<std::uint8_t, 4>> corner_;  // #T: places of a tet's nodes among its patch's
+  std::vector<Cholesky::Place> place_;
+  ColouredChunks chunks_;
+};
+
+}  // namespace limber

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How far nodes may go along a step before a tet would lose nine tenths of its volume, exactly: the volume of a tet whose
+// nodes move straight is a cubic, whose first root is looked for, not guessed.
+#pragma once
+
+#include <cstdint>
+
+#include "core/fem/places.h"
+
+namespace limber {
+
+struct StepBound {
+  double length;      // of the step, at most `limit`
+  std::int64_t tet;   // that bounds it, -1 none
+};
+
+// T  #T corners, all with positive volume at x
+StepBound largest_step(const Eigen::MatrixX4i& T, const Places& x, const Places& step, double limit);
+
+// Six times the volume of tet (a, b, c, d).
+double determinant(const Places& x, int a, int b, int c, int d);
+
+// Tets without positive volume.
+std::int64_t count_inverted(const Eigen::MatrixX4i& T, const Places& x);
+
+}  // namespace limber

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/base/cholesky.h"
+
+#include <array>
+#include <random>
+
+#include <Eigen/Dense>
+#include <doctest/doctest.h>
+
+#include "core/base/parallel.h"
+
+using namespace limber;
+
+namespace {
+// A grid of nodes, each element eight corners of a cell.
+BlockGraph grid_graph(int n) {
+  BlockGraphBuilder builder(n * n * n);
+  const auto node = [&](int i, int j, int k) { return i + n * (j + n * k); };
+  for (int k = 0; k + 1 < n; ++k)
+    for (int j = 0; j + 1 < n; ++j)
+      for (int i = 0; i + 1 < n; ++i) {
+        std::array<int, 8> cell;
+        for (int c = 0; c < 8; ++c) cell[c] = node(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
+        builder.add(cell);
+      }
+  return builder.build();
+}
+
+// Random symmetric blocks with a diagonal that makes the matrix positive definite, written to both.
+Eigen::MatrixXd fill(Cholesky& sparse, const BlockGraph& graph, double diagonal) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const int n = graph.node_count();
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  sparse.clear();
+  const auto put = [&](int a, int b, const Eigen::Matrix3d& block) {
+    dense.block<3, 3>(3 * a, 3 * b) = block;
+    dense.block<3, 3>(3 * b, 3 * a) = block.transpose();
+    const bool turned = sparse.rank(a) < sparse.rank(b);
+    const auto place = turned ? sparse.place(b, a) : sparse.place(a, b);
+    for (int c = 0; c < 3; ++c)
+      for (int r = 0; r < 3; ++r) sparse.values()[place.at + c * place.stride + r] = turned ? block(c, r) : block(r, c);
+  };
+  for (int a = 0; a < n; ++a) {
+    Eigen::Matrix3d own = Eigen::Matrix3d::NullaryExpr([&] { return uniform(random); });
+    put(a, a, own + own.transpose() + diagonal * Eigen::Matrix3d::Identity());
+    for (auto k = graph.first[a]; k < graph.first[a + 1]; ++k)
+      if (graph.neighbour[k] < a) put(a, graph.neighbour[k], Eigen::Matrix3d::NullaryExpr([&] { return uniform(random); }));
+  }
+  return dense;
+}
+}  // namespace
+
+TEST_CASE("cholesky: a graph has every pair of nodes that meet in an element, once") {
+  BlockGraphBuilder builder(5);
+  builder.add(std::array{0, 2, 4});
+  builder.add(std::array{4, 2, -1, 1});
+  const BlockGraph graph = builder.build();
+  CHECK(graph.first == std::vector<std::int64_t>{0, 2, 4, 7, 7, 10});
+  CHECK(graph.neighbour == std::vector<int>{2, 4, 2, 4, 0, 1, 4, 0, 1, 2});
+}
+
+TEST_CASE("cholesky: solves as a dense factorization does, again and again with new values") {
+  const BlockGraph graph = grid_graph(5);
+  Cholesky sparse(graph);
+  for (const double diagonal : {90.0, 200.0}) {
+    const Eigen::MatrixXd dense = fill(sparse, graph, diagonal);
+    REQUIRE(sparse.factorize());
+    Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(dense.rows(), -3, 5);
+    const Eigen::VectorXd expected = dense.llt().solve(b);
+    sparse.solve({b.data(), std::size_t(b.size())});
+    CHECK((b - expected).norm() <= 1e-12 * expected.norm());
+  }
+  CHECK(sparse.factor_size() > 0);
+  CHECK(sparse.factor_operations() > 0);
+}
+
+TEST_CASE("cholesky: a matrix that is not positive definite is said to be, and spoils nothing for the next") {
+  const BlockGraph graph = grid_graph(4);
+  Cholesky sparse(graph);
+  fill(sparse, graph, -1);
+  CHECK_FALSE(sparse.factorize());
+  const Eigen::MatrixXd dense = fill(sparse, graph, 90);
+  REQUIRE(sparse.factorize());
+  Eigen::VectorXd b = Eigen::VectorXd::Ones(dense.rows());
+  sparse.solve({b.data(), std::size_t(b.size())});
+  CHECK((dense * b - Eigen::VectorXd::Ones(dense.rows())).norm() < 1e-10);
+}
+
+TEST_CASE("cholesky: the same for one thread and two, bit for bit") {
+  const BlockGraph graph = grid_graph(9);
+  std::vector<double> first;
+  for (const int threads : {1, 2}) {
+    const ThreadCount count(threads);
+    Cholesky sparse(graph);
+    fill(sparse, graph, 90);
+    REQUIRE(sparse.factorize());
+    std::vector<double> b(3 * graph.node_count(), 1.0);
+    sparse.solve(b);
+    if (threads == 1) first = b;
+    CHECK(b == first);
+  }
+}

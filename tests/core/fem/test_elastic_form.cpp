@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/fem/elastic_form.h"
+
+#include <numeric>
+#include <random>
+
+#include <Eigen/Dense>
+#include <doctest/doctest.h>
+
+#include "core/base/parallel.h"
+#include "core/fem/material.h"
+#include "core/fem/patch_form.h"
+#include "core/fem/step_bound.h"
+#include "tests/support/tet_shapes.h"
+
+using namespace limber;
+
+namespace {
+// A little box of several materials with patches and a barrier, shaken as far as no tet inverts.
+struct Shaken {
+  TetMesh mesh = kuhn_box(2, 2, 2, {0, 0, 0}, {2, 2.5, 2.2});
+  Places rest = mesh.V, x;
+  ElasticForm tets;
+  PatchForm patches;
+  std::vector<int> unknown;
+  Cholesky matrix;
+
+  static BlockGraph complete(int nodes) {
+    std::vector<int> all(nodes);
+    std::iota(all.begin(), all.end(), 0);
+    BlockGraphBuilder builder(nodes);
+    builder.add(all);
+    return builder.build();
+  }
+
+  explicit Shaken(double by, unsigned seed = 3) : matrix(complete(27)) {
+    std::vector<double> bulk(mesh.T.rows()), shear(mesh.T.rows());
+    for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
+      const TetMaterial material{t % 3 == 0 ? 4.0 : 1.0, t % 5 == 0 ? 0.3 : 0.49};
+      bulk[t] = patch_bulk(material), shear[t] = material.shear_modulus;
+    }
+    const PatchOrder order = grow_patches(rest, mesh.T, bulk, shear);
+    Eigen::MatrixX4i T(mesh.T.rows(), 4);
+    std::vector<TetEnergy> energy(mesh.T.rows());
+    std::vector<double> ordered(mesh.T.rows());
+    for (Eigen::Index k = 0; k < T.rows(); ++k) {
+      T.row(k) = mesh.T.row(order.tet[k]);
+      ordered[k] = bulk[order.tet[k]];
+      energy[k] = {shear[order.tet[k]], 2, 5, 0.7};
+    }
+    tets = ElasticForm(rest, T, energy, {order.first.begin() + 1, order.first.end()});
+    patches = PatchForm(tets, order.first, ordered, 27);
+    unknown.resize(27);
+    std::iota(unknown.begin(), unknown.end(), 0);
+    tets.bind(matrix, unknown);
+    patches.bind(tets, matrix, unknown);
+
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const Places shake = Places::NullaryExpr(27, 3, [&] { return uniform(random); });
+    for (x = rest + by * shake; count_inverted(mesh.T, x) > 0; x = rest + by * shake) by *= 0.9;
+  }
+
+  double value(const Places& at) const {
+    std::vector<double> J;
+    tets.volume_ratios(at, J);
+    return tets.value(at, J) + patches.value(J);
+  }
+  Places gradient(const Places& at) const {
+    std::vector<double> J, pressure;
+    tets.volume_ratios(at, J);
+    patches.pressures(J, pressure);
+    Places g = Places::Zero(27, 3);
+    tets.add_gradient(at, pressure, g);
+    return g;
+  }
+  // The matrix and, on the way, the forces.
+  Eigen::MatrixXd hessian(const Places& at, Curvature curvature, Places& g) {
+    std::vector<double> J, pressure;
+    tets.volume_ratios(at, J);
+    patches.pressures(J, pressure);
+    g = Places::Zero(27, 3);
+    matrix.clear();
+    tets.add_derivatives(at, pressure, curvature, g, matrix.values());
+    patches.add_curvature(tets, at, matrix.values());
+    Eigen::MatrixXd H(81, 81);
+    for (int a = 0; a < 27; ++a)
+      for (int b = 0; b < 27; ++b) {
+        if (matrix.rank(a) < matrix.rank(b)) continue;
+        const auto place = matrix.place(a, b);
+        for (int c = 0; c < 3; ++c)
+          for (int r = a == b ? c : 0; r < 3; ++r) H(3 * a + r, 3 * b + c) = H(3 * b + c, 3 * a + r) = matrix.values()[place.at + c * place.stride + r];
+      }
+    return H;
+  }
+};
+}  // namespace
+
+TEST_CASE("elastic form: singular values are exact, falling, and only the last is negative where the tet is inverted") {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int k = 0; k < 200; ++k) {
+    Eigen::Matrix3d F = Eigen::Matrix3d::NullaryExpr([&] { return uniform(random); });
+    if (k % 4 == 1) F.col(2) = F.col(0) + 1e-9 * F.col(2);
+    if (k % 4 == 2) F = Eigen::Quaterniond(1, uniform(random), uniform(random), 0).normalized().toRotationMatrix();
+    const Principal p = principal(F);
+    CHECK((p.U * p.sigma.asDiagonal() * p.V.transpose() - F).norm() < 1e-14);
+    CHECK((p.U.transpose() * p.U - Eigen::Matrix3d::Identity()).norm() < 1e-13);
+    CHECK((p.V.transpose() * p.V - Eigen::Matrix3d::Identity()).norm() < 1e-13);
+    CHECK(p.U.determinant() == doctest::Approx(1));
+    CHECK(p.V.determinant() == doctest::Approx(1));
+    CHECK(p.sigma[0] >= p.sigma[1]);
+    CHECK(p.sigma[1] >= std::abs(p.sigma[2]) - 1e-15);
+    CHECK(p.sigma.prod() == doctest::Approx(F.determinant()));
+  }
+}
+
+TEST_CASE("elastic form: forces are the slope of the energy") {
+  for (const double by : {0.02, 0.3, 2.0}) {
+    const Shaken shaken(by);
+    const Places g = shaken.gradient(shaken.x);
+    const double scale = g.cwiseAbs().maxCoeff();
+    for (int v = 0; v < 27; ++v)
+      for (int c = 0; c < 3; ++c) {
+        const double h = 1e-6;
+        Places plus = shaken.x, minus = shaken.x;
+        plus(v, c) += h;
+        minus(v, c) -= h;
+        CHECK(std::abs((shaken.value(plus) - shaken.value(minus)) / (2 * h) - g(v, c)) < 1e-6 * scale);
+      }
+  }
+}
+
+TEST_CASE("elastic form: curvature is the slope of the forces, whether or not they are summed with it") {
+  for (const double by : {0.02, 0.3, 2.0}) {
+    Shaken shaken(by);
+    Places with;
+    const Eigen::MatrixXd H = shaken.hessian(shaken.x, Curvature::Exact, with);
+    CHECK((with - shaken.gradient(shaken.x)).norm() <= 1e-13 * with.norm());
+    const double scale = H.cwiseAbs().maxCoeff();
+    for (int v = 0; v < 27; ++v)
+      for (int c = 0; c < 3; ++c) {
+        const double h = 1e-6;
+        Places plus = shaken.x, minus = shaken.x;
+        plus(v, c) += h;
+        minus(v, c) -= h;
+        const Places slope = (shaken.gradient(plus) - shaken.gradient(minus)) / (2 * h);
+        CHECK((slope.reshaped<Eigen::RowMajor>() - H.col(3 * v + c)).cwiseAbs().maxCoeff() < 1e-5 * scale);
+      }
+  }
+}
+
+TEST_CASE("elastic form: projected curvature has nothing negative, and is the exact one where that has nothing negative either") {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    Shaken shaken(seed < 3 ? 0.3 : 3.0, seed);
+    Places g;
+    const Eigen::MatrixXd exact = shaken.hessian(shaken.x, Curvature::Exact, g), projected = shaken.hessian(shaken.x, Curvature::Projected, g);
+    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected).eigenvalues();
+    CHECK(values[0] >= -1e-10 * std::max(1.0, values[80]));
+    CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected - exact).eigenvalues()[0] >= -1e-10 * std::max(1.0, values[80]));
+    CHECK((projected - exact).norm() > 1e-6);  // the shaken box has some
+  }
+  // Blown up a little and evenly, every curvature is positive: nothing to leave out.
+  Shaken blown(0);
+  blown.x = 1.001 * blown.rest;
+  Places g;
+  CHECK((blown.hessian(blown.x, Curvature::Projected, g) - blown.hessian(blown.x, Curvature::Exact, g)).norm() < 1e-10);
+}
+
+TEST_CASE("elastic form: a rotation costs nothing and pulls at nothing") {
+  const Shaken shaken(0);
+  const Eigen::Matrix3d R = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.1).normalized().toRotationMatrix();
+  const Places turned = (shaken.rest * R.transpose()).rowwise() + Eigen::RowVector3d(3, -8, 1);
+  CHECK(std::abs(shaken.value(turned)) < 1e-12);
+  CHECK(shaken.gradient(turned).cwiseAbs().maxCoeff() < 1e-12);
+}
+
+TEST_CASE("elastic form: an inverted tet costs infinitely much") {
+  const Shaken shaken(0);
+  Places x = shaken.rest;
+  x.row(13) += Eigen::RowVector3d(9, 0, 0);
+  CHECK(std::isinf(shaken.value(x)));
+}
+
+TEST_CASE("patch form: every tet is in one patch, patches hang together by faces and have about eight tets") {
+  const TetMesh mesh = kuhn_box(7, 6, 5, {0, 0, 0}, {7, 6, 5});
+  std::vector<double> bulk(mesh.T.rows(), 100), shear(mesh.T.rows(), 1);
+  for (Eigen::Index t = 0; t < 200; ++t) bulk[t] = 0;
+  for (Eigen::Index t = 600; t < mesh.T.rows(); ++t) shear[t] = 40;
+  const PatchOrder order = grow_patches(mesh.V, mesh.T, bulk, shear);
+  std::vector<std::int64_t> sorted = order.tet;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t t = 0; t < sorted.size(); ++t) REQUIRE(sorted[t] == std::int64_t(t));
+  REQUIRE(sorted.size() == std::size_t(mesh.T.rows()));
+
+  int small = 0;
+  for (std::size_t p = 0; p + 1 < order.first.size(); ++p) {
+    const std::vector<std::int64_t> patch(order.tet.begin() + order.first[p], order.tet.begin() + order.first[p + 1]);
+    if (bulk[patch[0]] == 0) {
+      CHECK(patch.size() == 1);
+      continue;
+    }
+    small += patch.size() < 5;
+    CHECK(patch.size() <= 16);
+    std::vector<std::int64_t> reached{patch[0]};
+    for (std::size_t k = 0; k < reached.size(); ++k)
+      for (const auto t : patch) {
+        int shared = 0;
+        for (const int a : mesh.T.row(t)) shared += int((mesh.T.row(reached[k]).array() == a).count());
+        if (shared == 3 && std::find(reached.begin(), reached.end(), t) == reached.end()) reached.push_back(t);
+      }
+    CHECK(reached.size() == patch.size());
+    for (const auto t : patch) CHECK(shear[t] == shear[patch[0]]);
+  }
+  CHECK(small < std::ssize(order.first) / 20);
+}
+
+TEST_CASE("step bound: the step ends where the first tet has a tenth of its volume, exactly") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const TetMesh mesh = kuhn_box(3, 3, 3, {0, 0, 0}, {3, 3, 3});
+  const Places x = mesh.V;
+  for (int round = 0; round < 60; ++round) {
+    const Places step = (round < 30 ? 0.15 : 2.0) * Places::NullaryExpr(x.rows(), 3, [&] { return uniform(random); });
+    const double limit = 8;
+    const StepBound bound = largest_step(mesh.T, x, step, limit);
+    REQUIRE(bound.length > 0);
+    const auto share = [&](Eigen::Index t, double length) {
+      const Places there = x + length * step;
+      return determinant(there, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) / determinant(x, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3));
+    };
+    for (int k = 1; k <= 40; ++k)
+      for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) REQUIRE(share(t, bound.length * k / 40) >= 0.1 - 1e-9);
+    if (bound.length < limit) CHECK(share(bound.tet, bound.length) == doctest::Approx(0.1).epsilon(1e-6));
+  }
+}
