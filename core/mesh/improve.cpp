@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/mesh/improve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+#include "core/mesh/voxels_in_tet.h"
+
+namespace limber {
+
+namespace {
+
+using Point = Eigen::Vector3d;
+
+// 2 where the tet has no positive volume, else the cosine of its smallest dihedral angle: less is better.
+double badness(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const Point ab = b - a, ac = c - a, ad = d - a, bc = c - b, bd = d - b;
+  const Point normal[4] = {bc.cross(bd), ad.cross(ac), ab.cross(ad), ac.cross(ab)};  // outwards, opposite to a, b, c, d
+  if (normal[3].dot(ad) >= 0) return 2;
+  double length[4], worst = -1;
+  for (int i = 0; i < 4; ++i) length[i] = normal[i].norm();
+  for (int i = 0; i < 4; ++i)
+    for (int j = i + 1; j < 4; ++j) worst = std::max(worst, -normal[i].dot(normal[j]) / (length[i] * length[j]));
+  return std::isfinite(worst) ? worst : 2;
+}
+
+class Improver {
+ public:
+  // Nodes are kept in lattice axes, where the boxes are.
+  //   may_lose  voxels that may come to lie outside
+  Improver(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, std::int64_t may_lose)
+      : mesh_(mesh), net_(net), voxels_(voxels), may_lose_(may_lose), first_(mesh.V.rows() + 1, 0), V_(mesh.V.rows()), on_skin_(mesh.V.rows(), 0) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) turn_(i, j) = net.world_from_lattice.linear[j][i];
+    offset_ << net.world_from_lattice.offset.x, net.world_from_lattice.offset.y, net.world_from_lattice.offset.z;
+    mirrored_ = turn_.determinant() < 0;
+    const Eigen::Matrix3d back = turn_.inverse();
+    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) V_[i] = back * (mesh.V.row(i).transpose() - offset_);
+
+    const AffineTransform to_voxel = voxel_from_world(voxels.grid);
+    voxel_from_lattice_ = {to_voxel.linear * net.world_from_lattice.linear, to_voxel * net.world_from_lattice.offset};
+    for (Eigen::Index i = 0; i < net.surface.F.rows(); ++i)
+      if (net.surface.sides[i][0] == RegionSurface::kAir || net.surface.sides[i][1] == RegionSurface::kAir)
+        for (const int corner : net.surface.F.row(i)) on_skin_[corner] = 1;
+
+    for (const auto& tet : mesh.T.rowwise())
+      for (const int corner : tet) ++first_[corner + 1];
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    tet_.resize(first_.back());
+    std::vector<int> next(first_.begin(), first_.end() - 1);
+    for (Eigen::Index tet = 0; tet < mesh.T.rows(); ++tet)
+      for (const int corner : mesh.T.row(tet)) tet_[next[corner]++] = static_cast<int>(tet);
+  }
+
+  int sweep(double enough, double reach) {
+    std::vector<std::uint8_t> asks(V_.size(), 0);
+    for (const auto& tet : mesh_.T.rowwise())
+      if (badness_of(tet) > enough)
+        for (const int corner : tet) asks[corner] = 1;
+    int moves = 0;
+    for (std::size_t node = 0; node < V_.size(); ++node)
+      if (asks[node]) moves += move(static_cast<int>(node), enough, reach);
+    return moves;
+  }
+
+  // Only what moved is written, so that the rest keeps its bits.
+  void write() {
+    for (const int node : moved_) mesh_.V.row(node) = (turn_ * V_[node] + offset_).transpose();
+  }
+
+ private:
+  double badness_of(const Eigen::RowVector4i& tet) const {
+    const int c = mirrored_ ? 2 : 1, b = mirrored_ ? 1 : 2;
+    return badness(V_[tet[0]], V_[tet[c]], V_[tet[b]], V_[tet[3]]);
+  }
+
+  double worst_around(int node) const {
+    double worst = -1;
+    for (int i = first_[node]; i < first_[node + 1]; ++i) worst = std::max(worst, badness_of(mesh_.T.row(tet_[i])));
+    return worst;
+  }
+
+  // The tissue voxels in the tets around a node.
+  void voxels_around(int node, std::vector<std::int64_t>& places) const {
+    places.clear();
+    const Grid& grid = voxels_.grid;
+    for (int i = first_[node]; i < first_[node + 1]; ++i) {
+      glm::dvec3 corner[4];
+      for (int k = 0; k < 4; ++k) {
+        const Point& p = V_[mesh_.T(tet_[i], k)];
+        corner[k] = voxel_from_lattice_ * glm::dvec3(p[0], p[1], p[2]);
+      }
+      if (glm::dot(glm::cross(corner[1] - corner[0], corner[2] - corner[0]), corner[3] - corner[0]) < 0) std::swap(corner[0], corner[1]);
+      for_each_row_in_tet(corner, grid, 0, grid.size.z - 1, [&](glm::ivec3 v, const glm::ivec3& last) {
+        for (; v.x <= last.x; ++v.x)
+          if (voxels_.tissue.index_of(v) >= 0) places.push_back(grid.index(v));
+      });
+    }
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+  }
+
+  bool move(int node, double enough, double reach) {
+    Point& place = V_[node];
+    const bool on_surface = node < net_.low.rows();
+    Point low = Point::Constant(-1e300), high = Point::Constant(1e300);
+    if (on_surface) low = net_.low.row(node).transpose(), high = net_.high.row(node).transpose();
+    Point middle = Point::Zero();
+    double size = 0;
+    int count = 0;
+    for (int i = first_[node]; i < first_[node + 1]; ++i)
+      for (const int corner : mesh_.T.row(tet_[i]))
+        if (corner != node) middle += V_[corner], size += (V_[corner] - place).norm(), ++count;
+    middle /= count, size /= count;
+
+    double best = worst_around(node);
+    if (best <= enough) return false;
+    const Point start = place;
+    Point best_place = start;
+    std::vector<std::int64_t> before, after, gone;
+    std::int64_t lost = 0;
+    if (on_skin_[node]) voxels_around(node, before);
+    const auto keeps_voxels = [&] {
+      if (!on_skin_[node]) return true;
+      voxels_around(node, after);
+      gone.clear();
+      std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(gone));
+      if (std::ssize(gone) > may_lose_) return false;
+      lost = std::ssize(gone);
+      return true;
+    };
+    const auto attempt = [&](const Point& there) {
+      place = there.cwiseMax(low).cwiseMin(high);
+      const double now = worst_around(node);
+      if (now < best && keeps_voxels()) best = now, best_place = place;
+    };
+    for (const double share : {1.0, 0.5, 0.2}) attempt(start + share * (middle - start));
+    for (double step = reach * size; step > 0.02 * size; step *= 0.5) {
+      const Point from = best_place;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0}) attempt(from + side * step * Point::Unit(axis));
+    }
+    place = best_place;
+    if (best_place == start) return false;
+    may_lose_ -= lost;
+    moved_.push_back(node);
+    return true;
+  }
+
+  TetMesh& mesh_;
+  const LatticeNet& net_;
+  const VoxelRegions& voxels_;
+  AffineTransform voxel_from_lattice_;
+  std::int64_t may_lose_;
+  std::vector<int> first_, tet_;  // tets of each node
+  std::vector<Point> V_;
+  std::vector<std::uint8_t> on_skin_;
+  std::vector<int> moved_;
+  Eigen::Matrix3d turn_;
+  Eigen::Vector3d offset_;
+  bool mirrored_ = false;
+};
+
+}  // namespace
+
+int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings) {
+  const double spare = std::max(0.0, net.covered - settings.least_covered);
+  Improver improver(mesh, net, voxels, static_cast<std::int64_t>(spare * double(voxels.tissue.size())));
+  const double enough = std::cos(settings.enough_degrees * std::numbers::pi / 180);
+  int moves = 0;
+  for (int sweep = 0; sweep < settings.sweeps; ++sweep) {
+    const int moved = improver.sweep(enough, 0.3);
+    moves += moved;
+    if (moved == 0) break;
+  }
+  improver.write();
+  return moves;
+}
+
+}  // namespace limber

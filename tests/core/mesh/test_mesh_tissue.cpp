@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/mesh/mesh_tissue.h"
+
+#include <csignal>
+#include <set>
+#include <thread>
+
+#include <sys/mman.h>
+
+#include <doctest/doctest.h>
+
+#include "core/base/parallel.h"
+#include "core/mesh/bcc_split.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/bone_parts.h"
+#include "core/rig/bone_tissue.h"
+#include "core/volume/phantom.h"
+#include "core/volume/tissue_table_io.h"
+#include "core/volume/volume_io.h"
+#include "tests/support/random_bodies.h"
+#include "tests/support/shared_data.h"
+
+using namespace limber;
+
+namespace {
+
+// A ball of soft tissue, 25 mm in radius, with two bones in it.
+LabelVolume ball() {
+  LabelVolume volume{{{30, 30, 30}, {2, 2, 2}, {-29, -29, -29}, glm::dmat3(1)}, {}};
+  volume.voxels = ZeroedVector<Label>(volume.grid.voxel_count(), 0);
+  glm::ivec3 v;
+  for (v.z = 0; v.z < 30; ++v.z)
+    for (v.y = 0; v.y < 30; ++v.y)
+      for (v.x = 0; v.x < 30; ++v.x) {
+        const glm::dvec3 p = glm::dvec3(v) * 2.0 - 29.0;
+        if (glm::length(p) < 25) volume.at(v) = std::hypot(p.y, p.z) < 9 && std::abs(p.x) > 3 ? (p.x < 0 ? 2 : 4) : 1;
+      }
+  return volume;
+}
+
+// The mesh is sound whatever was done: positive, closed, its regions those of the volume.
+void check_sound(const TissueMesh& result, const LabelVolume& regions) {
+  CHECK(find_fault(result.mesh, region_volumes(result.mesh)) == "");
+  CHECK(std::ssize(result.mesh.region) == result.mesh.T.rows());
+  const std::set<Label> there(regions.voxels.begin(), regions.voxels.end());
+  for (const std::uint16_t region : result.mesh.region)
+    if (region != TetMesh::kSoft && there.count(region + 1) == 0) FAIL_CHECK("a region that is not there");
+  CHECK(result.warning.empty() == (result.method == MeshMethod::fitted));
+}
+
+void check_quality(const TissueMesh& result) {
+  CHECK(result.quality.covered >= 0.999);
+  CHECK(result.quality.min_dihedral_degrees >= 2.5);
+  CHECK(result.quality.share_below_5_degrees <= 0.0005);
+}
+
+// For tests: how often it was asked, counted also where the asking is done in child processes.
+class SharedCount {
+ public:
+  SharedCount() : count_(static_cast<int*>(::mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {}
+  ~SharedCount() { ::munmap(count_, sizeof(int)); }
+  int next() const { return (*count_)++; }
+  int count() const { return *count_; }
+
+ private:
+  int* count_;
+};
+
+}  // namespace
+
+TEST_CASE("mesh tissue: a ball with two bones is meshed well, as it lies, with its three regions") {
+  const LabelVolume regions = ball();
+  const TissueMesh result = mesh_tissue(regions);
+  CHECK(result.method == MeshMethod::fitted);
+  check_sound(result, regions);
+  check_quality(result);
+  const auto volumes = region_volumes(result.mesh);
+  CHECK(volumes.size() == 3);
+  CHECK(volumes.count(1) + volumes.count(3) == 2);
+  CHECK(result.mesh.V.colwise().maxCoeff().maxCoeff() < 29);
+  // Finer is finer.
+  MeshSettings fine;
+  fine.fine_around = {{0, 0, 0}};
+  const TissueMesh finer = mesh_tissue(regions, fine);
+  CHECK(finer.method == MeshMethod::fitted);
+  check_quality(finer);
+  CHECK(finer.mesh.T.rows() > 3 * result.mesh.T.rows());
+}
+
+TEST_CASE("mesh tissue: where TetGen fails on the fitted surface the plain one is meshed, and that is said") {
+  const LabelVolume regions = ball();
+  const SharedCount calls;
+  MeshSettings settings;
+  settings.limits.at_start = [&] {
+    if (calls.next() == 0) ::raise(SIGSEGV);
+  };
+  const TissueMesh result = mesh_tissue(regions, settings);
+  CHECK(calls.count() == 2);
+  CHECK(result.method == MeshMethod::plain);
+  CHECK(result.warning.find("it crashed (signal 11)") != std::string::npos);
+  check_sound(result, regions);
+  check_quality(result);
+}
+
+TEST_CASE("mesh tissue: where TetGen always crashes, hangs or fails, blocks are meshed, and that is said") {
+  const LabelVolume regions = ball();
+  const auto with = [&](double seconds, std::function<void()> at_start) {
+    MeshSettings settings;
+    settings.limits.seconds = seconds;
+    settings.limits.at_start = std::move(at_start);
+    const TissueMesh result = mesh_tissue(regions, settings);
+    CHECK(result.method == MeshMethod::split);
+    check_sound(result, regions);
+    CHECK(result.quality.covered == 1);
+    CHECK(result.quality.min_dihedral_degrees > 44.9);
+    return result.warning;
+  };
+  CHECK(with(120, [] { ::raise(SIGSEGV); }).find("it crashed (signal 11), and on a plainer one: it crashed (signal 11)") != std::string::npos);
+  CHECK(with(0.05, [] { std::this_thread::sleep_for(std::chrono::hours(1)); }).find("it took too long") != std::string::npos);
+  CHECK(with(120, [] { std::_Exit(3); }).find("it gave up (exit code 3)") != std::string::npos);
+}
+
+TEST_CASE("mesh tissue: no voxels make no mesh, and no fuss") {
+  LabelVolume regions = ball();
+  std::fill(regions.voxels.begin(), regions.voxels.end(), Label{0});
+  const TissueMesh result = mesh_tissue(regions);
+  CHECK(result.mesh.T.rows() == 0);
+  CHECK(result.warning == "");
+  CHECK(bcc_split({regions.grid, TissueVoxels(regions), {}}, 8).T.rows() == 0);
+}
+
+TEST_CASE("mesh tissue: the same for one thread and for two") {
+  const LabelVolume regions = ball();
+  std::vector<TissueMesh> meshes;
+  for (const int threads : {1, 2}) {
+    const ThreadCount count(threads);
+    meshes.push_back(mesh_tissue(regions));
+  }
+  CHECK(meshes[0].mesh.V == meshes[1].mesh.V);
+  CHECK(meshes[0].mesh.T == meshes[1].mesh.T);
+  CHECK(meshes[0].mesh.region == meshes[1].mesh.region);
+  CHECK(meshes[0].quality.covered == meshes[1].quality.covered);
+}
+
+TEST_CASE("mesh tissue: a cancel is heard") {
+  struct : Progress {
+    void on_update(std::string_view stage, double) override {
+      if (stage == "tetrahedra") cancel();
+    }
+  } progress;
+  CHECK_THROWS_AS(mesh_tissue(ball(), {}, progress), Cancelled);
+}
+
+// LIMBER_RANDOM_BODIES=300 asks for more than there is time for in a usual run.
+TEST_CASE("mesh tissue: random bodies are meshed, whatever they are") {
+  const char* asked = std::getenv("LIMBER_RANDOM_BODIES");
+  const unsigned count = asked ? unsigned(std::atoi(asked)) : 60;
+  int by_method[3] = {};
+  for (unsigned seed = 0; seed < count; ++seed) {
+    const test::RandomBody body = test::random_body(seed);
+    CAPTURE(seed);
+    CAPTURE(body.kind);
+    MeshSettings settings{.spacing_mm = 3.0 + seed % 7};
+    if (seed % 3 == 0) settings.fine_around = {world_from_voxel(body.regions.grid) * (glm::dvec3(body.regions.grid.size) * 0.5)}, settings.fine_radius_mm = 12;
+    const TissueMesh result = mesh_tissue(body.regions, settings);
+    check_sound(result, body.regions);
+    CHECK(result.quality.covered >= 0.999);
+    ++by_method[int(result.method)];
+    if (result.method != MeshMethod::fitted) MESSAGE("seed ", seed, ", ", body.kind, ": ", result.warning);
+  }
+  MESSAGE("fitted ", by_method[0], ", plain ", by_method[1], ", split ", by_method[2]);
+  CHECK(by_method[2] <= int(count) / 50);
+}
+
+TEST_CASE("mesh tissue: blocks of random bodies hold every voxel and have no flat tet") {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const test::RandomBody body = test::random_body(seed);
+    CAPTURE(seed);
+    CAPTURE(body.kind);
+    const TissueVoxels tissue(body.regions);
+    std::vector<std::uint16_t> region(tissue.size());
+    tissue.for_each([&](std::int64_t place, const glm::ivec3& v) { region[place] = body.regions.at(v) - 1; });
+    const VoxelRegions voxels{body.regions.grid, tissue, region};
+    const TetMesh mesh = bcc_split(voxels, 3.0 + seed % 7);
+    CHECK(find_fault(mesh, region_volumes(mesh)) == "");
+    const MeshQuality quality = quality_of(mesh, voxels);
+    CHECK(quality.covered == 1);
+    if (tissue.size() > 0) CHECK(quality.min_dihedral_degrees > 44.9);
+  }
+}
+
+TEST_CASE("mesh tissue: the quality of a mesh with a fault is seen") {
+  TetMesh mesh = mesh_tissue(ball()).mesh;
+  auto volumes = region_volumes(mesh);
+  CHECK(find_fault(mesh, volumes) == "");
+  volumes[0] *= 1 + 1e-7;
+  CHECK(find_fault(mesh, volumes) == "the volume is not the surface's");
+  volumes = region_volumes(mesh);
+  std::swap(volumes[1], volumes[0]);
+  CHECK(find_fault(mesh, volumes) == "a region's volume is not that of its surface");
+  TetMesh turned = mesh;
+  turned.T.col(0).row(5).swap(turned.T.col(1).row(5));
+  CHECK(find_fault(turned, volumes) == "a tetrahedron is flat or inverted");
+  TetMesh twice = mesh;
+  twice.T.row(0) = twice.T.row(1);
+  CHECK(find_fault(twice, volumes) != "");
+}
