@@ -84,6 +84,11 @@ class Improver {
     return worst;
   }
 
+  bool is_tissue(const glm::ivec3& v) const {
+    const int brick = voxels_.tissue.brick_at(v);
+    return brick >= 0 && (voxels_.tissue.bricks()[brick].mask[v.z & 7] >> ((v.x & 7) + 8 * (v.y & 7)) & 1);
+  }
+
   // The tissue voxels in the tets around a node.
   void voxels_around(int node, std::vector<std::int64_t>& places) const {
     places.clear();
@@ -97,7 +102,7 @@ class Improver {
       if (glm::dot(glm::cross(corner[1] - corner[0], corner[2] - corner[0]), corner[3] - corner[0]) < 0) std::swap(corner[0], corner[1]);
       for_each_row_in_tet(corner, grid, 0, grid.size.z - 1, [&](glm::ivec3 v, const glm::ivec3& last) {
         for (; v.x <= last.x; ++v.x)
-          if (voxels_.tissue.index_of(v) >= 0) places.push_back(grid.index(v));
+          if (is_tissue(v)) places.push_back(grid.index(v));
       });
     }
     std::sort(places.begin(), places.end());
@@ -121,22 +126,10 @@ class Improver {
     if (best <= enough) return false;
     const Point start = place;
     Point best_place = start;
-    std::vector<std::int64_t> before, after, gone;
-    std::int64_t lost = 0;
-    if (on_skin_[node]) voxels_around(node, before);
-    const auto keeps_voxels = [&] {
-      if (!on_skin_[node]) return true;
-      voxels_around(node, after);
-      gone.clear();
-      std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(gone));
-      if (std::ssize(gone) > may_lose_) return false;
-      lost = std::ssize(gone);
-      return true;
-    };
     const auto attempt = [&](const Point& there) {
       place = there.cwiseMax(low).cwiseMin(high);
       const double now = worst_around(node);
-      if (now < best && keeps_voxels()) best = now, best_place = place;
+      if (now < best) best = now, best_place = place;
     };
     for (const double share : {1.0, 0.5, 0.2}) attempt(start + share * (middle - start));
     for (double step = reach * size; step > 0.02 * size; step *= 0.5) {
@@ -144,11 +137,32 @@ class Improver {
       for (int axis = 0; axis < 3; ++axis)
         for (const double side : {-1.0, 1.0}) attempt(from + side * step * Point::Unit(axis));
     }
-    place = best_place;
-    if (best_place == start) return false;
-    may_lose_ -= lost;
-    moved_.push_back(node);
-    return true;
+    place = start;
+    return best_place != start && settle(node, best_place);
+  }
+
+  // Moves a node to a place or, where that would leave too many voxels outside, part of the way.
+  bool settle(int node, const Point& there) {
+    Point& place = V_[node];
+    const Point start = place;
+    const double worst = worst_around(node);
+    std::vector<std::int64_t> before, after, lost;
+    if (on_skin_[node]) voxels_around(node, before);
+    for (const double share : {1.0, 0.5, 0.25}) {
+      place = start + share * (there - start);
+      if (worst_around(node) >= worst) continue;
+      lost.clear();
+      if (on_skin_[node]) {
+        voxels_around(node, after);
+        std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(lost));
+      }
+      if (std::ssize(lost) > may_lose_) continue;
+      may_lose_ -= std::ssize(lost);
+      moved_.push_back(node);
+      return true;
+    }
+    place = start;
+    return false;
   }
 
   TetMesh& mesh_;

@@ -326,14 +326,18 @@ std::uint16_t Net::region_at(const glm::dvec3& place) const {
   return region_on_face(*middle, exit, corner, axis, size);
 }
 
-std::vector<std::uint8_t> voxels_outside(const Net& net, const SampleLattice& lattice, const TissueVoxels& tissue) {
-  std::vector<std::uint8_t> outside(tissue.size(), 0);
+// Which voxels lie outside; of those known to lie inside before, only when all are asked for.
+void find_outside(const Net& net, const SampleLattice& lattice, const TissueVoxels& tissue, bool all, std::vector<std::uint8_t>& outside) {
   parallel_for(std::ssize(tissue.bricks()), 64, [&](std::int64_t begin, std::int64_t end) {
-    tissue.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& v) {
-      outside[place] = net.region_at(lattice.fine_from_voxel * glm::dvec3(v)) == kAir;
-    });
+    for (std::int64_t b = begin; b < end; ++b) {
+      const TissueVoxels::Brick& brick = tissue.bricks()[b];
+      const auto first = outside.begin() + brick.first;
+      if (!all && std::find(first, first + brick.count(), 1) == first + brick.count()) continue;
+      tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& v) {
+        if (all || outside[place]) outside[place] = net.region_at(lattice.fine_from_voxel * glm::dvec3(v)) == kAir;
+      });
+    }
   });
-  return outside;
 }
 
 struct Missed {
@@ -420,19 +424,23 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
   SampleLattice lattice = sample_regions(voxels, settings);
   const VoxelLookup voxel_at(voxels, lattice);
   std::vector<std::uint8_t> pushes(lattice.label.size(), 0);
+  const auto allowed = static_cast<std::int64_t>((1 - settings.least_covered) * double(voxels.tissue.size()));
+  std::vector<std::uint8_t> outside(voxels.tissue.size(), 0);
   for (int round = 0;; ++round) {
     progress.update("surface", 1 - 1 / (1 + 0.3 * (round + 1)));
     const Net net(lattice, voxel_at, settings.shape, pushes);
-    const auto outside = voxels_outside(net, lattice, voxels.tissue);
-    const auto missed = std::count(outside.begin(), outside.end(), 1);
-    const double covered = 1 - double(missed) / double(voxels.tissue.size());
-    if (covered >= settings.least_covered || round == kRounds) {
+    find_outside(net, lattice, voxels.tissue, round == 0, outside);
+    auto missed = std::count(outside.begin(), outside.end(), 1);
+    if (missed <= allowed && round > 0) {  // a point that moved may have left others outside
+      find_outside(net, lattice, voxels.tissue, true, outside);
+      missed = std::count(outside.begin(), outside.end(), 1);
+    }
+    if (missed <= allowed || round == kRounds) {
       result = finished(net, lattice, lattice.world_from_lattice);
       result.spacing_mm = lattice.step * lattice.block;
-      result.covered = covered;
+      result.covered = 1 - double(missed) / double(voxels.tissue.size());
       return result;
     }
-    const auto allowed = static_cast<std::int64_t>((1 - settings.least_covered) * double(voxels.tissue.size()));
     make_room(net, lattice, cells_that_miss(lattice, voxels.tissue, outside), missed - allowed, settings.shape, round, pushes);
   }
 }
