@@ -16,6 +16,8 @@ namespace {
 
 using Point = Eigen::Vector3d;
 
+const double kFlat = std::cos(6 * std::numbers::pi / 180);  // of tets that deserve every effort
+
 // 2 where the tet has no positive volume, else the cosine of its smallest dihedral angle: less is better.
 double badness(const Point& a, const Point& b, const Point& c, const Point& d) {
   const Point ab = b - a, ac = c - a, ad = d - a, bc = c - b, bd = d - b;
@@ -109,11 +111,21 @@ class Improver {
     places.erase(std::unique(places.begin(), places.end()), places.end());
   }
 
-  bool move(int node, double enough, double reach) {
+  // The voxels that a node's tets no longer hold.
+  std::int64_t lost_around(int node, const std::vector<std::int64_t>& before) const {
+    if (!on_skin_[node]) return 0;
+    std::vector<std::int64_t> after, lost;
+    voxels_around(node, after);
+    std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(lost));
+    return std::ssize(lost);
+  }
+
+  // The best place found for a node; `accept` is asked with the node there.
+  template <class Accept>
+  Point search(int node, double reach, const Accept& accept) {
     Point& place = V_[node];
-    const bool on_surface = node < net_.low.rows();
     Point low = Point::Constant(-1e300), high = Point::Constant(1e300);
-    if (on_surface) low = net_.low.row(node).transpose(), high = net_.high.row(node).transpose();
+    if (node < net_.low.rows()) low = net_.low.row(node).transpose(), high = net_.high.row(node).transpose();
     Point middle = Point::Zero();
     double size = 0;
     int count = 0;
@@ -122,14 +134,13 @@ class Improver {
         if (corner != node) middle += V_[corner], size += (V_[corner] - place).norm(), ++count;
     middle /= count, size /= count;
 
-    double best = worst_around(node);
-    if (best <= enough) return false;
     const Point start = place;
     Point best_place = start;
+    double best = worst_around(node);
     const auto attempt = [&](const Point& there) {
       place = there.cwiseMax(low).cwiseMin(high);
       const double now = worst_around(node);
-      if (now < best) best = now, best_place = place;
+      if (now < best && accept()) best = now, best_place = place;
     };
     for (const double share : {1.0, 0.5, 0.2}) attempt(start + share * (middle - start));
     for (double step = reach * size; step > 0.02 * size; step *= 0.5) {
@@ -138,26 +149,34 @@ class Improver {
         for (const double side : {-1.0, 1.0}) attempt(from + side * step * Point::Unit(axis));
     }
     place = start;
-    return best_place != start && settle(node, best_place);
+    return best_place;
+  }
+
+  bool move(int node, double enough, double reach) {
+    const double worst = worst_around(node);
+    if (worst <= enough) return false;
+    const Point start = V_[node];
+    const Point best = search(node, reach, [] { return true; });
+    if (best == start) return false;
+    std::vector<std::int64_t> before;
+    if (on_skin_[node]) voxels_around(node, before);
+    if (settle(node, best, worst, before)) return true;
+    if (worst <= kFlat) return false;
+    // Worth the time to ask for the voxels at every place tried.
+    const Point kept = search(node, reach, [&] { return lost_around(node, before) <= may_lose_; });
+    return kept != start && settle(node, kept, worst, before);
   }
 
   // Moves a node to a place or, where that would leave too many voxels outside, part of the way.
-  bool settle(int node, const Point& there) {
+  bool settle(int node, const Point& there, double worst, const std::vector<std::int64_t>& before) {
     Point& place = V_[node];
     const Point start = place;
-    const double worst = worst_around(node);
-    std::vector<std::int64_t> before, after, lost;
-    if (on_skin_[node]) voxels_around(node, before);
     for (const double share : {1.0, 0.5, 0.25}) {
       place = start + share * (there - start);
       if (worst_around(node) >= worst) continue;
-      lost.clear();
-      if (on_skin_[node]) {
-        voxels_around(node, after);
-        std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(lost));
-      }
-      if (std::ssize(lost) > may_lose_) continue;
-      may_lose_ -= std::ssize(lost);
+      const std::int64_t lost = lost_around(node, before);
+      if (lost > may_lose_) continue;
+      may_lose_ -= lost;
       moved_.push_back(node);
       return true;
     }
@@ -186,11 +205,12 @@ int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, co
   Improver improver(mesh, net, voxels, static_cast<std::int64_t>(spare * double(voxels.tissue.size())));
   const double enough = std::cos(settings.enough_degrees * std::numbers::pi / 180);
   int moves = 0;
-  for (int sweep = 0; sweep < settings.sweeps; ++sweep) {
-    const int moved = improver.sweep(enough, 0.3);
-    moves += moved;
-    if (moved == 0) break;
-  }
+  for (const double goal : {kFlat, enough})  // the worst first: they may leave voxels outside that others must then keep
+    for (int sweep = 0; sweep < settings.sweeps; ++sweep) {
+      const int moved = improver.sweep(goal, 0.3);
+      moves += moved;
+      if (moved == 0) break;
+    }
   improver.write();
   return moves;
 }

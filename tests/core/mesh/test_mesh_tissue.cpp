@@ -39,19 +39,49 @@ LabelVolume ball() {
 }
 
 // The mesh is sound whatever was done: positive, closed, its regions those of the volume.
-void check_sound(const TissueMesh& result, const LabelVolume& regions) {
+void check_sound(const TissueMesh& result) {
   CHECK(find_fault(result.mesh, region_volumes(result.mesh)) == "");
   CHECK(std::ssize(result.mesh.region) == result.mesh.T.rows());
+  CHECK(result.warning.empty() == (result.method == MeshMethod::fitted));
+}
+
+void check_sound(const TissueMesh& result, const LabelVolume& regions) {
+  check_sound(result);
   const std::set<Label> there(regions.voxels.begin(), regions.voxels.end());
   for (const std::uint16_t region : result.mesh.region)
     if (region != TetMesh::kSoft && there.count(region + 1) == 0) FAIL_CHECK("a region that is not there");
-  CHECK(result.warning.empty() == (result.method == MeshMethod::fitted));
 }
 
 void check_quality(const TissueMesh& result) {
   CHECK(result.quality.covered >= 0.999);
   CHECK(result.quality.min_dihedral_degrees >= 2.5);
   CHECK(result.quality.share_below_5_degrees <= 0.0005);
+}
+
+struct Regions {
+  LabelVolume volume;
+  TissueVoxels tissue;
+  std::vector<std::uint16_t> region;
+  VoxelRegions voxels() const { return {volume.grid, tissue, region}; }
+};
+
+// Bones as the rig has them.
+Regions regions_of(LabelVolume volume, TissueTable table, const Armature& rig) {
+  if (const auto guess = guess_bone_tissue(volume, table, rig)) table = with_bones(std::move(table), {table.find(guess->label)->file_value});
+  Regions regions{std::move(volume), {}, {}};
+  regions.tissue = TissueVoxels(regions.volume);
+  const BoneParts parts = split_bones(regions.volume, regions.tissue, table, rig);
+  for (const std::uint16_t part : parts.part_of) regions.region.push_back(part == 0 ? 0 : 1 + parts.parts[part - 1].bone);
+  return regions;
+}
+
+void check_body(const Regions& regions, const std::string& name, MeshSettings settings = {}) {
+  const TissueMesh result = mesh_tissue(regions.voxels(), settings);
+  MESSAGE(name, ", ", settings.spacing_mm, " mm: ", result.mesh.V.rows(), " nodes, ", result.mesh.T.rows(), " tets, covered ", 100 * result.quality.covered,
+          " %, smallest angle ", result.quality.min_dihedral_degrees, ", below 5 degrees ", 100 * result.quality.share_below_5_degrees, " %, ", result.seconds, " s");
+  CHECK(result.method == MeshMethod::fitted);
+  check_sound(result);
+  check_quality(result);
 }
 
 // For tests: how often it was asked, counted also where the asking is done in child processes.
@@ -204,4 +234,57 @@ TEST_CASE("mesh tissue: the quality of a mesh with a fault is seen") {
   TetMesh twice = mesh;
   twice.T.row(0) = twice.T.row(1);
   CHECK(find_fault(twice, volumes) != "");
+}
+
+TEST_CASE("mesh tissue: the procedural arm and body are meshed well, the arm also finer at its elbow") {
+  const Phantom arm = make_arm_phantom();
+  const Regions of_arm = regions_of(arm.volume, arm.tissues, arm.armature);
+  check_body(of_arm, "procedural arm");
+  MeshSettings fine;
+  for (const Bone& bone : arm.armature.bones)
+    if (bone.name.find("orearm") != std::string::npos) fine.fine_around.push_back(bone.head);
+  REQUIRE(fine.fine_around.size() > 0);
+  check_body(of_arm, "procedural arm, finer at the elbow", fine);
+  const Phantom body = make_body_phantom();
+  check_body(regions_of(body.volume, body.tissues, body.armature), "procedural body", {.spacing_mm = 12});
+}
+
+TEST_CASE("mesh tissue: the Visible Man's arm is meshed well at 12, 8 and 6 mm, and finer at its elbow") {
+  NEEDS_SHARED("data/bender/man-arm-2mm.mha");
+  VolumeFile file = read_volume(test::shared_path("data/bender/man-arm-2mm.mha"));
+  const Armature rig = read_armature(test::shared_path("data/bender/man-arm-2mm-armature.vtk"));
+  const Regions regions = regions_of(std::move(file.volume), merge_tissue_tables(file.tissues, nullptr), rig);
+  for (const double spacing : {12.0, 8.0, 6.0}) check_body(regions, "Visible Man's arm", {.spacing_mm = spacing});
+  for (const Bone& bone : rig.bones)
+    if (bone.name == "Forearm") check_body(regions, "Visible Man's arm, finer at the elbow", {.fine_around = {bone.head}});
+}
+
+TEST_CASE("mesh tissue: arm and shoulder, two whole bodies and a knee from scans are meshed well") {
+  struct Case {
+    const char *name, *volume, *rig, *tissues;
+    double spacing_mm;
+  };
+  const Case cases[] = {
+      {"arm and shoulder", "data/bp3d/arm_shoulder_1mm_tissue.mha", "data/bp3d/arm_shoulder.armature.json", "data/bp3d/tissue.labels.json", 8},
+      {"MakeHuman's body", "data/makehuman/body_4mm.nrrd", "data/makehuman/body.armature.json", nullptr, 12},
+      {"body of structures", "data/bp3d/body_3mm_tissue.nrrd", "data/bp3d/body.armature.json", "data/bp3d/tissue.labels.json", 12},
+      {"knee atlas", "data/spl/knee_seg.nrrd", nullptr, nullptr, 8},
+  };
+  NEEDS_SHARED("data/spl/knee_seg.nrrd");
+  for (const Case& one : cases) {
+    VolumeFile file = read_volume(test::shared_path(one.volume));
+    if (!one.rig) {
+      Regions soft{std::move(file.volume), {}, {}};
+      soft.tissue = TissueVoxels(soft.volume);
+      soft.region.assign(soft.tissue.size(), TetMesh::kSoft);
+      check_body(soft, one.name, {.spacing_mm = one.spacing_mm});
+      continue;
+    }
+    TissueTable table = merge_tissue_tables(file.tissues, nullptr);
+    if (one.tissues) {
+      const TissueTable user = read_tissue_table(test::shared_path(one.tissues));
+      table = merge_tissue_tables(file.tissues, &user);
+    }
+    check_body(regions_of(std::move(file.volume), table, read_armature(test::shared_path(one.rig))), one.name, {.spacing_mm = one.spacing_mm});
+  }
 }
