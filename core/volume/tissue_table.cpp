@@ -23,25 +23,30 @@ struct KindDefaults {
   int priority;  // bone first, then what is thin and stiff, skin last
 };
 constexpr std::uint32_t kByLabel = 0xffffffff;  // every label its own
+// Stiffness. Published moduli of flesh spread over two decades with method, load and muscle tone; what a pose needs is their
+// order, skin far above fat and relaxed muscle, since bones prescribe the motion and forces cancel out of the shape. Finite
+// elements of bodies under load take shear moduli of 8 kPa for skin, 0.8 for fat, 0.5 for relaxed muscle [Int. Wound J. 15(3),
+// 402-416, 2018, table 3]; here skin is 40, a layer of two or three voxels being as thick as it is rarely, fat 1, muscle 4.
+// Flesh is mostly water: volume changes of fat under load fit a Poisson ratio between 0.49 and 0.4999, lower ones lose volume.
 // One row per kind, in the order of the enumeration.
 constexpr int kKinds = 18;
 const std::array<KindDefaults, kKinds> kDefaults = {{
-    {TissueKind::Unknown, "unknown", kByLabel, 1.05, 12, 0.49, 20},
-    {TissueKind::Skin, "skin", 0xE3B597, 1.09, 120, 0.49, 10},
-    {TissueKind::Fat, "fat", 0xF0D27A, 0.95, 3, 0.49, 15},
-    {TissueKind::Muscle, "muscle", 0xB8463F, 1.05, 12, 0.49, 30},
+    {TissueKind::Unknown, "unknown", kByLabel, 1.05, 12, 0.499, 20},
+    {TissueKind::Skin, "skin", 0xE3B597, 1.09, 120, 0.499, 10},
+    {TissueKind::Fat, "fat", 0xF0D27A, 0.95, 3, 0.499, 15},
+    {TissueKind::Muscle, "muscle", 0xB8463F, 1.05, 12, 0.499, 30},
     {TissueKind::CorticalBone, "cortical bone", 0xEDE6D4, 1.92, 1.7e7, 0.3, 100},
     {TissueKind::CancellousBone, "cancellous bone", 0xE0CCA0, 1.18, 3e5, 0.3, 95},
     {TissueKind::Marrow, "marrow", 0xD9A06B, 1.03, 12, 0.45, 90},
     {TissueKind::Bone, "bone", 0xEDE6D4, 1.60, 1e7, 0.3, 97},
     {TissueKind::Cartilage, "cartilage", 0x8FC9D6, 1.10, 1000, 0.45, 60},
     {TissueKind::Tendon, "tendon", 0xCFC8DC, 1.12, 500, 0.45, 50},
-    {TissueKind::Connective, "connective", 0xD4BAA8, 1.03, 12, 0.49, 25},
-    {TissueKind::Vessel, "vessel", 0xD9372F, 1.06, 100, 0.49, 45},
-    {TissueKind::Blood, "blood", 0x4A74D8, 1.06, 3, 0.49, 40},
-    {TissueKind::Nerve, "nerve", 0xF2E14C, 1.04, 30, 0.49, 47},
-    {TissueKind::Brain, "brain", 0xD6A8AB, 1.04, 6, 0.49, 35},
-    {TissueKind::Organ, "organ", kByLabel, 1.05, 12, 0.49, 33},
+    {TissueKind::Connective, "connective", 0xD4BAA8, 1.03, 12, 0.499, 25},
+    {TissueKind::Vessel, "vessel", 0xD9372F, 1.06, 100, 0.499, 45},
+    {TissueKind::Blood, "blood", 0x4A74D8, 1.06, 3, 0.499, 40},
+    {TissueKind::Nerve, "nerve", 0xF2E14C, 1.04, 30, 0.499, 47},
+    {TissueKind::Brain, "brain", 0xD6A8AB, 1.04, 6, 0.499, 35},
+    {TissueKind::Organ, "organ", kByLabel, 1.05, 12, 0.499, 33},
     {TissueKind::Cavity, "cavity", 0x738C9E, 0.50, 3, 0.45, 12},
     {TissueKind::Nail, "nail", 0xF0C8B4, 1.30, 1000, 0.40, 55},
 }};
