@@ -10,6 +10,7 @@
 
 #include "core/base/parallel.h"
 #include "core/deform/claims.h"
+#include "core/deform/nearest_in_triangle.h"
 
 namespace limber {
 
@@ -59,26 +60,6 @@ glm::dvec4 shares_in(const std::array<glm::dvec3, 4>& rest, const glm::dvec3& po
 
 std::uint32_t index_of(const Grid& grid, const glm::ivec3& voxel) { return static_cast<std::uint32_t>(grid.index(voxel)); }
 
-// The point of a triangle nearest to p, by its corners' shares [Ericson 2004, Real-time collision detection, 5.1.5].
-glm::dvec3 nearest_in_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp), d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - w, w};
-  }
-  const double sum = va + vb + vc;
-  return {va / sum, vb / sum, vc / sum};
-}
-
 }  // namespace
 
 // The faces that one tet alone has, and how what lies outside moves with them.
@@ -86,31 +67,19 @@ class PosedTets::Border {
  public:
   explicit Border(const PosedTets& tets) : tets_(tets) {
     const TetMesh& mesh = *tets.mesh_;
-    struct Sorted {
-      std::array<int, 3> corners;
-      int tet, opposite;
-    };
-    std::vector<Sorted> all;
-    all.reserve(mesh.T.rows() * 4);
+    const auto neighbours = neighbours_of(mesh.T);
+    std::vector<VoxelRange> boxes;
     for (int t = 0; t < mesh.T.rows(); ++t)
       for (int f = 0; f < 4; ++f) {
-        std::array<int, 3> c{mesh.T(t, (f + 1) & 3), mesh.T(t, (f + 2) & 3), mesh.T(t, (f + 3) & 3)};
-        std::sort(c.begin(), c.end());
-        all.push_back({c, t, f});
+        if (neighbours[t][f] >= 0) continue;
+        faces_.push_back({{mesh.T(t, kTetFaces[f][0]), mesh.T(t, kTetFaces[f][1]), mesh.T(t, kTetFaces[f][2])}, t});
+        glm::dvec3 low(INFINITY), high(-INFINITY);
+        for (int node : faces_.back().corners) {
+          low = glm::min(low, tets.rest_[node]);
+          high = glm::max(high, tets.rest_[node]);
+        }
+        boxes.push_back({glm::ivec3(glm::floor(low)), glm::ivec3(glm::ceil(high))});
       }
-    std::sort(all.begin(), all.end(), [](const Sorted& a, const Sorted& b) { return a.corners != b.corners ? a.corners < b.corners : a.tet < b.tet; });
-    std::vector<VoxelRange> boxes;
-    for (size_t i = 0; i < all.size(); ++i) {
-      const bool twin = (i > 0 && all[i - 1].corners == all[i].corners) || (i + 1 < all.size() && all[i + 1].corners == all[i].corners);
-      if (twin) continue;
-      faces_.push_back({all[i].corners, all[i].tet});
-      glm::dvec3 low(INFINITY), high(-INFINITY);
-      for (int node : all[i].corners) {
-        low = glm::min(low, tets.rest_[node]);
-        high = glm::max(high, tets.rest_[node]);
-      }
-      boxes.push_back({glm::ivec3(glm::floor(low)), glm::ivec3(glm::ceil(high))});
-    }
     bins_ = BoxBins(std::move(boxes), TissueVoxels::kBrick);
   }
 
@@ -285,7 +254,20 @@ void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Bo
   const TissueVoxels& tissue = lattice_->tissue();
   const TissueVoxels::Brick& cells = tissue.bricks()[brick];
   const auto& mine = in_mesh_[brick];
-  if (std::all_of(mine.begin(), mine.end(), [](std::uint64_t slice) { return slice == 0; })) return;
+  if (!shares(brick)) return;
+  if (instead_of_[brick] != cells.mask) {
+    PosedLattice::Corners room;
+    const PosedLattice::Corners& corners = lattice_->corners(brick, room);
+    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+      const glm::ivec3 v = voxel - cells.corner;
+      if (instead_of_[brick][v.z] >> (v.x + 8 * v.y) & 1) return;
+      for (int i = 0; i < 8; ++i) {
+        const FixedPoint& corner = corners[PosedLattice::place(v.x + (i & 1), v.y + (i >> 1 & 1), v.z + (i >> 2))];
+        outcome.low = glm::min(outcome.low, corner);
+        outcome.high = glm::max(outcome.high, corner);
+      }
+    });
+  }
 
   // The tets that hold the corners and the centres of the brick's voxels at rest.
   std::array<int, kSide * kSide * kSide> tet_of;

@@ -36,7 +36,9 @@ class PosedTets {
   // The cells that the lattice leaves out.
   const TissueMask& instead_of() const { return instead_of_; }
   std::int64_t rider_count() const { return std::ssize(riders_); }
-  // Voxels of the output whose centres lie in the box of the posed tissue.
+  // Whether any of the brick's tissue is the mesh's charge.
+  bool shares(std::int64_t brick) const { return in_mesh_[brick] != std::array<std::uint64_t, 8>{}; }
+  // Voxels of the output whose centres lie in the box of the posed tissue of the bricks that it shares.
   const VoxelRange& posed_tissue() const { return posed_tissue_; }
 
   // Writes the claims of the tets into the map.

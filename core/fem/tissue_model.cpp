@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "core/deform/box_bins.h"
 #include "core/deform/rasterize.h"
 
 namespace limber {
@@ -142,9 +143,53 @@ void choose_materials(TissueModel& model, const LabelVolume& volume, const Tissu
   }
 }
 
+constexpr int kNone = -1, kSeveral = -2;
+
+// Nodes between two bones: the ways to both are together shorter than `joint_mm`. Of each bone's own nodes half at most, those
+// nearest to another bone.
+//   bone  of each node, kNone or kSeveral
+std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector<int>& bone, double joint_mm) {
+  std::vector<VoxelRange> boxes(mesh.V.rows()), of_bones(mesh.V.rows());
+  for (int i = 0; i < mesh.V.rows(); ++i) {
+    boxes[i].low = boxes[i].high = glm::ivec3(glm::floor(glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2))));
+    if (bone[i] >= 0) of_bones[i] = boxes[i];
+  }
+  const BoxBins bins(of_bones, 8);
+  const int reach = static_cast<int>(std::ceil(joint_mm)) + 1;
+  std::map<int, std::vector<std::pair<double, int>>> near_other;  // by bone: distance, node
+  std::map<int, std::size_t> count;
+  std::vector<std::uint8_t> between(mesh.V.rows(), 0);
+  std::vector<int> near;
+  for (int i = 0; i < mesh.V.rows(); ++i) {
+    if (bone[i] >= 0) ++count[bone[i]];
+    bins.meeting({boxes[i].low - reach, boxes[i].high + reach}, near);
+    std::map<int, double> to_bone;
+    for (int n : near) {
+      const double distance = (mesh.V.row(n) - mesh.V.row(i)).norm();
+      const auto [at, is_first] = to_bone.try_emplace(bone[n], distance);
+      at->second = std::min(at->second, distance);
+    }
+    if (to_bone.size() < 2) continue;
+    std::vector<double> ways;
+    for (const auto& [which, distance] : to_bone) ways.push_back(distance);
+    std::partial_sort(ways.begin(), ways.begin() + 2, ways.end());
+    if (ways[0] + ways[1] >= joint_mm) continue;
+    if (bone[i] >= 0)
+      near_other[bone[i]].push_back({ways[1], i});
+    else
+      between[i] = 1;
+  }
+  for (auto& [which, nodes] : near_other) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.resize(std::min(nodes.size(), count[which] / 2));
+    for (const auto& [distance, node] : nodes) between[node] = 1;
+  }
+  return between;
+}
+
 // By the regions of the tets at each node, then by what does not bend; joints are what lies between two bones.
-void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const MovingTissue& moving) {
-  constexpr int kNone = -1, kSeveral = -2;
+void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const MovingTissue& moving,
+                    double joint_mm) {
   const TetMesh& mesh = model.fem.mesh;
   std::vector<int> bone(mesh.V.rows(), kNone);
   for (int t = 0; t < mesh.T.rows(); ++t) {
@@ -155,22 +200,25 @@ void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueV
       holder = holder == kNone || holder == mine ? mine : kSeveral;
     }
   }
+  const std::vector<std::uint8_t> in_joint = nodes_of_joints(mesh, bone, joint_mm);
   for (int t = 0; t < mesh.T.rows(); ++t) {
     int first = kNone;
-    bool between = false;
+    bool between = false, inside = true;
     for (int i = 0; i < 4; ++i) {
       const int holder = bone[mesh.T(t, i)];
       between |= holder == kSeveral || (holder >= 0 && first >= 0 && holder != first);
+      between |= mesh.region[t] != TetMesh::kSoft && in_joint[mesh.T(t, i)];
+      inside &= in_joint[mesh.T(t, i)] != 0;
       if (holder >= 0) first = holder;
     }
-    model.joint.push_back(between);
+    model.joint.push_back(between || inside);
   }
 
   const Surroundings around(volume, tissue);
   for (int i = 0; i < mesh.V.rows(); ++i) {
     glm::ivec3 voxel(0);
     const bool found = around.nearest(mesh.V.row(i), [&](const glm::ivec3& v) { return is_in(moving.meshed, tissue, v); }, voxel);
-    int holder = bone[i] == kSeveral ? kNone : bone[i];
+    int holder = bone[i] == kSeveral || in_joint[i] ? kNone : bone[i];
     if (bone[i] == kNone && found && !is_in(moving.free, tissue, voxel)) holder = moving.moves_as[influence_at(weights, tissue, voxel).bone[0]];
     model.fem.held_by.push_back(holder);
     if (found)
@@ -201,7 +249,7 @@ TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, 
   TissueModel model;
   model.fem.mesh = std::move(mesh);
   model.fem.bone_names = weights.bones();
-  choose_holders(model, volume, tissue, weights, moving);
+  choose_holders(model, volume, tissue, weights, moving, settings.joint_mm);
   count_voxels(model, volume);
   choose_materials(model, volume, tissue, tissues, settings);
   return model;
@@ -221,12 +269,14 @@ std::vector<double> volume_ratios(const TetMesh& mesh, const Eigen::MatrixX3d& V
 std::map<Label, double> volume_change_percent(const TissueModel& model, const Eigen::MatrixX3d& V) {
   const std::vector<double> ratios = volume_ratios(model.fem.mesh, V);
   std::map<Label, std::pair<double, double>> before_after;
-  for (size_t t = 0; t < ratios.size(); ++t)
+  for (size_t t = 0; t < ratios.size(); ++t) {
+    if (model.joint[t]) continue;
     for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i) {
       auto& [before, after] = before_after[model.counts[i].label];
       before += model.counts[i].voxels;
       after += model.counts[i].voxels * ratios[t];
     }
+  }
   std::map<Label, double> change;
   for (const auto& [label, sums] : before_after) change[label] = 100 * (sums.second / sums.first - 1);
   return change;

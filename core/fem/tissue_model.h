@@ -7,7 +7,9 @@
 //
 // Bones. Nodes of a bone's tets are held by it; nodes of what is meshed but does not bend (moving_tissue.h) by the bone that
 // tissue goes with. A node of two bones that move differently is held by none. Tets between two bones are the joint: soft and
-// compressible, for there the mesh is far coarser than the gap and fluid that let a joint turn.
+// compressible, for there the mesh is far coarser than the gap and fluid that let a joint turn. Bones slide along each other
+// by more than a tet, which no single layer of tets can follow: so the ends of bones that lie within `joint_mm` of another bone
+// are part of the joint too and not held. What of them is bone is painted rigidly in the volume all the same.
 #pragma once
 
 #include <map>
@@ -19,6 +21,7 @@
 namespace limber {
 
 struct TissueModelSettings {
+  double joint_mm = 12;
   TetMaterial joint{.shear_modulus = 1, .poisson_ratio = 0.3};  // kPa
   TetMaterial bone{.shear_modulus = 100, .poisson_ratio = 0.3};  // of tets that are held at every node
 };
@@ -43,7 +46,7 @@ LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissu
 TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const SkinWeights& weights,
                          const MovingTissue& moving, TetMesh mesh, const TissueModelSettings& settings = {});
 
-// How much the voxels of each label, with the tets they lie in, gained or lost.    V  #V posed nodes
+// How much the voxels of each label, with the tets they lie in, gained or lost; without the joint, which may.    V  #V posed nodes
 std::map<Label, double> volume_change_percent(const TissueModel& model, const Eigen::MatrixX3d& V);
 
 // det F of every tet.
