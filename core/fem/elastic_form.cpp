@@ -195,8 +195,9 @@ void ElasticForm::add_derivatives(const Places& x, std::span<const double> press
       const Eigen::Matrix3d F = deformation_of(tet, x), C = cofactor(F);
       const double J = F.col(0).dot(C.col(0));
       const VolumeTerm term = volume_term(tet.energy, J);
-      const double g = term.slope + (pressure.empty() ? 0 : pressure[t]);
-      const Eigen::Matrix3d P = tet.volume * (tet.energy.shear * F + g * C);
+      const double p = pressure.empty() ? 0 : pressure[t];
+      const double g = curvature == Curvature::Exact ? term.slope + p : term.slope;
+      const Eigen::Matrix3d P = tet.volume * (tet.energy.shear * F + (term.slope + p) * C);
       std::array<Eigen::Vector3d, 4> c;
       for (int a = 0; a < 4; ++a) {
         gradient.row(tet.node[a]) += (P * tet.slope[a]).transpose();
@@ -209,10 +210,10 @@ void ElasticForm::add_derivatives(const Places& x, std::span<const double> press
           H[pair] = exact_block(F, tet.slope[a], tet.slope[b], c[a], c[b], tet.volume * tet.energy.shear, tet.volume * g, tet.volume * term.curvature);
 
       if (curvature == Curvature::Projected) {
-        const Principal p = principal(F);
-        const NegativeCurvature negative = negative_curvature(tet.energy.shear, g, term.curvature, p.sigma);
+        const Principal axes = principal(F);
+        const NegativeCurvature negative = negative_curvature(tet.energy.shear, g, term.curvature, axes.sigma);
         for (int k = 0; k < negative.count; ++k) {
-          const Eigen::Matrix3d Q = p.U * negative.direction[k].mode * p.V.transpose();
+          const Eigen::Matrix3d Q = axes.U * negative.direction[k].mode * axes.V.transpose();
           std::array<Eigen::Vector3d, 4> q;
           for (int a = 0; a < 4; ++a) q[a] = Q * tet.slope[a];
           const double weight = tet.volume * negative.direction[k].value;

@@ -16,7 +16,9 @@
 
 namespace limber {
 
-enum class Curvature { Projected, Exact };  // without or with what is negative in a tet's
+// Projected: without what is negative in a tet's, and without what a pressure adds to it, which cancels inside an evenly
+// pressed body but not once it is projected tet by tet.
+enum class Curvature { Projected, Exact };
 
 // Ranges of elements in an order in which ranges of one colour, which share no node, stand together.
 struct ColouredChunks {

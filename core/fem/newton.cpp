@@ -13,6 +13,9 @@ constexpr int kHalvings = 24;          // of a step, before the search is given 
 constexpr double kNearStep = 0.4;      // the exact curvature is tried after a step at least this long,
 constexpr double kNearMove = 1;        // by no more than this, mm
 constexpr int kLongestWait = 8;
+constexpr double kJam = 0.05;          // a step this short is a jam;
+constexpr int kJams = 3;               // after so many in a row the solve is given up
+constexpr double kFull = 0.8;          // only a step this long can be the last
 
 double longest(const Places& step) { return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0; }
 
@@ -66,6 +69,7 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
                       const std::function<void(int, double)>& on_iteration) {
   NewtonResult result;
   ExactTurns exact;
+  int jams = 0;
   double value = energy.value(x);
   Places step;
   while (result.iterations < settings.iterations) {
@@ -88,12 +92,14 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
     result.shortest_search = std::min(result.shortest_search, length);
     exact.stepped(length, result.residual);
     if (on_iteration) on_iteration(result.iterations, result.residual);
+    jams = length < kJam ? jams + 1 : 0;
+    if (jams == kJams) break;
     if (length == 0) {
       // Nothing lower along a step too short to matter is the end; along a longer one it is a dead end.
       result.converged = result.residual < settings.tolerance_mm;
       break;
     }
-    if (result.residual < settings.tolerance_mm && length >= kNearStep) {
+    if (result.residual < settings.tolerance_mm && length >= kFull) {
       result.converged = true;
       break;
     }

@@ -2,45 +2,20 @@
 #include "core/fem/patch_form.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include <Eigen/Geometry>
 
 #include "core/base/parallel.h"
+#include "core/mesh/tet_mesh.h"
 
 namespace limber {
 
 namespace {
 constexpr std::int64_t kGrain = 512;  // patches
 constexpr double kAlike = 8;          // largest ratio of shear within a patch
-
-// The tets across the four faces of every tet, -1 none.
-std::vector<std::array<int, 4>> face_neighbours(const Eigen::MatrixX4i& T) {
-  struct Face {
-    std::array<int, 3> node;
-    int tet, face;
-  };
-  std::vector<Face> faces;
-  faces.reserve(4 * T.rows());
-  for (int t = 0; t < T.rows(); ++t)
-    for (int f = 0; f < 4; ++f) {
-      std::array<int, 3> node{T(t, (f + 1) % 4), T(t, (f + 2) % 4), T(t, (f + 3) % 4)};
-      std::sort(node.begin(), node.end());
-      faces.push_back({node, t, f});
-    }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return std::tie(a.node, a.tet) < std::tie(b.node, b.tet); });
-  std::vector<std::array<int, 4>> neighbour(T.rows(), {-1, -1, -1, -1});
-  for (std::size_t k = 0; k + 1 < faces.size(); ++k)
-    if (faces[k].node == faces[k + 1].node) {
-      neighbour[faces[k].tet][faces[k].face] = faces[k + 1].tet;
-      neighbour[faces[k + 1].tet][faces[k + 1].face] = faces[k].tet;
-    }
-  return neighbour;
-}
 
 std::uint64_t spread_bits(std::uint64_t v) {
   std::uint64_t spread = 0;
@@ -64,7 +39,7 @@ std::vector<int> morton_order(const Places& rest, const Eigen::MatrixX4i& T) {
 }  // namespace
 
 PatchOrder grow_patches(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<double>& bulk, const std::vector<double>& shear, int size) {
-  const auto neighbour = face_neighbours(T);
+  const auto neighbour = neighbours_of(T);
   const auto order = morton_order(rest, T);
   std::vector<int> patch_of(T.rows(), -1);
   std::vector<std::vector<int>> patches;

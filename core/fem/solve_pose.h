@@ -40,6 +40,7 @@ struct SolveSettings {
   double tolerance_mm = 0.3;        // the last one
   int step_iterations = 40;         // a step that needs more is tried again at half its length
   double shortest_step_degrees = 0.9;  // shorter ones are not tried: the pose is out of reach
+  double bone_drift_mm = 2;         // a step that bends a bone's nodes further than this from the bone is out of reach too
 };
 
 // What is known while solving, after every iteration. V lives only during the call.
@@ -60,6 +61,7 @@ struct SolvedPose {
   double min_det_f = 1;      // of tets with flesh, at the end
   double min_det_f_of_path = 1;  // at the end of any step
   double min_air_det_f = 1;  // of air tets that hold against contact, against their shape at the start of the step; of all steps
+  double bone_drift_mm = 0;  // furthest that a bone's node is from where its bone is, at the end
   std::int64_t inverted = 0;  // tets with det F <= 0 at the end of any step, flesh, bone and air
   int crossings_mended = 0;  // times that skin was found crossing and the last two steps were done again at half the angle
   int air_meshes_kept = 0;   // times that the air could not be meshed and the former air went on

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/fem/solve_pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/fem/air_form.h"
+#include "core/fem/newton.h"
+#include "core/mesh/tetrahedralize.h"
+
+namespace limber {
+
+namespace {
+// A bone gives way by 0.01 mm where flesh pulls with 50 kPa.
+constexpr double kPinStiffness = 1000;      // kPa per mm2, times the volume around a node
+constexpr double kJointPinStiffness = 0.1;  // of nodes of tets between two bones: as coarse as the mesh is there, the bones' ends
+                                            // would often not pass each other
+constexpr TetMaterial kBoneTet{100, 0.3};   // of a rigid tet where flesh pulls at it
+constexpr double kLeastWay = 0.05;          // of a guess that is worth a solve; with less, half the step is tried first
+constexpr double kWeakBarrier = 5;      // kPa, on flesh below det F 0.2
+
+Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector3d& p) {
+  const glm::dvec3 q = transform * glm::dvec3(p[0], p[1], p[2]);
+  return {q.x, q.y, q.z};
+}
+
+void check(const FemModel& model, const Eigen::MatrixX3d* start) {
+  const auto wrong = [](const char* what) { throw Error("a model for finite elements does not fit together", what, "give one entry for each"); };
+  if (std::ssize(model.material) != model.mesh.T.rows()) wrong("materials and tets");
+  if (std::ssize(model.held_by) != model.mesh.V.rows()) wrong("held nodes and nodes");
+  if (std::ssize(model.influences) != model.mesh.V.rows()) wrong("influences and nodes");
+  if (start && start->rows() != model.mesh.V.rows()) wrong("nodes at the start and nodes");
+  if (count_inverted(model.mesh.T, model.mesh.V)) throw Error("a tet mesh has inverted tets", "at rest", "mesh the volume again");
+  if (start && count_inverted(model.mesh.T, *start)) throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
+}
+
+// What of the mesh deforms, what bones hold, and what they carry along. A tet that one bone holds at every node is rigid; it
+// deforms nevertheless where flesh pulls at one of its nodes, for there its node may give way.
+struct Parts {
+  Eigen::MatrixX4i elastic, rigid;
+  std::vector<TetMaterial> material;  // of elastic tets
+  std::vector<char> is_flesh;         // of elastic tets: not rigid
+  std::vector<int> pinned, carried;   // nodes that bones hold: in elastic tets or not
+  std::vector<double> pin_stiffness;
+  std::vector<char> in_joint;         // nodes of tets between two bones
+
+  explicit Parts(const FemModel& model) {
+    const auto& T = model.mesh.T;
+    const auto held_by_one = [&](Eigen::Index t) {
+      const int bone = model.held_by[T(t, 0)];
+      return bone >= 0 && std::all_of(T.row(t).begin(), T.row(t).end(), [&](int v) { return model.held_by[v] == bone; });
+    };
+    std::vector<char> in_flesh(model.mesh.V.rows(), 0), in_elastic(model.mesh.V.rows(), 0);
+    for (Eigen::Index t = 0; t < T.rows(); ++t)
+      if (!held_by_one(t))
+        for (const int v : T.row(t)) in_flesh[v] = 1;
+
+    in_joint.assign(model.mesh.V.rows(), 0);
+    for (Eigen::Index t = 0; t < T.rows(); ++t) {
+      int first = -1;
+      bool joint = false;
+      for (const int v : T.row(t))
+        if (const int bone = model.held_by[v]; bone >= 0) joint = joint || (first >= 0 && bone != first), first = bone;
+      if (joint)
+        for (const int v : T.row(t)) in_joint[v] = 1;
+    }
+
+    std::vector<Eigen::Index> elastic_tet, rigid_tet;
+    std::vector<double> volume(model.mesh.V.rows(), 0);
+    const Places rest = model.mesh.V;
+    for (Eigen::Index t = 0; t < T.rows(); ++t) {
+      const bool one = held_by_one(t);
+      if (one && std::none_of(T.row(t).begin(), T.row(t).end(), [&](int v) { return in_flesh[v]; })) {
+        rigid_tet.push_back(t);
+        continue;
+      }
+      elastic_tet.push_back(t);
+      is_flesh.push_back(!one);
+      material.push_back(one ? kBoneTet : model.material[t]);
+      for (const int v : T.row(t)) {
+        in_elastic[v] = 1;
+        volume[v] += determinant(rest, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) / 24;
+      }
+    }
+    elastic = T(elastic_tet, Eigen::all);
+    rigid = T(rigid_tet, Eigen::all);
+    for (int v = 0; v < int(model.mesh.V.rows()); ++v) {
+      if (model.held_by[v] < 0) continue;
+      (in_elastic[v] ? pinned : carried).push_back(v);
+      if (in_elastic[v]) pin_stiffness.push_back((in_joint[v] ? kJointPinStiffness : kPinStiffness) * volume[v]);
+    }
+  }
+};
+
+class PoseSolve {
+ public:
+  PoseSolve(const FemModel& model, const BonePath& path, const SolveSettings& settings, Progress& progress,
+            const std::function<void(const SolveStep&)>& on_step, const Eigen::MatrixX3d* start)
+      : model_(model), path_(path), settings_(settings), progress_(progress), on_step_(on_step), parts_(model), rest_(model.mesh.V),
+        x_(start ? Places(*start) : rest_), energy_(rest_, parts_.elastic, parts_.material, kWeakBarrier) {
+    energy_.set_air({}, Eigen::MatrixX4i(0, 4), parts_.rigid);
+  }
+
+  SolvedPose run(double largest_angle_degrees) {
+    if (settings_.contact) skin_ = boundary_of(model_.mesh.T);
+    const double whole = settings_.step_degrees / std::max(largest_angle_degrees, 1e-9);
+    const double regular = 1 / std::max(1.0, std::ceil(1 / whole - 1e-9));
+    const double shortest = std::min(regular, settings_.shortest_step_degrees / std::max(largest_angle_degrees, 1e-9));
+    double length = regular;
+    shortest_ = shortest;
+    if (at_rest()) result_.reached = 1;
+    while (result_.reached < 1) {
+      const double to = result_.reached + length > 1 - 1e-9 ? 1 : result_.reached + length;
+      progress_.update("solving", result_.reached);
+      if (step(to)) {
+        length = std::min(regular, 2 * length);
+      } else if ((length = 0.5 * (to - result_.reached)) < shortest) {
+        break;
+      }
+    }
+    result_.converged = result_.reached == 1;
+    if (result_.converged) result_.blocked_by.clear();
+    result_.V = x_;
+    result_.min_det_f = energy_.min_ratio(x_);
+    result_.factorizations = energy_.factorizations();
+    return std::move(result_);
+  }
+
+  FemSeconds& seconds() { return energy_.seconds(); }
+
+ private:
+  bool at_rest() const;
+  bool step(double to);
+  void hold_at(const std::vector<RigidTransform>& pose);
+  Places blend_increment(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& of, bool points) const;
+  double predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x);
+  bool mesh_air(const Places& next);
+  Places yielding(const Places& x, Places guess) const;
+  struct Drift {
+    double mm = 0;
+    int node = -1;
+  };
+  Drift bone_drift(const std::vector<RigidTransform>& pose, const Places& x) const;
+  std::string at(const Eigen::RowVector4i& tet, const Places& x) const;
+  std::string obstacle(const StepBound& bound, const Places& x) const;
+
+  const FemModel& model_;
+  const BonePath& path_;
+  const SolveSettings& settings_;
+  Progress& progress_;
+  const std::function<void(const SolveStep&)>& on_step_;
+  const Parts parts_;
+  const Places rest_;
+  Places x_;
+  Eigen::MatrixX3i skin_;  // with contact
+  Eigen::MatrixX4i air_;   // around the skin at `reached`, corners from #V on at the box
+  bool air_is_of_now_ = false;
+  double shortest_ = 0;    // step, of the path
+  Places missed_;  // how far the last step's prediction was off, #V, or empty
+  FemEnergy energy_;
+  SolvedPose result_;
+};
+
+// Nothing is asked to move: the start is the answer, to the last bit.
+bool PoseSolve::at_rest() const {
+  const auto pose = path_(1);
+  for (int v = 0; v < int(rest_.rows()); ++v)
+    if (const int bone = model_.held_by[v]; bone >= 0 && moved(pose[bone], rest_.row(v)) != x_.row(v)) return false;
+  return x_ == rest_;
+}
+
+void PoseSolve::hold_at(const std::vector<RigidTransform>& pose) {
+  PinForm pins{parts_.pinned, Places(parts_.pinned.size(), 3), Places(parts_.pinned.size(), 3)};
+  for (std::size_t k = 0; k < parts_.pinned.size(); ++k) {
+    const int v = parts_.pinned[k];
+    pins.stiffness.row(k).setConstant(parts_.pin_stiffness[k]);
+    pins.target.row(k) = moved(pose[model_.held_by[v]], rest_.row(v));
+  }
+  Places carried(parts_.carried.size(), 3);
+  for (std::size_t k = 0; k < parts_.carried.size(); ++k) carried.row(k) = moved(pose[model_.held_by[parts_.carried[k]]], rest_.row(parts_.carried[k]));
+  energy_.hold(std::move(pins), parts_.carried, std::move(carried));
+}
+
+// How the blend of what bones do between two poses moves `of`: points, or vectors, which only turn.
+Places PoseSolve::blend_increment(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& of, bool points) const {
+  std::vector<RigidTransform> increment(from.size());
+  for (std::size_t b = 0; b < from.size(); ++b) {
+    increment[b] = to[b] * inverse(from[b]);
+    if (!points) increment[b].translation = glm::dvec3(0);
+  }
+  Places change = Places::Zero(of.rows(), 3);
+  parallel_for(of.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = begin; v < end; ++v)
+      for (const auto& [bone, weight] : model_.influences[v]) change.row(v) += weight * (moved(increment[bone], of.row(v)) - of.row(v));
+  });
+  return change;
+}
+
+// Air around the skin as it is. Where it cannot be meshed the former air goes on: it is as valid, if more worn.
+// False when there is none.
+bool PoseSolve::mesh_air(const Places& next) {
+  const CpuTimer timer(energy_.seconds().air);
+  if (!air_is_of_now_) {
+    const AirTets air = tetrahedralize_air(x_, skin_, AirSettings{}.margin_mm, {}, progress_);
+    if (!air.T) {
+      result_.air_meshes_kept += air_.rows() > 0;
+      if (air_.rows() == 0) result_.blocked_by = "the air around the skin cannot be meshed: " + air.failure;
+      return air_.rows() > 0;
+    }
+    air_ = *air.T;
+    air_is_of_now_ = true;
+  }
+  const Eigen::MatrixX4i moving = moving_air(air_, x_, next);
+  energy_.set_air(air_form(moving, x_), moving, parts_.rigid);
+  return true;
+}
+
+// The guess where it would flatten tets made smoother, until it does not: a tet whose nodes all move alike keeps its volume.
+Places PoseSolve::yielding(const Places& x, Places guess) const {
+  constexpr double kBorne = 0.2;  // of a tet's volume
+  constexpr int kRounds = 40;
+  const auto& T = energy_.volume_tets();
+  Places sum(x.rows(), 3);
+  std::vector<int> count(x.rows(), 0), nodes;
+  std::vector<char> flattened(T.rows());
+  for (int round = 0; round < kRounds; ++round) {
+    const Places there = x + guess;
+    parallel_for(T.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
+      for (auto t = begin; t < end; ++t)
+        flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) < kBorne * determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3));
+    });
+    nodes.clear();
+    for (Eigen::Index t = 0; t < T.rows(); ++t) {
+      if (!flattened[t]) continue;
+      const Eigen::RowVector3d mean = 0.25 * (guess.row(T(t, 0)) + guess.row(T(t, 1)) + guess.row(T(t, 2)) + guess.row(T(t, 3)));
+      for (const int v : T.row(t)) {
+        if (model_.held_by[v] >= 0 && !parts_.in_joint[v]) continue;
+        if (count[v]++ == 0) nodes.push_back(v), sum.row(v).setZero();
+        sum.row(v) += mean;
+      }
+    }
+    if (nodes.empty()) break;
+    for (const int v : nodes) {
+      guess.row(v) = 0.5 * guess.row(v) + 0.5 / count[v] * sum.row(v);
+      count[v] = 0;
+    }
+  }
+  return guess;
+}
+
+// The best of four guesses: what the blend of the bones does, that with what it missed the last time, and both yielding.
+// Returns how much of it the tets bear.
+double PoseSolve::predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x) {
+  Places blend = blend_increment(from, to, x, true);
+  for (int v = 0; v < int(x.rows()); ++v)
+    if (const int bone = model_.held_by[v]; bone >= 0) blend.row(v) = moved(to[bone] * inverse(from[bone]), x.row(v)) - x.row(v);
+  std::vector<Places> guesses{blend};
+  if (missed_.rows()) {
+    guesses.push_back(blend + missed_ + blend_increment(from, to, missed_, false));
+    for (int v = 0; v < int(x.rows()); ++v)
+      if (model_.held_by[v] >= 0) guesses.back().row(v) = blend.row(v);
+  }
+  Places best = x;
+  double least = energy_.value(x), best_way = 0;
+  for (std::size_t k = 0, n = guesses.size(); k < n; ++k) guesses.push_back(yielding(x, guesses[k]));
+  for (const Places& guess : guesses) {
+    const double way = energy_.largest_step(x, guess, 1).length;
+    Places there = x + way * guess;
+    if (const double value = energy_.value(there); value < least) {
+      least = value;
+      best.swap(there);
+      best_way = way;
+    }
+  }
+  x = std::move(best);
+  return best_way;
+}
+
+PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, const Places& x) const {
+  Drift drift;
+  for (const int v : parts_.pinned)
+    if (const double mm = (x.row(v) - moved(pose[model_.held_by[v]], rest_.row(v))).norm(); !parts_.in_joint[v] && mm > drift.mm) drift = {mm, v};
+  return drift;
+}
+
+// "between Humerus and Forearm near (1, 2, 3) mm": the two bones that move the corners most.
+std::string PoseSolve::at(const Eigen::RowVector4i& tet, const Places& x) const {
+  std::vector<double> share(path_(0).size(), 0);
+  Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
+  for (const int v : tet) {
+    centre += 0.25 * x.row(v);
+    for (const auto& [bone, weight] : model_.influences[v]) share[bone] += weight;
+  }
+  const auto name = [&](std::size_t bone) { return bone < model_.bone_names.size() ? model_.bone_names[bone] : "bone " + std::to_string(bone); };
+  const auto first = std::size_t(std::max_element(share.begin(), share.end()) - share.begin());
+  const double most = std::exchange(share[first], 0);
+  const auto second = std::size_t(std::max_element(share.begin(), share.end()) - share.begin());
+  char place[80];
+  std::snprintf(place, sizeof place, " near (%.0f, %.0f, %.0f) mm", centre[0], centre[1], centre[2]);
+  return (share[second] > 0.01 * most ? "between " + name(std::min(first, second)) + " and " + name(std::max(first, second)) : "on " + name(first)) + place;
+}
+
+std::string PoseSolve::obstacle(const StepBound& bound, const Places& x) const {
+  if (bound.tet < 0) return "the solver finds no lower energy";
+  const char* what = energy_.part_of(bound) == FemEnergy::Part::Air ? "skin presses against skin " : "tissue is squeezed flat ";
+  return what + at(energy_.bounding_tet(bound), x);
+}
+
+bool PoseSolve::step(double to) {
+  const auto from_pose = path_(result_.reached), to_pose = path_(to);
+  hold_at(to_pose);
+  Places x = x_;
+  if (settings_.contact && !mesh_air(x + blend_increment(from_pose, to_pose, x, true))) return false;
+  // With contact a guess that is far from the bones' places jams the search: air gives way without end.
+  if (predict(from_pose, to_pose, x) < kLeastWay && settings_.contact && to - result_.reached > 2 * shortest_) return false;
+  const Places predicted = x;
+
+  NewtonSettings newton;
+  newton.tolerance_mm = to == 1 ? settings_.tolerance_mm : settings_.step_tolerance_mm;
+  newton.iterations = settings_.step_iterations;
+  const int before = result_.iterations;
+  const NewtonResult solved = minimise(energy_, x, newton, progress_, [&](int iteration, double residual) {
+    progress_.update("solving", result_.reached);
+    if (on_step_) {
+      const Eigen::MatrixX3d V = x;
+      on_step_({to, before + iteration, residual, V});
+    }
+  });
+  result_.iterations += solved.iterations;
+  result_.residual = solved.residual;
+  if (!solved.converged) {
+    result_.blocked_by = obstacle(solved.bound, x);
+    return false;
+  }
+  const Drift drift = bone_drift(to_pose, x);
+  if (drift.mm > settings_.bone_drift_mm) {
+    char by[40];
+    std::snprintf(by, sizeof by, "bone would bend by %.1f mm ", drift.mm);
+    result_.blocked_by = by + at(Eigen::RowVector4i::Constant(drift.node), x);
+    return false;
+  }
+  result_.bone_drift_mm = drift.mm;
+
+  result_.min_air_det_f = std::min(result_.min_air_det_f, energy_.min_air_ratio(x));
+  air_is_of_now_ = false;
+  missed_ = x - predicted;
+  x_ = std::move(x);
+  result_.reached = to;
+  ++result_.steps;
+  result_.inverted += count_inverted(energy_.volume_tets(), x_);
+  result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_.min_ratio(x_));
+  return true;
+}
+}  // namespace
+
+SolvedPose solve_pose(const FemModel& model, const BonePath& path, double largest_angle_degrees, const SolveSettings& settings,
+                      Progress& progress, const std::function<void(const SolveStep&)>& on_step, const Eigen::MatrixX3d* start) {
+  check(model, start);
+  FemSeconds seconds;
+  SolvedPose result;
+  {
+    const CpuTimer timer(seconds.total);
+    PoseSolve solve(model, path, settings, progress, on_step, start);
+    result = solve.run(largest_angle_degrees);
+    seconds = solve.seconds();
+  }
+  result.seconds = seconds;
+  return result;
+}
+
+}  // namespace limber
