@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <numbers>
 
 #include <Eigen/Geometry>
@@ -58,14 +59,24 @@ class Improver {
       for (const int corner : mesh.T.row(tet)) tet_[next[corner]++] = static_cast<int>(tet);
   }
 
-  int sweep(double enough, double reach) {
-    std::vector<std::uint8_t> asks(V_.size(), 0);
-    for (const auto& tet : mesh_.T.rowwise())
-      if (badness_of(tet) > enough)
-        for (const int corner : tet) asks[corner] = 1;
+  // Moves the nodes of the tets that are worse than enough, until no move helps. Only what moved is asked again.
+  int sweeps(int most, double enough, double reach) {
+    std::vector<int> tets(mesh_.T.rows());
+    std::iota(tets.begin(), tets.end(), 0);
     int moves = 0;
-    for (std::size_t node = 0; node < V_.size(); ++node)
-      if (asks[node]) moves += move(static_cast<int>(node), enough, reach);
+    for (int sweep = 0; sweep < most && !tets.empty(); ++sweep) {
+      std::vector<int> nodes;
+      for (const int tet : tets)
+        if (badness_of(mesh_.T.row(tet)) > enough) nodes.insert(nodes.end(), mesh_.T.row(tet).begin(), mesh_.T.row(tet).end());
+      keep_once(nodes);
+      tets.clear();
+      for (const int node : nodes) {
+        if (!move(node, enough, reach)) continue;
+        ++moves;
+        tets.insert(tets.end(), tet_.begin() + first_[node], tet_.begin() + first_[node + 1]);
+      }
+      keep_once(tets);
+    }
     return moves;
   }
 
@@ -80,10 +91,16 @@ class Improver {
     return badness(V_[tet[0]], V_[tet[c]], V_[tet[b]], V_[tet[3]]);
   }
 
-  double worst_around(int node) const {
+  // Of the tets around a node; any number above `limit` where that is passed.
+  double worst_around(int node, double limit = 2) const {
     double worst = -1;
-    for (int i = first_[node]; i < first_[node + 1]; ++i) worst = std::max(worst, badness_of(mesh_.T.row(tet_[i])));
+    for (int i = first_[node]; i < first_[node + 1] && worst <= limit; ++i) worst = std::max(worst, badness_of(mesh_.T.row(tet_[i])));
     return worst;
+  }
+
+  static void keep_once(std::vector<int>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
   bool is_tissue(const glm::ivec3& v) const {
@@ -139,7 +156,7 @@ class Improver {
     double best = worst_around(node);
     const auto attempt = [&](const Point& there) {
       place = there.cwiseMax(low).cwiseMin(high);
-      const double now = worst_around(node);
+      const double now = worst_around(node, best);
       if (now < best && accept()) best = now, best_place = place;
     };
     for (const double share : {1.0, 0.5, 0.2}) attempt(start + share * (middle - start));
@@ -173,7 +190,7 @@ class Improver {
     const Point start = place;
     for (const double share : {1.0, 0.5, 0.25}) {
       place = start + share * (there - start);
-      if (worst_around(node) >= worst) continue;
+      if (worst_around(node, worst) >= worst) continue;
       const std::int64_t lost = lost_around(node, before);
       if (lost > may_lose_) continue;
       may_lose_ -= lost;
@@ -205,12 +222,8 @@ int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, co
   Improver improver(mesh, net, voxels, static_cast<std::int64_t>(spare * double(voxels.tissue.size())));
   const double enough = std::cos(settings.enough_degrees * std::numbers::pi / 180);
   int moves = 0;
-  for (const double goal : {kFlat, enough})  // the worst first: they may leave voxels outside that others must then keep
-    for (int sweep = 0; sweep < settings.sweeps; ++sweep) {
-      const int moved = improver.sweep(goal, 0.3);
-      moves += moved;
-      if (moved == 0) break;
-    }
+  // The worst first: they may leave voxels outside that others must then keep.
+  for (const double goal : {kFlat, enough}) moves += improver.sweeps(settings.sweeps, goal, 0.3);
   improver.write();
   return moves;
 }

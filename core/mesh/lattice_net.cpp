@@ -71,15 +71,24 @@ double border_along(const VoxelLookup& voxel_at, const glm::dvec3& from, int axi
   return double(best) / steps;
 }
 
+// Where borders lie along edges, kept from round to round: looking them up takes longer than all the rest.
+struct Borders {
+  std::vector<float> share[3];  // of the edge along each axis from each sample; below 0 where nobody asked
+  void forget() {
+    for (auto& of_axis : share) std::fill(of_axis.begin(), of_axis.end(), -1.0f);
+  }
+};
+
 struct Node {
   glm::dvec3 place, low, high;  // fine steps
 };
 
 class Net {
  public:
-  Net(const SampleLattice& lattice, const VoxelLookup& voxel_at, NetShape shape, const std::vector<std::uint8_t>& pushes)
-      : lattice_(lattice), voxel_at_(voxel_at), shape_(shape), pushes_(pushes) {
+  Net(const SampleLattice& lattice, const VoxelLookup& voxel_at, NetShape shape, const std::vector<std::uint8_t>& pushes, Borders& borders)
+      : lattice_(lattice), voxel_at_(voxel_at), shape_(shape), pushes_(pushes), borders_(borders) {
     cell_node_.assign(lattice.label.size(), -1);
+    touches_air_.assign(lattice.label.size(), 0);
     for (auto& of_axis : edge_node_) of_axis.assign(lattice.label.size(), -1);
     place_edge_points();
     place_cell_points();
@@ -89,8 +98,12 @@ class Net {
   const std::vector<Node>& nodes() const { return nodes_; }
   bool is_mixed(const Cell& cell) const { return cell_node_[lattice_.index(cell.corner)] >= 0; }
 
-  // The region of a place.
+  // The region of a place, and whether it is air; the latter is sooner known.
   std::uint16_t region_at(const glm::dvec3& place) const;
+  bool is_air(const glm::dvec3& place) const {
+    const Cell cell = cell_of(place);
+    return touches_air_[lattice_.index(cell.corner)] ? region_at(place) == kAir : lattice_.at(cell.corner) == kAir;
+  }
 
   // Triangles around every edge between two regions, facing the sample further along the axis.
   template <class Triangle>
@@ -119,6 +132,7 @@ class Net {
   };
 
  private:
+  Cell cell_of(const glm::dvec3& place) const { return lattice_.cell(glm::clamp(glm::ivec3(glm::floor(place)), glm::ivec3(0), lattice_.size - 2)); }
   void place_edge_points();
   void place_cell_points();
   void place_face_points();
@@ -131,21 +145,25 @@ class Net {
   const VoxelLookup& voxel_at_;
   const NetShape shape_;
   const std::vector<std::uint8_t>& pushes_;
+  Borders& borders_;
   std::vector<Node> nodes_;
   std::vector<Edge> edges_;
   std::vector<std::int32_t> cell_node_, edge_node_[3];
+  std::vector<std::uint8_t> touches_air_;  // mixed cells with a border to air
   std::unordered_map<std::int64_t, int> face_node_;  // 3 index of the face's lowest sample + axis
 };
 
 void Net::place_edge_points() {
-  for (int z = 0; z < lattice_.size.z; ++z)
-    for (int y = 0; y < lattice_.size.y; ++y)
-      for (int x = 0; x < lattice_.size.x; ++x)
+  const std::int64_t strides[3] = {1, lattice_.size.x, std::int64_t{lattice_.size.x} * lattice_.size.y};
+  std::int64_t at = -1;
+  glm::ivec3 from;
+  for (from.z = 0; from.z < lattice_.size.z; ++from.z)
+    for (from.y = 0; from.y < lattice_.size.y; ++from.y)
+      for (from.x = 0; from.x < lattice_.size.x; ++from.x) {
+        ++at;
         for (int axis = 0; axis < 3; ++axis) {
-          const glm::ivec3 from(x, y, z);
           // Most places are far from any border.
-          const std::int64_t at = lattice_.index(from);
-          const std::int64_t stride = axis == 0 ? 1 : axis == 1 ? lattice_.size.x : std::int64_t{lattice_.size.x} * lattice_.size.y;
+          const std::int64_t stride = strides[axis];
           if (from[axis] + 1 >= lattice_.size[axis]) continue;
           const bool far = lattice_.block == 2 && from[axis] + 2 < lattice_.size[axis];
           if (lattice_.label[at] == lattice_.label[at + stride] && (!far || lattice_.label[at] == lattice_.label[at + 2 * stride])) continue;
@@ -157,7 +175,9 @@ void Net::place_edge_points() {
           double share = 0.5;
           const auto around = lattice_.cells_around_edge(from, axis);
           if (shape_ == NetShape::fitted) {
-            share = border_along(voxel_at_, from, axis, length, first, second);
+            float& known = borders_.share[axis][at];
+            if (known < 0) known = static_cast<float>(border_along(voxel_at_, from, axis, length, first, second));
+            share = known;
             int pushes = 0;
             for (const Cell& cell : around) pushes = std::max<int>(pushes, pushes_[lattice_.index(cell.corner)]);
             if (second == kAir) share += kPushShare * pushes;
@@ -171,6 +191,7 @@ void Net::place_edge_points() {
           edge_node_[axis][at] = static_cast<int>(nodes_.size());
           nodes_.push_back(node);
         }
+      }
 }
 
 void Net::place_cell_points() {
@@ -192,6 +213,7 @@ void Net::place_cell_points() {
         sums.push_back({});
         cells.push_back(around[slot]);
       }
+      if (edge.first == kAir || edge.second == kAir) touches_air_[lattice_.index(around[slot].corner)] = 1;
       Sum& sum = sums[node - first_cell];
       sum.place += nodes_[edge.node].place;
       if (edge.second == kAir) sum.outwards[edge.axis] += 1;
@@ -293,8 +315,7 @@ std::uint16_t Net::region_on_face(const glm::dvec3& middle, const glm::dvec3& pl
 }
 
 std::uint16_t Net::region_at(const glm::dvec3& place) const {
-  const glm::ivec3 fine = glm::clamp(glm::ivec3(glm::floor(place)), glm::ivec3(0), lattice_.size - 2);
-  const Cell cell = lattice_.cell(fine);
+  const Cell cell = cell_of(place);
   if (!is_mixed(cell)) return lattice_.at(cell.corner);
   // From the cell's vertex through the place to a face.
   const glm::dvec3& from = vertex(cell);
@@ -334,7 +355,7 @@ void find_outside(const Net& net, const SampleLattice& lattice, const TissueVoxe
       const auto first = outside.begin() + brick.first;
       if (!all && std::find(first, first + brick.count(), 1) == first + brick.count()) continue;
       tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& v) {
-        if (all || outside[place]) outside[place] = net.region_at(lattice.fine_from_voxel * glm::dvec3(v)) == kAir;
+        if (all || outside[place]) outside[place] = net.is_air(lattice.fine_from_voxel * glm::dvec3(v));
       });
     }
   });
@@ -364,16 +385,18 @@ std::vector<Missed> cells_that_miss(const SampleLattice& lattice, const TissueVo
 }
 
 // Makes room for `to_gain` of the voxels outside, where most are: cells push outwards, or samples become tissue.
-void make_room(const Net& net, SampleLattice& lattice, const std::vector<Missed>& missed, std::int64_t to_gain, NetShape shape, int round,
+// Returns whether samples did.
+bool make_room(const Net& net, SampleLattice& lattice, const std::vector<Missed>& missed, std::int64_t to_gain, NetShape shape, int round,
                std::vector<std::uint8_t>& pushes) {
+  bool any_became = false;
   const auto become_tissue = [&](const glm::ivec3& p) {
     std::uint16_t& label = lattice.label[lattice.index(p)];
     const bool was_air = label == kAir;
-    if (was_air) label = TetMesh::kSoft;
+    if (was_air) label = TetMesh::kSoft, any_became = true;
     return was_air;
   };
   for (const Missed& miss : missed) {
-    if (to_gain <= 0) return;
+    if (to_gain <= 0) break;
     to_gain -= miss.count;
     const Cell& cell = miss.cell;
     std::uint8_t& pushed = pushes[lattice.index(cell.corner)];
@@ -389,6 +412,7 @@ void make_room(const Net& net, SampleLattice& lattice, const std::vector<Missed>
         for (int x = 0; x <= cell.size; ++x)
           if (lattice.has_sample(cell.corner + glm::ivec3(x, y, z))) become_tissue(cell.corner + glm::ivec3(x, y, z));
   }
+  return any_became;
 }
 
 LatticeNet finished(const Net& net, const SampleLattice& lattice, const AffineTransform& world_from_lattice) {
@@ -424,11 +448,13 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
   SampleLattice lattice = sample_regions(voxels, settings);
   const VoxelLookup voxel_at(voxels, lattice);
   std::vector<std::uint8_t> pushes(lattice.label.size(), 0);
+  Borders borders;
+  for (auto& of_axis : borders.share) of_axis.assign(lattice.label.size(), -1.0f);
   const auto allowed = static_cast<std::int64_t>((1 - settings.least_covered) * double(voxels.tissue.size()));
   std::vector<std::uint8_t> outside(voxels.tissue.size(), 0);
   for (int round = 0;; ++round) {
     progress.update("surface", 1 - 1 / (1 + 0.3 * (round + 1)));
-    const Net net(lattice, voxel_at, settings.shape, pushes);
+    const Net net(lattice, voxel_at, settings.shape, pushes, borders);
     find_outside(net, lattice, voxels.tissue, round == 0, outside);
     auto missed = std::count(outside.begin(), outside.end(), 1);
     if (missed <= allowed && round > 0) {  // a point that moved may have left others outside
@@ -441,7 +467,7 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
       result.covered = 1 - double(missed) / double(voxels.tissue.size());
       return result;
     }
-    make_room(net, lattice, cells_that_miss(lattice, voxels.tissue, outside), missed - allowed, settings.shape, round, pushes);
+    if (make_room(net, lattice, cells_that_miss(lattice, voxels.tissue, outside), missed - allowed, settings.shape, round, pushes)) borders.forget();
   }
 }
 

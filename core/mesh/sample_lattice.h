@@ -20,7 +20,7 @@ struct SampleLattice {
 
   glm::ivec3 size{0};  // samples, fine
   double step = 0;     // mm
-  int block = 1;       // fine cells along a coarse one
+  int block = 1;       // fine cells along a coarse one: 1 or 2
   glm::ivec3 blocks{0};
   std::vector<std::uint8_t> is_fine;  // #blocks; empty where block is 1
   std::vector<std::uint16_t> label;   // #samples: a region; kAir where no sample is as well
@@ -30,10 +30,10 @@ struct SampleLattice {
   std::int64_t index(const glm::ivec3& p) const { return p.x + std::int64_t{size.x} * (p.y + std::int64_t{size.y} * p.z); }
   std::uint16_t at(const glm::ivec3& p) const { return label[index(p)]; }
   bool fine_cell(const glm::ivec3& c) const {
-    const glm::ivec3 b = c / block;
+    const glm::ivec3 b = c >> (block - 1);
     return block == 1 || is_fine[b.x + std::int64_t{blocks.x} * (b.y + std::int64_t{blocks.y} * b.z)];
   }
-  Cell cell(const glm::ivec3& fine) const { return fine_cell(fine) ? Cell{fine, 1} : Cell{fine / block * block, block}; }
+  Cell cell(const glm::ivec3& fine) const { return fine_cell(fine) ? Cell{fine, 1} : Cell{fine & ~(block - 1), block}; }
 
   // Whether p has a sample: a corner of a cell.
   bool has_sample(const glm::ivec3& p) const;
