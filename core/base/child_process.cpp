@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kAskMilliseconds = 50;  // whether the user has cancelled
+constexpr int kAskMilliseconds = 20;  // whether the user has cancelled
 
 // Pages of this process's address space, in bytes.
 std::size_t mapped_bytes() {

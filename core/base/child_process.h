@@ -29,7 +29,7 @@ struct ChildAnswer {
 // What `work` sent, or nothing and the reason when it returned false, threw, crashed, ended the process, sent more than
 // `most` bytes or went over a limit. The child has no standard output or error of its own, nothing it changes in memory is
 // seen here, and it ends with the thread that waits for it.
-//   throws Cancelled, the child gone, within 50 ms of progress.cancel()
+//   throws Cancelled, the child gone, within some 20 ms of progress.cancel()
 ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size_t most, const ChildLimits& limits,
                          const Progress& progress = no_progress());
 

@@ -31,6 +31,8 @@ double badness(const Point& a, const Point& b, const Point& c, const Point& d) {
   return std::isfinite(worst) ? worst : 2;
 }
 
+constexpr int kAskEvery = 256;  // nodes, some 20 ms, between questions whether to stop
+
 class Improver {
  public:
   // Nodes are kept in lattice axes, where the boxes are.
@@ -60,7 +62,7 @@ class Improver {
   }
 
   // Moves the nodes of the tets that are worse than enough, until no move helps. Only what moved is asked again.
-  int sweeps(int most, double enough, double reach) {
+  int sweeps(int most, double enough, double reach, Progress& progress) {
     std::vector<int> tets(mesh_.T.rows());
     std::iota(tets.begin(), tets.end(), 0);
     int moves = 0;
@@ -70,7 +72,9 @@ class Improver {
         if (badness_of(mesh_.T.row(tet)) > enough) nodes.insert(nodes.end(), mesh_.T.row(tet).begin(), mesh_.T.row(tet).end());
       keep_once(nodes);
       tets.clear();
-      for (const int node : nodes) {
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (i % kAskEvery == 0) progress.update("tetrahedra", 0.8);
+        const int node = nodes[i];
         if (!move(node, enough, reach)) continue;
         ++moves;
         tets.insert(tets.end(), tet_.begin() + first_[node], tet_.begin() + first_[node + 1]);
@@ -217,13 +221,13 @@ class Improver {
 
 }  // namespace
 
-int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings) {
+int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings, Progress& progress) {
   const double spare = std::max(0.0, net.covered - settings.least_covered);
   Improver improver(mesh, net, voxels, static_cast<std::int64_t>(spare * double(voxels.tissue.size())));
   const double enough = std::cos(settings.enough_degrees * std::numbers::pi / 180);
   int moves = 0;
   // The worst first: they may leave voxels outside that others must then keep.
-  for (const double goal : {kFlat, enough}) moves += improver.sweeps(settings.sweeps, goal, 0.3);
+  for (const double goal : {kFlat, enough}) moves += improver.sweeps(settings.sweeps, goal, 0.3, progress);
   improver.write();
   return moves;
 }

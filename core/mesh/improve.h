@@ -17,6 +17,7 @@ struct ImproveSettings {
 
 // The first #low rows of mesh.V are the net's nodes. The smallest angle around a node never becomes smaller by its move.
 // Returns the number of moves.
-int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings = {});
+//   throws Cancelled
+int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings = {}, Progress& progress = no_progress());
 
 }  // namespace limber

@@ -16,8 +16,7 @@ std::string fill_net(const LatticeNet& net, const VoxelRegions& voxels, const Me
   Tetrahedralized filled = tetrahedralize_inside(net.surface, settings.limits, progress);
   if (!filled.mesh) return filled.failure;
   mesh = std::move(*filled.mesh);
-  progress.update("tetrahedra", 0.8);
-  improve(mesh, net, voxels);
+  improve(mesh, net, voxels, ImproveSettings{}, progress);
   return find_fault(mesh, enclosed_volumes(net.surface, mesh.V));
 }
 

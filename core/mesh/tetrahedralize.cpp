@@ -82,7 +82,8 @@ struct Answer {
 };
 
 Answer run_tetgen(const Polyhedra& input, const char* switches, const TetrahedralizeLimits& limits, const Progress& progress) {
-  const ChildLimits child{limits.seconds, 4 * limits.seconds, limits.memory_bytes};
+  const double seconds = limits.seconds + limits.seconds_per_triangle * double(input.triangles.size());
+  const ChildLimits child{seconds, 4 * seconds, limits.memory_bytes};
   const ChildAnswer answer = run_in_child(
       [&](const Send& send) {
         if (limits.at_start) limits.at_start();

@@ -32,7 +32,8 @@ struct RegionSurface {
 };
 
 struct TetrahedralizeLimits {
-  double seconds = 120;                          // of processor time, and by the clock four times as much
+  double seconds = 30;                           // of processor time, and by the clock four times as much
+  double seconds_per_triangle = 0.0005;          // added to them; what it takes is a tenth of this
   std::size_t memory_bytes = std::size_t{4} << 30;
   std::function<void()> at_start = {};           // called in the child before TetGen: where tests crash and hang it
 };
