@@ -9,7 +9,7 @@
 namespace limber {
 
 namespace {
-constexpr double kWeakBelow = 0.2;  // det F of flesh at which the weak barrier begins
+constexpr double kWeakBelow = 0.4;  // det F of flesh at which the weak barrier begins
 
 // Of this process and of those it has started and seen end (that mesh the air).
 double cpu_seconds() {

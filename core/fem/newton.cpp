@@ -15,7 +15,7 @@ constexpr double kNearMove = 1;        // by no more than this, mm
 constexpr int kLongestWait = 8;
 constexpr double kJam = 0.05;          // a step this short is a jam;
 constexpr int kJams = 3;               // after so many in a row the solve is given up
-constexpr double kFull = 0.8;          // only a step this long can be the last
+constexpr double kLeft = 0.25;         // of the tolerance, that a step shorter than the full one may leave undone and be the last
 
 double longest(const Places& step) { return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0; }
 
@@ -99,7 +99,7 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
       result.converged = result.residual < settings.tolerance_mm;
       break;
     }
-    if (result.residual < settings.tolerance_mm && length >= kFull) {
+    if (result.residual < settings.tolerance_mm && (1 - length) * result.residual < kLeft * settings.tolerance_mm) {
       result.converged = true;
       break;
     }

@@ -2,7 +2,8 @@
 // Projected Newton to the shape of least energy. No iterate ever has an inverted tet: every step is bounded exactly
 // (step_bound.h) and searched along, and a search that finds nothing lower does not move.
 // The projected curvature is positive definite, but near the end slower than the exact one, which is tried there and, where it
-// is indefinite, left alone for 1, 2, 4, 8 iterations. A full step that lowers the energy is tried at 2, 4, 8 times its length.
+// is indefinite, left alone for 1, 2, 4, 8 iterations. It ends when neither the step nor what a search left of it matters, and
+// gives up when three searches in a row hardly moved. A full step that lowers the energy is tried at 2, 4, 8 times its length.
 #pragma once
 
 #include <functional>

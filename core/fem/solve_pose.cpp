@@ -20,8 +20,8 @@ constexpr double kPinStiffness = 1000;      // kPa per mm2, times the volume aro
 constexpr double kJointPinStiffness = 0.1;  // of nodes of tets between two bones: as coarse as the mesh is there, the bones' ends
                                             // would often not pass each other
 constexpr TetMaterial kBoneTet{100, 0.3};   // of a rigid tet where flesh pulls at it
-constexpr double kLeastWay = 0.05;          // of a guess that is worth a solve; with less, half the step is tried first
-constexpr double kWeakBarrier = 5;      // kPa, on flesh below det F 0.2
+constexpr double kLeastWay = 0.8;           // of a guess that is worth a solve; with less, half the way is tried first
+constexpr double kWeakBarrier = 100;        // kPa, on flesh: halves the iterations of a deep bend, for no tet gets nearly flat on the way
 
 Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector3d& p) {
   const glm::dvec3 q = transform * glm::dvec3(p[0], p[1], p[2]);
@@ -109,18 +109,11 @@ class PoseSolve {
     if (settings_.contact) skin_ = boundary_of(model_.mesh.T);
     const double whole = settings_.step_degrees / std::max(largest_angle_degrees, 1e-9);
     const double regular = 1 / std::max(1.0, std::ceil(1 / whole - 1e-9));
-    const double shortest = std::min(regular, settings_.shortest_step_degrees / std::max(largest_angle_degrees, 1e-9));
-    double length = regular;
-    shortest_ = shortest;
+    shortest_ = std::min(regular, settings_.shortest_step_degrees / std::max(largest_angle_degrees, 1e-9));
     if (at_rest()) result_.reached = 1;
     while (result_.reached < 1) {
-      const double to = result_.reached + length > 1 - 1e-9 ? 1 : result_.reached + length;
       progress_.update("solving", result_.reached);
-      if (step(to)) {
-        length = std::min(regular, 2 * length);
-      } else if ((length = 0.5 * (to - result_.reached)) < shortest) {
-        break;
-      }
+      if (!step(result_.reached + regular > 1 - 1e-9 ? 1 : result_.reached + regular)) break;
     }
     result_.converged = result_.reached == 1;
     if (result_.converged) result_.blocked_by.clear();
@@ -135,9 +128,10 @@ class PoseSolve {
  private:
   bool at_rest() const;
   bool step(double to);
+  bool part(double from, double to, Places& x);
   void hold_at(const std::vector<RigidTransform>& pose);
   Places blend_increment(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& of, bool points) const;
-  double predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x);
+  double predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x, double missed_share);
   bool mesh_air(const Places& next);
   Places yielding(const Places& x, Places guess) const;
   struct Drift {
@@ -160,7 +154,8 @@ class PoseSolve {
   Eigen::MatrixX4i air_;   // around the skin at `reached`, corners from #V on at the box
   bool air_is_of_now_ = false;
   double shortest_ = 0;    // step, of the path
-  Places missed_;  // how far the last step's prediction was off, #V, or empty
+  Places missed_;          // how far the last guess was off, #V, or empty,
+  double missed_way_ = 1;  // of so much of the path
   FemEnergy energy_;
   SolvedPose result_;
 };
@@ -253,14 +248,14 @@ Places PoseSolve::yielding(const Places& x, Places guess) const {
 }
 
 // The best of four guesses: what the blend of the bones does, that with what it missed the last time, and both yielding.
-// Returns how much of it the tets bear.
-double PoseSolve::predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x) {
+// missed_share: of what it missed. Returns how much of the guess the tets bear.
+double PoseSolve::predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x, double missed_share) {
   Places blend = blend_increment(from, to, x, true);
   for (int v = 0; v < int(x.rows()); ++v)
     if (const int bone = model_.held_by[v]; bone >= 0) blend.row(v) = moved(to[bone] * inverse(from[bone]), x.row(v)) - x.row(v);
   std::vector<Places> guesses{blend};
   if (missed_.rows()) {
-    guesses.push_back(blend + missed_ + blend_increment(from, to, missed_, false));
+    guesses.push_back(blend + missed_share * (missed_ + blend_increment(from, to, missed_, false)));
     for (int v = 0; v < int(x.rows()); ++v)
       if (model_.held_by[v] >= 0) guesses.back().row(v) = blend.row(v);
   }
@@ -310,13 +305,12 @@ std::string PoseSolve::obstacle(const StepBound& bound, const Places& x) const {
   return what + at(energy_.bounding_tet(bound), x);
 }
 
-bool PoseSolve::step(double to) {
-  const auto from_pose = path_(result_.reached), to_pose = path_(to);
+// From x, good at `from`, to the shape at `to`.
+bool PoseSolve::part(double from, double to, Places& x) {
+  const auto from_pose = path_(from), to_pose = path_(to);
   hold_at(to_pose);
-  Places x = x_;
-  if (settings_.contact && !mesh_air(x + blend_increment(from_pose, to_pose, x, true))) return false;
-  // With contact a guess that is far from the bones' places jams the search: air gives way without end.
-  if (predict(from_pose, to_pose, x) < kLeastWay && settings_.contact && to - result_.reached > 2 * shortest_) return false;
+  // A guess far behind the bones' places is no start: their springs would crush what lies between.
+  if (predict(from_pose, to_pose, x, (to - from) / missed_way_) < kLeastWay && to - from > shortest_) return false;
   const Places predicted = x;
 
   NewtonSettings newton;
@@ -324,7 +318,7 @@ bool PoseSolve::step(double to) {
   newton.iterations = settings_.step_iterations;
   const int before = result_.iterations;
   const NewtonResult solved = minimise(energy_, x, newton, progress_, [&](int iteration, double residual) {
-    progress_.update("solving", result_.reached);
+    progress_.update("solving", from);
     if (on_step_) {
       const Eigen::MatrixX3d V = x;
       on_step_({to, before + iteration, residual, V});
@@ -344,12 +338,31 @@ bool PoseSolve::step(double to) {
     return false;
   }
   result_.bone_drift_mm = drift.mm;
-
-  result_.min_air_det_f = std::min(result_.min_air_det_f, energy_.min_air_ratio(x));
-  air_is_of_now_ = false;
   missed_ = x - predicted;
-  x_ = std::move(x);
-  result_.reached = to;
+  missed_way_ = to - from;
+  return true;
+}
+
+// As far towards `to` as one air mesh goes, in as few parts as can be. False when not even the shortest part can be done.
+bool PoseSolve::step(double to) {
+  if (settings_.contact && !mesh_air(x_ + blend_increment(path_(result_.reached), path_(to), x_, true))) return false;
+  double from = result_.reached, way = to - from;
+  while (from < to) {
+    const double next = way < 0.999 * (to - from) ? from + way : to;
+    Places x = x_;
+    if (part(from, next, x)) {
+      x_ = std::move(x);
+      from = next;
+      way *= 2;
+    } else if ((way = 0.5 * (next - from)) < 0.5 * shortest_) {
+      break;
+    }
+  }
+  if (from == result_.reached) return false;
+
+  result_.min_air_det_f = std::min(result_.min_air_det_f, energy_.min_air_ratio(x_));
+  air_is_of_now_ = false;
+  result_.reached = from;
   ++result_.steps;
   result_.inverted += count_inverted(energy_.volume_tets(), x_);
   result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_.min_ratio(x_));
