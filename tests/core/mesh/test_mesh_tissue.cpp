@@ -11,6 +11,7 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/bcc_split.h"
+#include "core/mesh/crossings.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bone_parts.h"
 #include "core/rig/bone_tissue.h"
@@ -82,6 +83,10 @@ void check_body(const Regions& regions, const std::string& name, MeshSettings se
   CHECK(result.method == MeshMethod::fitted);
   check_sound(result);
   check_quality(result);
+  // The skin crosses itself nowhere, and the air around it can be meshed.
+  const Eigen::MatrixX3i skin = boundary_of(result.mesh.T);
+  CHECK(crossing_pairs(result.mesh.V, skin).empty());
+  if (skin.rows() < 50'000) CHECK(tetrahedralize_air(result.mesh.V, skin, 60).failure == "");
 }
 
 // For tests: how often it was asked, counted also where the asking is done in child processes.
@@ -195,6 +200,7 @@ TEST_CASE("mesh tissue: random bodies are meshed, whatever they are") {
     const TissueMesh result = mesh_tissue(body.regions, settings);
     check_sound(result, body.regions);
     CHECK(result.quality.covered >= 0.999);
+    CHECK(crossing_pairs(result.mesh.V, boundary_of(result.mesh.T)).empty());
     ++by_method[int(result.method)];
     if (result.method != MeshMethod::fitted) MESSAGE("seed ", seed, ", ", body.kind, ": ", result.warning);
   }
