@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The command line's subcommands: one file each, one function each, gathered in run.cpp. A function adds its
 // subcommand with its options to the app and sets a callback that does the work; errors are thrown, never printed there.
-// Exit codes: 0 done, 1 the input or the request is wrong, 2 usage, 3 cancelled.
+// Exit codes: 0 done, 1 the input or the request is wrong, 2 usage, 3 cancelled, 4 a pose that could not be reached: outputs are
+// written, of the last place on the way to it.
 #pragma once
 
 #include <string>
@@ -34,6 +35,9 @@ void add_commands(CLI::App& app);
 // Parses and runs; prints an error as one line and returns the exit code. The program's only place that catches.
 int run(CLI::App& app, int argc, char** argv);
 
+// Thrown once everything is written, where exit code 0 would say too much.
+struct PoseNotReached {};
+
 // Throws Error when two of the outputs are the same file; "" is none.
 void check_distinct(const std::vector<std::string>& outputs);
 
@@ -55,6 +59,23 @@ class CommandProgress final : public Progress {
   explicit CommandProgress(const std::string& mode);
   ~CommandProgress() override;
   bool cancelled() const override;
+  // A line of the stage "solving": {"stage", "fraction", "angle_degrees", "iteration", "residual_mm", "seconds_left"}.
+  struct Iteration {
+    double fraction, angle_degrees;
+    int iteration;
+    double residual_mm, seconds_left;
+  };
+  void show(const Iteration& iteration);
+
+  // While it lives, Ctrl-C and SIGTERM end the program at once, with the exit code of a cancelled one: for stages that take long
+  // between two updates and have nothing on the disk.
+  class LeavesAtOnce {
+   public:
+    LeavesAtOnce();
+    ~LeavesAtOnce();
+    LeavesAtOnce(const LeavesAtOnce&) = delete;
+    LeavesAtOnce& operator=(const LeavesAtOnce&) = delete;
+  };
 
  protected:
   void on_update(std::string_view stage, double fraction) override;

@@ -17,7 +17,11 @@ constexpr const char* kErase = "\r\033[K";  // the line of a terminal
 
 // A signal handler can reach nothing but a global.
 volatile std::sig_atomic_t interrupted = 0;
-void on_interrupt(int) { interrupted = 1; }
+volatile std::sig_atomic_t leaves_at_once = 0;
+void on_interrupt(int) {
+  interrupted = 1;
+  if (leaves_at_once) ::_exit(3);
+}
 }  // namespace
 
 void check_distinct(const std::vector<std::string>& outputs) {
@@ -50,6 +54,18 @@ CommandProgress::CommandProgress(const std::string& mode)
 CommandProgress::~CommandProgress() {
   if (mode_ == Mode::Bar && !stage_.empty()) std::fputs(kErase, stderr);
   std::fflush(stderr);
+}
+
+CommandProgress::LeavesAtOnce::LeavesAtOnce() { leaves_at_once = 1; }
+CommandProgress::LeavesAtOnce::~LeavesAtOnce() { leaves_at_once = 0; }
+
+void CommandProgress::show(const Iteration& iteration) {
+  if (mode_ != Mode::Json) return update("solving", iteration.fraction);
+  stage_ = "solving";
+  shown_ = iteration.fraction;
+  std::fprintf(stderr, "%s\n", nlohmann::json{{"stage", "solving"}, {"fraction", iteration.fraction}, {"angle_degrees", iteration.angle_degrees},
+                                              {"iteration", iteration.iteration}, {"residual_mm", iteration.residual_mm},
+                                              {"seconds_left", iteration.seconds_left}}.dump().c_str());
 }
 
 bool CommandProgress::cancelled() const { return interrupted != 0 || Progress::cancelled(); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] POSE-OPTIONS --method lbs|dqs [--fit-joints]
-//        -o OUT [--report R.json] [--spacing MM] [--nearest] [--with GREY=OUT2] [--field OUT.nrrd] [--jacobian OUT.nrrd]
+// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] POSE-OPTIONS --method lbs|dqs|fem [--fit-joints]
+//        [--contact] [--quality draft|normal|fine] [--mesh-out NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--with GREY=OUT2] [--field OUT.nrrd] [--jacobian OUT.nrrd]
 //        [--threads N] [--progress json]
 #include "core/resample/resample.h"
 
@@ -13,7 +13,11 @@
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/pose_options.h"
+#include "core/fem/solve_pose.h"
+#include "core/mesh/tetgen_files.h"
 #include "core/report/report.h"
+#include "core/resample/fem_shape.h"
+#include "core/resample/pose_path.h"
 #include "core/rig/bone_parts.h"
 #include "core/rig/fit_joint.h"
 #include "core/skin/heat_diffusion.h"
@@ -27,9 +31,9 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method, output, report, grey, field, jacobian;
+  std::string weights, method, output, report, grey, field, jacobian, quality, mesh_out;
   std::optional<double> spacing;
-  bool nearest = false, fit_joints = false;
+  bool nearest = false, fit_joints = false, contact = false;
 };
 
 // GREY=OUT2
@@ -43,6 +47,12 @@ GreyPaths grey_paths(const std::string& request) {
   return {request.substr(0, equals), request.substr(equals + 1)};
 }
 
+std::string mesh_file(const std::string& name, const char* ending) {
+  Path path(name);
+  if (path.extension() == ".node" || path.extension() == ".ele") path.replace_extension();
+  return path.string() + ending;
+}
+
 // Before anything is computed.
 void check_outputs(const Options& options) {
   check_writable(options.output);
@@ -50,8 +60,11 @@ void check_outputs(const Options& options) {
   if (!options.grey.empty()) outputs.push_back(grey_paths(options.grey).to);
   for (const std::string& volume : outputs)
     if (!volume.empty()) check_writable(volume);
-  if (!options.report.empty()) check_place(options.report);
-  outputs.push_back(options.report);
+  std::vector<std::string> others = {options.report};
+  if (!options.mesh_out.empty()) others.insert(others.end(), {mesh_file(options.mesh_out, ".node"), mesh_file(options.mesh_out, ".ele")});
+  for (const std::string& other : others)
+    if (!other.empty()) check_place(other);
+  outputs.insert(outputs.end(), others.begin(), others.end());
   check_distinct(outputs);
 }
 
@@ -74,9 +87,84 @@ SkinWeights weights_of(const Body& body, const TissueVoxels& tissue, const BoneP
   return weights;
 }
 
-Method method_of(const std::string& name) {
-  if (name == "dqs") return DualQuaternion{};
-  return LinearBlend{};
+// Options of finite elements alone.
+void check_method(const Options& options) {
+  if (options.method == "fem") return;
+  for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"}, {!options.quality.empty(), "--quality"}, {!options.mesh_out.empty(), "--mesh-out"}})
+    if (is_given) throw Error(std::string(name) + " needs finite elements", "--method " + options.method, "use --method fem, or leave it out");
+}
+
+// How far the solve is, for the user, with what it takes to the end at the pace so far.
+class SolveProgress {
+ public:
+  SolveProgress(CommandProgress& progress, double angle_degrees) : progress_(progress), angle_degrees_(angle_degrees) {}
+  void operator()(const SolveStep& step) {
+    if (step.iteration <= 1) watch_ = {};
+    const double left = step.reached > 0 ? watch_.seconds() * (1 / step.reached - 1) : 0;
+    progress_.show({step.reached, step.reached * angle_degrees_, step.iteration, step.residual, left});
+  }
+
+ private:
+  CommandProgress& progress_;
+  double angle_degrees_;
+  Stopwatch watch_;
+};
+
+Method method_of(const Options& options, const Pose& pose, CommandProgress& progress) {
+  if (options.method == "dqs") return DualQuaternion{};
+  if (options.method == "lbs") return LinearBlend{};
+  Fem fem;
+  fem.contact = options.contact;
+  if (options.quality == "draft") fem.quality = FemQuality::Draft;
+  if (options.quality == "fine") fem.quality = FemQuality::Fine;
+  fem.on_step = SolveProgress(progress, largest_angle_degrees(pose));
+  return fem;
+}
+
+// Says what a user must know of a mesh and a solve that did not go as asked.
+void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bool contact) {
+  if (deform.mesh && !deform.mesh->fallback.empty()) note(report, {deform.mesh->fallback});
+  if (deform.mesh && contact && deform.mesh->self_intersections.value_or(0) > 0)
+    note(report, {std::to_string(*deform.mesh->self_intersections) + " pairs of triangles of the skin cross each other"});
+  if (!deform.solve || deform.solve->converged) return;
+  char share[64];
+  std::snprintf(share, sizeof share, "%.0f %% (%.1f of %.1f degrees)", 100 * deform.solve->reached,
+                deform.solve->reached * largest_angle_degrees(pose), largest_angle_degrees(pose));
+  note(report, {"the pose could not be reached: the result is the way to it up to " + std::string(share) +
+                (deform.solve->blocked_by.empty() ? "" : ": what stands in the way: " + deform.solve->blocked_by)});
+}
+
+// The posed mesh with its tissues as regions: what files call the label with most voxels of a tet (the label itself where that is
+// no number below 65536); of a tet without any voxel, as of a tet that shares a corner.
+TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
+  const TissueModel& model = shape.model;
+  const TetMesh& mesh = model.fem.mesh;
+  std::vector<std::uint16_t> of_tet(mesh.T.rows(), 0), of_node(mesh.V.rows(), 0);
+  const auto spread = [&](int t) {
+    for (int i = 0; i < 4; ++i) of_node[mesh.T(t, i)] = of_tet[t];
+  };
+  for (int t = 0; t < mesh.T.rows(); ++t) {
+    int most = 0;
+    for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i)
+      if (model.counts[i].voxels > most) {
+        most = model.counts[i].voxels;
+        const Tissue* tissue = tissues.find(model.counts[i].label);
+        const bool fits = tissue && tissue->file_value >= 1 && tissue->file_value < 65536;
+        of_tet[t] = fits ? static_cast<std::uint16_t>(tissue->file_value) : model.counts[i].label;
+      }
+    if (most > 0) spread(t);
+  }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (int t = 0; t < mesh.T.rows(); ++t) {
+      if (of_tet[t] != 0) continue;
+      for (int i = 0; i < 4 && of_tet[t] == 0; ++i) of_tet[t] = of_node[mesh.T(t, i)];
+      if (of_tet[t] == 0) continue;
+      spread(t);
+      changed = true;
+    }
+  }
+  return {.V = shape.V, .T = mesh.T, .region = of_tet};
 }
 
 // Takes away what was written when something later fails.
@@ -107,6 +195,10 @@ void describe(Report& report, const Options& options, const Armature& rig, const
   settings["method"] = options.method;
   settings["nearest"] = options.nearest;
   settings["fit_joints"] = options.fit_joints;
+  if (options.method == "fem") {
+    settings["contact"] = options.contact;
+    settings["quality"] = options.quality.empty() ? std::string("normal") : options.quality;
+  }
   if (options.spacing) settings["spacing_mm"] = *options.spacing;
   if (!options.pose.flex.empty()) settings["flex"] = options.pose.flex;
   if (!options.pose.motion.empty()) settings["frame"] = std::int64_t{options.pose.frame.value_or(0)};
@@ -124,6 +216,10 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
   outputs.write(options.output, [&] { write_volume(posed.volume, options.output, body.tissues, body.file.type); });
   outputs.write(options.field, [&] { write_vector_volume(posed.volume.grid, posed.displacement, options.field); });
   outputs.write(options.jacobian, [&] { write_scalar_volume(posed.volume.grid, posed.jacobian, options.jacobian); });
+  if (!options.mesh_out.empty())
+    outputs.write(mesh_file(options.mesh_out, ".ele"), [&] {
+      outputs.write(mesh_file(options.mesh_out, ".node"), [&] { write_tetgen_files(options.mesh_out, posed_mesh(*posed.shape, body.tissues)); });
+    });
   if (options.grey.empty()) return;
   const std::string to = grey_paths(options.grey).to;
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });
@@ -141,6 +237,7 @@ void run(const Options& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
+  check_method(options);
   check_outputs(options);
   Report report;
 
@@ -167,10 +264,19 @@ void run(const Options& options) {
   const ResampleSettings settings{.nearest = options.nearest, .spacing = options.spacing,
                                   .displacement = !options.field.empty(), .jacobian = !options.jacobian.empty(),
                                   .grey = grey ? &*grey : nullptr};
-  Posed posed = resample(body.file.volume, body.tissues, body.rig, weights, pose, method_of(options.method), settings, progress);
+  Posed posed = [&] {
+    const CommandProgress::LeavesAtOnce nothing_is_written_yet;
+    return resample(body.file.volume, body.tissues, body.rig, weights, pose, method_of(options, pose, progress), settings, progress);
+  }();
+  if (!options.mesh_out.empty() && !posed.shape)
+    throw Error("the pose bends nothing, so there is no mesh", options.mesh_out, "leave --mesh-out out, or give a pose");
+  report.seconds.mesh = posed.report.seconds_mesh;
+  report.seconds.solve = posed.report.seconds_solve;
+  const bool is_reached = !posed.report.solve || posed.report.solve->converged;
   report.seconds.deform = posed.report.seconds_deform;
   report.seconds.rasterize = posed.report.seconds_rasterize;
   note_bone_overlap(report, posed.report.bone_overlap_voxels, options.fit_joints);
+  note_shape(report, posed.report, pose, options.contact);
 
   Outputs outputs;
   const Stopwatch writing;
@@ -187,6 +293,7 @@ void run(const Options& options) {
     print_report(std::cout, report);
   }
   outputs.complete();
+  if (!is_reached) throw PoseNotReached();
 }
 
 }  // namespace
@@ -197,7 +304,10 @@ void add_resample(CLI::App& app) {
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "W.nrrd (default: heat diffusion)");
   add_pose_options(*command, options->pose);
-  command->add_option("--method", options->method, "lbs (linear) or dqs (dual quaternions)")->required()->check(CLI::IsMember({"lbs", "dqs"}));
+  command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions) or fem (finite elements)")->required()->check(CLI::IsMember({"lbs", "dqs", "fem"}));
+  command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
+  command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));
+  command->add_option("--mesh-out", options->mesh_out, "fem: the posed mesh as NAME.node and NAME.ele, with the tissue of each tet")->type_name("NAME");
   command->add_flag("--fit-joints", options->fit_joints, "first move each bent joint so that its bones do not collide");
   command->add_option("-o,--output", options->output, "the posed volume")->required();
   command->add_option("--report", options->report, "what changed: JSON there, a table on stdout");

@@ -35,6 +35,8 @@ int run(CLI::App& app, int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const Cancelled&) {
     return 3;
+  } catch (const PoseNotReached&) {
+    return 4;
   } catch (const Error& error) {
     std::fprintf(stderr, "limber: %s\n", one_line(error.what()).c_str());
     return 1;

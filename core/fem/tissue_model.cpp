@@ -123,23 +123,22 @@ void choose_materials(TissueModel& model, const LabelVolume& volume, const Tissu
       model.fem.material.push_back(model.joint[t] ? settings.joint : settings.bone);
       continue;
     }
-    double mu = 0, nu = 0;
+    double mu = 0, lambda = 0;
     int voxels = 0;
+    const auto add = [&](Label label, int count) {
+      mu += count * of_label[label].shear_modulus;
+      lambda += count * lame_lambda(of_label[label].shear_modulus, of_label[label].poisson_ratio);
+      voxels += count;
+    };
     for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i) {
       const auto& [label, count] = model.counts[i];
-      if (!is_soft[label]) continue;
-      mu += count * of_label[label].shear_modulus;
-      nu += count * of_label[label].poisson_ratio;
-      voxels += count;
+      if (is_soft[label]) add(label, count);
     }
     glm::ivec3 nearest(0);
     if (voxels == 0 && around.nearest((mesh.V.row(mesh.T(t, 0)) + mesh.V.row(mesh.T(t, 1)) + mesh.V.row(mesh.T(t, 2)) + mesh.V.row(mesh.T(t, 3))) / 4,
-                                      [&](const glm::ivec3& v) { return is_soft[volume.at(v)] != 0; }, nearest)) {
-      mu = of_label[volume.at(nearest)].shear_modulus;
-      nu = of_label[volume.at(nearest)].poisson_ratio;
-      voxels = 1;
-    }
-    model.fem.material.push_back(voxels > 0 ? TetMaterial{mu / voxels, nu / voxels} : settings.joint);
+                                      [&](const glm::ivec3& v) { return is_soft[volume.at(v)] != 0; }, nearest))
+      add(volume.at(nearest), 1);
+    model.fem.material.push_back(voxels > 0 ? TetMaterial{mu / voxels, lambda / (2 * (lambda + mu))} : settings.joint);
   }
 }
 

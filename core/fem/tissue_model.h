@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A body's tissue as the model that solve_pose takes: what each tet is made of, which bone holds which node.
 //
-// Material. A tet of 4 to 12 mm holds many voxels, and skin is often one voxel thick: so a tet's shear modulus is the mean
-// over the soft voxels whose centres lie in it (by Young's modulus and Poisson ratio of the tissue table), and its Poisson
-// ratio their mean. A tet without any takes the nearest soft voxel's.
+// Material. A tet of 4 to 12 mm holds many voxels, and skin is often one voxel thick: so a tet's moduli mu and lambda are the
+// means over the soft voxels whose centres lie in it (by Young's modulus and Poisson ratio of the tissue table; the Poisson ratio
+// itself would not do: a tenth of cartilage would take half of the resistance of flesh to losing volume). A tet without any
+// voxel takes the nearest one's.
 //
 // Bones. Nodes of a bone's tets are held by it; nodes of what is meshed but does not bend (moving_tissue.h) by the bone that
 // tissue goes with. A node of two bones that move differently is held by none. Tets between two bones are the joint: soft and

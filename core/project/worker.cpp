@@ -225,7 +225,8 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
   const int status = process.status();
   if (WIFSIGNALED(status)) throw death(WTERMSIG(status), job_file);
   if (WEXITSTATUS(status) == 3) throw Cancelled();
-  if (WEXITSTATUS(status) != 0) throw relay(listener.complaint, job_file);
+  output.pose_reached = WEXITSTATUS(status) != 4;
+  if (WEXITSTATUS(status) != 0 && output.pose_reached) throw relay(listener.complaint, job_file);
   return output;
 }
 

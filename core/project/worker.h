@@ -24,6 +24,7 @@ struct WorkerSettings {
 struct WorkerOutput {
   std::string text;                   // what it printed, at most 16 MB of it
   std::vector<std::string> warnings;  // one line each
+  bool pose_reached = true;           // false: what it wrote is the last place on the way to the pose; a warning says more
 };
 
 // Runs the job to its end; blocks, so it belongs into a Job. throws Error with what went wrong, Cancelled after a cancel.

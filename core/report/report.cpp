@@ -74,6 +74,35 @@ Json total(const Report& report) {
   return row;
 }
 
+// What a label is called in files; the label itself where no tissue was measured.
+std::string key_of(const Report& report, Label label) {
+  if (report.metrics)
+    for (const TissueChange& tissue : report.metrics->tissues)
+      if (tissue.label == label) return whole(tissue.file_value).dump();
+  return std::to_string(label);
+}
+
+Json mesh_of(const Report& report, const MeshReport& mesh) {
+  Json row{{"tets", mesh.tets}, {"nodes", mesh.nodes}, {"inverted", mesh.inverted}, {"min_det_f", mesh.min_det_f},
+           {"joint_tets", mesh.joint_tets}, {"share_below_fifth", mesh.share_below_fifth}};
+  if (mesh.self_intersections) row["self_intersections"] = *mesh.self_intersections;
+  if (mesh.min_gap_mm) row["min_gap_mm"] = *mesh.min_gap_mm;
+  if (mesh.median_gap_mm) row["median_gap_mm"] = *mesh.median_gap_mm;
+  Json change = Json::object();
+  for (const auto& [label, percent] : mesh.volume_change_percent) change[key_of(report, label)] = percent;
+  row["volume_change_percent_by_label"] = change;
+  if (!mesh.fallback.empty()) row["fallback"] = mesh.fallback;
+  return row;
+}
+
+Json solve_of(const SolveReport& solve) {
+  Json row{{"converged", solve.converged}, {"reached", solve.reached}};
+  if (!solve.blocked_by.empty()) row["blocked_by"] = solve.blocked_by;
+  row.update({{"steps", solve.steps}, {"iterations", solve.iterations}, {"factorizations", solve.factorizations}, {"residual", solve.residual_mm}, {"bone_drift_mm", solve.bone_drift_mm},
+              {"crossings_mended", solve.crossings_mended}, {"air_meshes_kept", solve.air_meshes_kept}});
+  return row;
+}
+
 Json seconds_of(const StageSeconds& seconds) {
   Json row = Json::object();
   auto add = [&](const char* stage, const std::optional<double>& value) {
@@ -82,6 +111,8 @@ Json seconds_of(const StageSeconds& seconds) {
   add("read", seconds.read);
   add("weights", seconds.weights);
   add("deform", seconds.deform);
+  add("mesh", seconds.mesh);
+  add("solve", seconds.solve);
   add("rasterize", seconds.rasterize);
   add("report", seconds.report);
   add("write", seconds.write);
@@ -145,6 +176,8 @@ std::string to_json(const Report& report) {
   if (report.deform && !report.deform->bones.empty())
     for (const auto& bone : report.deform->bones)
       json["bones"].push_back({{"name", bone.name}, {"rigid_residual_mm", bone.rigid_residual_mm}});
+  if (report.deform && report.deform->mesh) json["mesh"] = mesh_of(report, *report.deform->mesh);
+  if (report.deform && report.deform->solve) json["solve"] = solve_of(*report.deform->solve);
   if (!report.warnings.empty()) json["warnings"] = report.warnings;
   // A name that is not UTF-8 must not cost the report.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -171,6 +204,16 @@ void print_report(std::ostream& out, const Report& report) {
     for (const auto& bone : deform.bones) worst = std::max(worst, bone.rigid_residual_mm);
     if (!deform.bones.empty())
       out << line("%zu bones are rigid within %.4f mm", deform.bones.size(), worst);
+  }
+  if (report.deform && report.deform->mesh) {
+    const MeshReport& mesh = *report.deform->mesh;
+    out << line("mesh of %lld tets, %lld inverted, least det F %.3f, %.2f %% of soft tets below 0.2", static_cast<long long>(mesh.tets),
+                static_cast<long long>(mesh.inverted), mesh.min_det_f, 100 * mesh.share_below_fifth);
+  }
+  if (report.deform && report.deform->solve) {
+    const SolveReport& solve = *report.deform->solve;
+    out << line("%s %.1f %% of the pose in %d steps, %d iterations, residual %.3f mm", solve.converged ? "solved:" : "NOT SOLVED, ended at",
+                100 * solve.reached, solve.steps, solve.iterations, solve.residual_mm);
   }
   const Json seconds = seconds_of(report.seconds);
   if (!seconds.empty()) {

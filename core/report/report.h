@@ -28,11 +28,11 @@ InputFile describe_input(const Path& path);
 
 // Wall-clock seconds; a stage that did not run has none.
 struct StageSeconds {
-  std::optional<double> read, weights, deform, rasterize, report, write, total;
+  std::optional<double> read, weights, deform, mesh, solve, rasterize, report, write, total;
 };
 
 struct Report {
-  std::string method;  // "lbs", "dqs"; empty when two volumes were only compared
+  std::string method;  // "lbs", "dqs", "fem"; empty when two volumes were only compared
   std::map<std::string, SettingValue> settings;
   std::vector<InputFile> inputs;
   StageSeconds seconds;

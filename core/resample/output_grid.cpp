@@ -20,9 +20,10 @@ VoxelRange united(const VoxelRange& a, const VoxelRange& b) {
   return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
 }
 
-VoxelRange posed_tissue(const PosedLattice& lattice, const RigidBones& bones) {
-  VoxelRange range;
+VoxelRange posed_tissue(const PosedLattice& lattice, const RigidBones& bones, const PosedTets* tets) {
+  VoxelRange range = tets ? tets->posed_tissue() : VoxelRange{};
   for (std::int64_t brick = 0; brick < std::ssize(lattice.tissue().bricks()); ++brick) {
+    if (tets && tets->shares(brick)) continue;
     const auto& box = lattice.bounds(brick);
     // Rounded like the rasterizer: a thin sliver between two centres still gets the nearer one.
     const VoxelRange voxels{(box.low + (kFixedOne - 1)) >> 16, box.high >> 16};
@@ -63,7 +64,7 @@ glm::dvec3 spacing_ratio(const Grid& grid, double spacing) {
   return ratio;
 }
 
-OutputGrid output_grid(const PosedLattice& lattice, const RigidBones& bones) {
+OutputGrid output_grid(const PosedLattice& lattice, const RigidBones& bones, const PosedTets* tets) {
   const Grid& input = lattice.volume().grid;
   const OutputLattice& output = lattice.output();
   const VoxelRange whole{glm::ivec3(0), input.size - 1}, tissue = rest_tissue(lattice.tissue());
@@ -73,7 +74,7 @@ OutputGrid output_grid(const PosedLattice& lattice, const RigidBones& bones) {
   if (tissue.empty()) {
     result.range = {glm::ivec3(0), glm::max(in_output(input.size), glm::ivec3(1)) - 1};
   } else {
-    const VoxelRange posed = posed_tissue(lattice, bones);
+    const VoxelRange posed = posed_tissue(lattice, bones, tets);
     result.range = {posed.low - in_output(tissue.low - whole.low), posed.high + in_output(whole.high - tissue.high)};
   }
   const glm::ivec3 size = result.range.high - result.range.low + 1;

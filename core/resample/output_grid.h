@@ -4,7 +4,7 @@
 // is dropped.
 #pragma once
 
-#include "core/deform/inverse_map.h"
+#include "core/deform/posed_tets.h"
 
 namespace limber {
 
@@ -14,7 +14,8 @@ struct OutputGrid {
 };
 
 // throws Error when the posed tissue needs an absurdly large grid
-OutputGrid output_grid(const PosedLattice& lattice, const RigidBones& bones);
+//   tets  carry part of the tissue, or nullptr
+OutputGrid output_grid(const PosedLattice& lattice, const RigidBones& bones, const PosedTets* tets = nullptr);
 
 // input spacing / output spacing; exactly 1 where they are equal
 glm::dvec3 spacing_ratio(const Grid& grid, double spacing);

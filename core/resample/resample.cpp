@@ -8,8 +8,10 @@
 
 #include "core/base/parallel.h"
 #include "core/deform/inverse_map.h"
+#include "core/resample/fem_shape.h"
 #include "core/resample/mend.h"
 #include "core/resample/output_grid.h"
+#include "core/resample/pose_path.h"
 #include "core/rig/bone_parts.h"
 
 namespace limber {
@@ -32,14 +34,6 @@ double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 Blend blend_of(const Method& method) {
   return std::holds_alternative<DualQuaternion>(method) ? Blend::DualQuaternion : Blend::Linear;
-}
-
-// The weights' bones may stand in another order than the rig's.
-std::vector<RigidTransform> bone_motions(const SkinWeights& weights, const Armature& armature, const Pose& pose) {
-  const std::vector<RigidTransform> posed = posed_from_rest(armature, pose);
-  std::vector<RigidTransform> motions;
-  for (const std::string& name : weights.bones()) motions.push_back(posed[require_bone(armature, name)]);
-  return motions;
 }
 
 // Whether two places of the body can come to lie in one voxel: not when every bone moves alike.
@@ -159,8 +153,9 @@ struct TileCounts {
 class Resampling {
  public:
   Resampling(const LabelVolume& volume, const LabelSets& labels, const PosedLattice& lattice, const RigidBones& bones,
-             const TissueDepth* depth, const ResampleSettings& settings, const OutputGrid& output, bool mends, Posed& posed)
-      : volume_(volume), labels_(labels), lattice_(lattice), bones_(bones), depth_(depth), settings_(settings),
+             const PosedTets* tets, const TissueDepth* depth, const ResampleSettings& settings, const OutputGrid& output, bool mends,
+             Posed& posed)
+      : volume_(volume), labels_(labels), lattice_(lattice), bones_(bones), tets_(tets), depth_(depth), settings_(settings),
         output_(output), mends_(mends), posed_(posed), sampler_(volume), world_from_rest_(world_from_voxel(volume.grid)) {
     posed.volume.grid = output.grid;
     const std::int64_t voxels = output.grid.voxel_count();
@@ -247,9 +242,12 @@ class Resampling {
     }
     for (std::int64_t p = 0; p < std::ssize(bones_.pieces()); ++p)
       if (meet(bones_.pieces()[p].posed, range)) pieces.push_back(p);
-    if (bricks.empty() && pieces.empty() && !settings_.grey) return false;
+    const bool has_tets = tets_ && tets_->reaches(range);
+    if (bricks.empty() && pieces.empty() && !has_tets && !settings_.grey) return false;
     map.reset(range);
-    rasterize_cells(map, lattice_, bricks, labels_.priority, depth_);
+    if (has_tets) tets_->rasterize(map, labels_.priority, depth_);
+    rasterize_cells(map, lattice_, bricks, labels_.priority, depth_, tets_ ? &tets_->instead_of() : nullptr);
+    if (has_tets) tets_->rasterize_riders(map, labels_.priority, depth_);
     bones_.paint(map, pieces, sampler_, settings_.nearest, depth_);
     return true;
   }
@@ -390,6 +388,7 @@ class Resampling {
   const LabelSets& labels_;
   const PosedLattice& lattice_;
   const RigidBones& bones_;
+  const PosedTets* tets_;
   const TissueDepth* depth_;
   const ResampleSettings& settings_;
   const OutputGrid& output_;
@@ -406,15 +405,23 @@ class Resampling {
 };
 
 // Cells that reach beyond the output grid.
-std::int64_t count_dropped(const PosedLattice& lattice, const VoxelRange& range) {
+std::int64_t count_dropped(const PosedLattice& lattice, const PosedTets* tets, const VoxelRange& range) {
   const FixedPoint low = range.low * kFixedOne - kFixedOne / 2, high = range.high * kFixedOne + kFixedOne / 2;
   std::int64_t dropped = 0;
   for (std::int64_t b = 0; b < std::ssize(lattice.tissue().bricks()); ++b) {
+    if (tets && tets->shares(b)) continue;  // the grid holds all of it (output_grid)
     const auto& box = lattice.bounds(b);
     if (glm::any(glm::lessThan(box.low, low - kFixedOne)) || glm::any(glm::greaterThan(box.high, high + kFixedOne)))
       dropped += lattice.tissue().bricks()[b].count();
   }
   return dropped;
+}
+
+void tell(const FemShape& shape, DeformReport& report) {
+  report.mesh = shape.mesh;
+  report.solve = shape.solve;
+  report.seconds_mesh = shape.seconds_mesh;
+  report.seconds_solve = shape.seconds_solve;
 }
 
 }  // namespace
@@ -424,27 +431,38 @@ Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Arma
   const Seconds seconds;
   const TissueVoxels tissue(volume);
   const LabelSets labels(tissues);
-  const auto motions = bone_motions(weights, armature, pose);
-  const SkinWeights rigid = with_rigid_bones(weights, volume, tissue, tissues, labels.bone, armature, progress);
+  auto motions = bone_motions(weights.bones(), armature, pose);
+  SkinWeights rigid = with_rigid_bones(weights, volume, tissue, tissues, labels.bone, armature, progress);
   const glm::dvec3 ratio = settings.spacing ? spacing_ratio(volume.grid, *settings.spacing) : glm::dvec3(1);
-
-  const PosedLattice lattice(volume, tissue, rigid, motions, blend_of(method), ratio, progress);
-  const RigidBones bones(lattice, rigid, labels.bone, motions);
-  const OutputGrid output = output_grid(lattice, bones);
-  std::optional<TissueDepth> depth;
-  if (can_fold(motions)) depth.emplace(tissue, volume.grid.spacing);
 
   Posed posed;
   DeformReport& report = posed.report;
+  if (const Fem* fem = std::get_if<Fem>(&method)) {
+    posed.shape = solve_shape(volume, tissue, tissues, labels.bone, rigid, armature, pose, *fem, progress);
+    if (posed.shape) {
+      motions = bone_motions(weights.bones(), armature, part_of_pose(pose, posed.shape->reached));
+      rigid = with_rigid_rest(rigid, tissue, posed.shape->moving);
+      tell(*posed.shape, report);
+    }
+  }
+
+  const PosedLattice lattice(volume, tissue, rigid, motions, blend_of(method), ratio, progress);
+  const RigidBones bones(lattice, rigid, labels.bone, motions);
+  std::optional<PosedTets> tets;
+  if (posed.shape) tets.emplace(posed.shape->model.fem.mesh, posed.shape->V, lattice, posed.shape->moving.meshed, progress);
+  const OutputGrid output = output_grid(lattice, bones, tets ? &*tets : nullptr);
+  std::optional<TissueDepth> depth;
+  if (can_fold(motions)) depth.emplace(tissue, volume.grid.spacing);
+
   report.tissue_voxels = tissue.size();
   report.overlap_by_label.assign(65536, 0);
   for (const std::string& name : weights.bones()) report.bones.push_back({name});
-  report.dropped_voxels = count_dropped(lattice, output.range);
-  report.seconds_deform = seconds();
+  report.dropped_voxels = count_dropped(lattice, tets ? &*tets : nullptr, output.range);
+  report.seconds_deform = seconds() - report.seconds_mesh.value_or(0) - report.seconds_solve.value_or(0);
 
   const Seconds rasterize_seconds;
   const bool mends = can_fold(motions) && !settings.nearest;
-  Resampling resampling(volume, labels, lattice, bones, depth ? &*depth : nullptr, settings, output, mends, posed);
+  Resampling resampling(volume, labels, lattice, bones, tets ? &*tets : nullptr, depth ? &*depth : nullptr, settings, output, mends, posed);
   resampling.run(progress);
   if (mends) resampling.mend_tears();
   std::erase_if(report.bones, [](const auto& bone) { return bone.voxels == 0; });

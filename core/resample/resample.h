@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The one entry from a pose to a posed label volume. Deformation is cells with rest and posed vertices (deform/lattice),
-// rasterized to the inverse map (deform/inverse_map); labels are then read from the rest volume, so there are no holes
+// The one entry from a pose to a posed label volume. Deformation is cells with rest and posed vertices (deform/lattice, and by
+// finite elements deform/posed_tets), rasterized to the inverse map (deform/inverse_map); labels are then read from the rest volume, so there are no holes
 // to fill and the rest pose gives back the input bit for bit. Bones are painted rigidly by every method.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -11,6 +12,7 @@
 
 #include "core/base/progress.h"
 #include "core/pose/pose.h"
+#include "core/resample/fem.h"
 #include "core/skin/skin_weights.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/volume_io.h"
@@ -19,7 +21,7 @@ namespace limber {
 
 struct LinearBlend {};
 struct DualQuaternion {};
-using Method = std::variant<LinearBlend, DualQuaternion>;
+using Method = std::variant<LinearBlend, DualQuaternion, Fem>;
 
 struct ResampleSettings {
   bool nearest = false;                 // labels by the nearest rest voxel instead of the largest interpolated membership; no mending
@@ -44,6 +46,9 @@ struct DeformReport {
     std::int64_t voxels = 0;              // posed bone tissue voxels of this rig bone
   };
   std::vector<BoneResidual> bones;        // those with bone tissue
+  std::optional<MeshReport> mesh;         // by finite elements, where anything bends
+  std::optional<SolveReport> solve;
+  std::optional<double> seconds_mesh, seconds_solve;
   double seconds_deform = 0, seconds_rasterize = 0;
 };
 
@@ -53,8 +58,10 @@ struct Posed {
   ZeroedVector<glm::vec3> displacement;  // posed - rest, mm, on the output grid; zero in air
   ZeroedVector<float> jacobian;          // on the output grid; zero in air
   GreyVolume grey;
+  std::shared_ptr<const FemShape> shape;  // by finite elements, where anything bends (fem_shape.h)
 };
 
+// By finite elements a pose that cannot be reached ends where report.solve says.
 Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
                const Pose& pose, const Method& method, const ResampleSettings& settings = {},
                Progress& progress = no_progress());

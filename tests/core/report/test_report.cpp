@@ -128,3 +128,39 @@ TEST_CASE("report: the command matches labels by their file values, whatever els
 
   CHECK(test::run_limber({"report", (folder / "before.nrrd").string(), (folder / "none.nrrd").string()}).exit_code == 1);
 }
+
+TEST_CASE("report: finite elements add mesh and solve under the schema's keys, labels as files call them; what was not measured is left out") {
+  Report report{.method = "fem", .metrics = compare(box_of(3, 8), box_of(3, 8), table_of(3, 143, "skin"))};
+  report.seconds.mesh = 1.25;
+  report.seconds.solve = 20.5;
+  DeformReport deform;
+  deform.mesh = MeshReport{.tets = 1000, .nodes = 300, .inverted = 0, .min_det_f = 0.125, .volume_change_percent = {{3, 0.02}}};
+  deform.solve = SolveReport{.converged = false, .reached = 0.75, .blocked_by = "bone Forearm", .steps = 6, .iterations = 30, .residual_mm = 0.25};
+  report.deform = deform;
+  json written = json::parse(to_json(report));
+  CHECK(written["seconds"]["mesh"] == 1.25);
+  CHECK(written["seconds"]["solve"] == 20.5);
+  const json& mesh = written["mesh"];
+  CHECK(mesh["tets"] == 1000);
+  CHECK(mesh["nodes"] == 300);
+  CHECK(mesh["inverted"] == 0);
+  CHECK(mesh["min_det_f"] == 0.125);
+  CHECK(mesh["volume_change_percent_by_label"]["143"] == 0.02);
+  for (const char* unmeasured : {"self_intersections", "min_gap_mm", "fallback"}) CHECK_FALSE(mesh.contains(unmeasured));
+  const json& solve = written["solve"];
+  CHECK(solve["converged"] == false);
+  CHECK(solve["reached"] == 0.75);
+  CHECK(solve["blocked_by"] == "bone Forearm");
+  CHECK(solve["steps"] == 6);
+  CHECK(solve["iterations"] == 30);
+  CHECK(solve["residual"] == 0.25);
+  std::ostringstream table;
+  print_report(table, report);
+  CHECK(table.str().find("NOT SOLVED, ended at 75.0 % of the pose") != std::string::npos);
+
+  report.deform->mesh->self_intersections = 0;
+  report.deform->mesh->min_gap_mm = 0.5;
+  written = json::parse(to_json(report));
+  CHECK(written["mesh"]["self_intersections"] == 0);
+  CHECK(written["mesh"]["min_gap_mm"] == 0.5);
+}

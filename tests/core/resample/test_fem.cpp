@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Posing by finite elements from a volume to a volume.
+#include "core/resample/fem_shape.h"
+
+#include <doctest/doctest.h>
+
+#include "core/base/parallel.h"
+#include "core/report/metrics.h"
+#include "core/resample/resample.h"
+#include "core/skin/heat_diffusion.h"
+#include "core/volume/phantom.h"
+#include "tests/support/bent_tube.h"
+
+using namespace limber;
+
+namespace {
+
+struct Arm {
+  Phantom phantom = make_arm_phantom(4);
+  SkinWeights weights = diffuse_heat(phantom.volume, phantom.tissues, phantom.armature);
+
+  Pose flexed(double degrees) const {
+    Pose pose = rest_pose(phantom.armature);
+    flex(pose, phantom.armature, require_bone(phantom.armature, "Forearm"), degrees);
+    return pose;
+  }
+  Posed posed(const Pose& pose, const Method& method, const ResampleSettings& settings = {}) const {
+    return resample(phantom.volume, phantom.tissues, phantom.armature, weights, pose, method, settings);
+  }
+};
+
+// In percent, of soft tissues of at least so many voxels.
+double summed_change(const VolumeMetrics& metrics, const TissueTable& tissues, std::int64_t voxels) {
+  double sum = 0;
+  for (const TissueChange& change : metrics.tissues)
+    if (change.voxels_before >= voxels && !is_bone(tissues.find(change.label)->kind)) sum += std::abs(change.volume_change_percent);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("fem: where nothing bends the volume comes back bit for bit, and a body that turns as a whole turns rigidly") {
+  for (const Grid& grid : {Grid{}, test::oblique_grid()}) {
+    const test::BentTube tube = test::bent_tube(grid);
+    const Posed rest = resample(tube.volume, tube.tissues, tube.rig, tube.weights, rest_pose(tube.rig), Fem{.contact = true});
+    CHECK(rest.volume.grid == tube.volume.grid);
+    CHECK(rest.volume.voxels == tube.volume.voxels);
+    CHECK(rest.shape == nullptr);
+    CHECK_FALSE(rest.report.mesh);
+    CHECK_FALSE(rest.report.solve);
+    Pose turned = rest_pose(tube.rig);
+    turned.rotation[0] = glm::angleAxis(0.5, glm::normalize(glm::dvec3(1, 2, 3)));
+    const Posed by_fem = resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, Fem{});
+    CHECK(by_fem.volume.voxels == resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, LinearBlend{}).volume.voxels);
+    CHECK_FALSE(by_fem.report.mesh);
+  }
+}
+
+TEST_CASE("fem: the bent arm keeps the volume of its tissues where dual quaternions lose it, its tets upright and its bones rigid") {
+  const Arm arm;
+  const Pose pose = arm.flexed(40);
+  const Posed by_fem = arm.posed(pose, Fem{.spacing_mm = 10}), by_dqs = arm.posed(pose, DualQuaternion{});
+  const DeformReport& report = by_fem.report;
+  REQUIRE(report.mesh);
+  REQUIRE(report.solve);
+  CHECK(report.solve->converged);
+  CHECK(report.solve->reached == 1);
+  CHECK(report.mesh->inverted == 0);
+  CHECK(report.mesh->min_det_f > 0);
+  CHECK(report.new_hole_voxels == 0);
+  CHECK(report.dropped_voxels == 0);
+  for (const auto& bone : report.bones) CHECK(bone.rigid_residual_mm < 0.01);
+
+  // By the mesh, all soft tissue: what keeps its volume is a patch of some eight tets, here of 10 mm, which spans several muscles.
+  double voxels = 0, gained = 0;
+  for (const Tissue& tissue : arm.phantom.tissues.tissues) {
+    const auto change = report.mesh->volume_change_percent.find(tissue.label);
+    if (is_bone(tissue.kind) || change == report.mesh->volume_change_percent.end()) continue;
+    const double count = double(std::count(arm.phantom.volume.voxels.begin(), arm.phantom.volume.voxels.end(), tissue.label));
+    voxels += count;
+    gained += count * change->second;
+  }
+  CHECK(std::abs(gained / voxels) < 0.5);
+
+  // By voxels.
+  const double fem = summed_change(compare(arm.phantom.volume, by_fem.volume, arm.phantom.tissues), arm.phantom.tissues, 1000);
+  const double dqs = summed_change(compare(arm.phantom.volume, by_dqs.volume, arm.phantom.tissues), arm.phantom.tissues, 1000);
+  INFO("summed change of volume, percent: fem ", fem, ", dual quaternions ", dqs);
+  CHECK(fem < 0.3 * dqs);
+}
+
+TEST_CASE("fem: the result is the same for 1 and 2 threads, bit for bit") {
+  const Arm arm;
+  std::vector<Posed> results;
+  for (int threads : {1, 2}) {
+    ThreadCount limit(threads);
+    results.push_back(arm.posed(arm.flexed(20), Fem{.quality = FemQuality::Draft}, {.displacement = true}));
+  }
+  REQUIRE(results[0].shape);
+  CHECK(results[0].shape->V == results[1].shape->V);
+  CHECK(results[0].volume.voxels == results[1].volume.voxels);
+  CHECK(results[0].displacement == results[1].displacement);
+}
+
+namespace {
+
+// A tube of 1 mm voxels, long enough to be folded onto itself.
+Posed folded(double degrees, const Fem& fem) {
+  const test::BentTube tube = test::bent_tube({}, 84);
+  return resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(degrees), fem);
+}
+
+}  // namespace
+
+TEST_CASE("fem: with contact two parts of a limb that meet share no voxels, without it they do, and each says how much") {
+  const Posed through = folded(120, {.spacing_mm = 4}), touching = folded(120, {.contact = true, .spacing_mm = 4});
+  for (const Posed* result : {&through, &touching}) {
+    CHECK(result->report.solve->converged);
+    CHECK(result->report.mesh->inverted == 0);
+    CHECK(result->report.new_hole_voxels == 0);
+    REQUIRE(result->report.mesh->self_intersections);
+  }
+  CHECK(through.report.overlap_voxels > 100);
+  CHECK(*through.report.mesh->self_intersections > 0);
+  CHECK(touching.report.overlap_voxels < 0.05 * through.report.overlap_voxels);
+  CHECK(*touching.report.mesh->self_intersections == 0);
+  REQUIRE(touching.report.mesh->min_gap_mm);
+  CHECK(*touching.report.mesh->min_gap_mm > 0);
+}
+
+TEST_CASE("fem: a pose out of reach ends at the last good place on the way, and says what stands in the way") {
+  const Posed result = folded(179, {.contact = true, .spacing_mm = 4});
+  REQUIRE(result.report.solve);
+  CHECK_FALSE(result.report.solve->converged);
+  CHECK(result.report.solve->reached > 0.3);
+  CHECK(result.report.solve->reached < 1);
+  CHECK_FALSE(result.report.solve->blocked_by.empty());
+  CHECK(result.report.mesh->inverted == 0);
+  CHECK(result.report.new_hole_voxels == 0);
+  CHECK(result.shape->reached == result.report.solve->reached);
+  for (const auto& bone : result.report.bones) CHECK(bone.rigid_residual_mm < 0.01);
+}
