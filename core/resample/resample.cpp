@@ -129,6 +129,12 @@ struct UnderSkin {
   Label skin;
 };
 
+// A posed voxel of skin that is covered itself.
+struct InnerSkin {
+  float depth;  // mm below air at rest
+  std::int64_t at;
+};
+
 // What one tile saw.
 struct TileCounts {
   VoxelRange range;
@@ -136,6 +142,7 @@ struct TileCounts {
   std::int64_t holes = 0, overlap = 0, bone_overlap = 0;
   std::vector<Label> lost;
   std::vector<UnderSkin> under_skin;
+  std::vector<InnerSkin> inner_skin;
   struct BoneCounts {
     std::int64_t voxels = 0;
     double residual_mm = 0;
@@ -207,7 +214,8 @@ class Resampling {
       fill(map, {output_.range.low + voxel, output_.range.low + voxel});
       return glm::dvec3(map.rest[0]);
     };
-    posed_.report.mended_voxels = std::ssize(bridges) + close_skin() +
+    const std::int64_t closed = close_skin();
+    posed_.report.mended_voxels = std::ssize(bridges) + closed + thin_skin(closed) +
                                   mend(posed_.volume, volume_, labels_.soft, rest_point, {&rows_, &rest_rows},
                                        {&bone_rows_, &bone_rest_rows});
   }
@@ -223,6 +231,31 @@ class Resampling {
       ++closed;
     }
     return closed;
+  }
+
+  // Where skin was closed it gained voxels, and elsewhere the grid laid some of it two voxels thick: the deepest of those go to
+  // the tissue that lies around them, as many as were gained.
+  std::int64_t thin_skin(std::int64_t most) {
+    std::sort(inner_skin_.begin(), inner_skin_.end(), [](const InnerSkin& a, const InnerSkin& b) { return a.depth != b.depth ? a.depth > b.depth : a.at < b.at; });
+    std::int64_t given = 0;
+    for (const InnerSkin& voxel : inner_skin_) {
+      if (given == most) break;
+      const glm::ivec3 v = voxel_at(output_.grid, voxel.at);
+      const Label below = tissue_under_skin(v);
+      if (below == 0 || !labels_.skin[posed_.volume.voxels[voxel.at]] || touches_air(posed_.volume, v) || !can_spare(posed_.volume, v)) continue;
+      posed_.volume.voxels[voxel.at] = below;
+      ++given;
+    }
+    return given;
+  }
+
+  // The soft tissue, not skin, that most of the 26 voxels around have; 0 when none is.
+  Label tissue_under_skin(const glm::ivec3& v) const {
+    std::map<Label, int> counts;
+    for (const glm::ivec3& step : neighbours())
+      if (const Label label = posed_.volume.at_or_air(v + step); label && labels_.soft[label] && !labels_.skin[label]) ++counts[label];
+    const auto most = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    return most == counts.end() ? Label{0} : most->first;
   }
 
   static bool meet(const VoxelRange& a, const VoxelRange& b) { return !intersect(a, b).empty(); }
@@ -280,6 +313,7 @@ class Resampling {
     if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
     if (mends_ && labels_.soft[label] && !labels_.skin[label] && may_touch_air(map, i, v))
       if (const Label skin = skin_over(map.rest[i])) counts.under_skin.push_back({at, skin});
+    if (mends_ && labels_.skin[label] && !may_touch_air(map, i, v)) counts.inner_skin.push_back({static_cast<float>((*depth_)(map.rest[i])), at});
     write_fields(map, i, v, at);
     count(map, i, v, label, counts);
     return map.bone[i] != InverseMap::kNoBone || labels_.bone[label];
@@ -378,6 +412,7 @@ class Resampling {
     report.bone_overlap_voxels += tile.bone_overlap;
     for (Label label : tile.lost) ++report.overlap_by_label[label];
     under_skin_.insert(under_skin_.end(), tile.under_skin.begin(), tile.under_skin.end());
+    inner_skin_.insert(inner_skin_.end(), tile.inner_skin.begin(), tile.inner_skin.end());
     for (const auto& [bone, seen] : tile.bones) {
       report.bones[bone].voxels += seen.voxels;
       report.bones[bone].rigid_residual_mm = std::max(report.bones[bone].rigid_residual_mm, seen.residual_mm);
@@ -396,6 +431,7 @@ class Resampling {
   Posed& posed_;
   const double skin_reach_ = kSkinReach * largest(volume_.grid.spacing);  // mm below air
   std::vector<UnderSkin> under_skin_;
+  std::vector<InnerSkin> inner_skin_;
   RowSet rows_, bone_rows_;  // of the output that hold tissue, and bone
   LabelVolume posed_bones_;  // 1 + the rig bone of each voxel that a bone paints
   LabelSampler sampler_;

@@ -72,6 +72,24 @@ TEST_CASE("resample: skin of one voxel stays closed over a bent limb, and bare t
     }
 }
 
+TEST_CASE("resample: closing the skin costs the tissue below it next to nothing, since what lies double elsewhere is given back") {
+  const test::BentTube tube = test::bent_tube({}, 84);
+  for (const Method& method : kMethods)
+    for (double degrees : {20.0, 40.0}) {
+      const auto skin_of = [&](const ResampleSettings& settings) {
+        const VolumeMetrics change = compare(tube.volume, posed(tube, tube.pose(degrees, 20), method, settings).volume, tube.tissues);
+        for (const TissueChange& tissue : change.tissues)
+          if (tissue.label == test::kSkin) return std::pair(tissue.volume_change_percent, change.skin_share_after);
+        return std::pair(0.0, 0.0);
+      };
+      const auto [mended, closed] = skin_of({});
+      const auto [unmended, open] = skin_of({.nearest = true});
+      INFO("at ", degrees, ": skin ", mended, " %, by nearest voxels ", unmended, " %");
+      CHECK(closed > open + 0.02);
+      CHECK(std::abs(mended - unmended) < 3);
+    }
+}
+
 TEST_CASE("resample: results are the same for 1, 2 and 4 threads, bit for bit") {
   const test::BentTube tube = test::bent_tube();
   for (const Method& method : kMethods) {
