@@ -13,7 +13,7 @@
 namespace limber {
 
 namespace {
-constexpr double kRigidStrain = 0.01;    // |F^T F - 1| up to which air counts as moving rigidly
+constexpr double kRigidStrain = 0.001;   // |F^T F - 1| up to which air counts as moving rigidly; with 0.01 skin slipped through it
 constexpr double kNoVolume = 1e-12;      // mm3, six times the volume
 
 using Edges = Eigen::Matrix3d;
@@ -35,7 +35,6 @@ double height(const Edges& D) {
 Eigen::MatrixX4i moving_air(const Eigen::MatrixX4i& air, const Places& x, const Places& next) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index t = 0; t < air.rows(); ++t) {
-    if (air.row(t).maxCoeff() >= x.rows()) continue;
     const Edges now = edges(x, air.row(t));
     if (!(now.determinant() > kNoVolume)) continue;
     const Eigen::Matrix3d F = edges(next, air.row(t)) * now.inverse();

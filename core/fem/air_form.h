@@ -22,8 +22,8 @@ struct AirSettings {
   double thinnest_mm = 0.05;  // a tet that is thinner at the start counts as this thin: its barrier is of its own volume
 };
 
-// Air tets that may meet resistance, as positions in x (the shape now) and `next` (the shape as it may become): without those
-// at the box (corners from #x on), those without volume, and those that only move as a rigid body.
+// Air tets that change their shape from x (the shape now) to `next` (the shape as it may become): not those that only move as a
+// rigid body, nor those without volume.
 Eigen::MatrixX4i moving_air(const Eigen::MatrixX4i& air, const Places& x, const Places& next);
 
 // Their energy, at rest at x.

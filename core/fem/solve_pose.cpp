@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/fem/air_form.h"
 #include "core/fem/newton.h"
+#include "core/mesh/crossings.h"
 #include "core/mesh/tetrahedralize.h"
 
 namespace limber {
@@ -38,6 +40,11 @@ void check(const FemModel& model, const Eigen::MatrixX3d* start) {
   if (start && count_inverted(model.mesh.T, *start)) throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
 }
 
+bool held_by_one(const FemModel& model, const Eigen::RowVector4i& tet) {
+  const int bone = model.held_by[tet[0]];
+  return bone >= 0 && std::all_of(tet.begin(), tet.end(), [&](int v) { return model.held_by[v] == bone; });
+}
+
 // What of the mesh deforms, what bones hold, and what they carry along. A tet that one bone holds at every node is rigid; it
 // deforms nevertheless where flesh pulls at one of its nodes, for there its node may give way.
 struct Parts {
@@ -50,13 +57,9 @@ struct Parts {
 
   explicit Parts(const FemModel& model) {
     const auto& T = model.mesh.T;
-    const auto held_by_one = [&](Eigen::Index t) {
-      const int bone = model.held_by[T(t, 0)];
-      return bone >= 0 && std::all_of(T.row(t).begin(), T.row(t).end(), [&](int v) { return model.held_by[v] == bone; });
-    };
     std::vector<char> in_flesh(model.mesh.V.rows(), 0), in_elastic(model.mesh.V.rows(), 0);
     for (Eigen::Index t = 0; t < T.rows(); ++t)
-      if (!held_by_one(t))
+      if (!held_by_one(model, T.row(t)))
         for (const int v : T.row(t)) in_flesh[v] = 1;
 
     in_joint.assign(model.mesh.V.rows(), 0);
@@ -73,7 +76,7 @@ struct Parts {
     std::vector<double> volume(model.mesh.V.rows(), 0);
     const Places rest = model.mesh.V;
     for (Eigen::Index t = 0; t < T.rows(); ++t) {
-      const bool one = held_by_one(t);
+      const bool one = held_by_one(model, T.row(t));
       if (one && std::none_of(T.row(t).begin(), T.row(t).end(), [&](int v) { return in_flesh[v]; })) {
         rigid_tet.push_back(t);
         continue;
@@ -111,10 +114,16 @@ class PoseSolve {
     const double regular = 1 / std::max(1.0, std::ceil(1 / whole - 1e-9));
     shortest_ = std::min(regular, settings_.shortest_step_degrees / std::max(largest_angle_degrees, 1e-9));
     if (at_rest()) result_.reached = 1;
-    while (result_.reached < 1) {
-      progress_.update("solving", result_.reached);
-      if (!step(result_.reached + regular > 1 - 1e-9 ? 1 : result_.reached + regular)) break;
+    advance(regular);
+    if (settings_.contact && result_.steps > 0 && crossings() > 0) {
+      // Air that could not be meshed, or was left out, let something through: the last two steps again, in smaller ones.
+      std::tie(result_.reached, x_) = former_.front();
+      air_is_of_now_ = false;
+      missed_.resize(0, 3);
+      ++result_.crossings_mended;
+      advance(0.5 * regular);
     }
+    if (settings_.contact) result_.crossings = crossings();
     result_.converged = result_.reached == 1;
     if (result_.converged) result_.blocked_by.clear();
     result_.V = x_;
@@ -126,6 +135,13 @@ class PoseSolve {
   FemSeconds& seconds() { return energy_.seconds(); }
 
  private:
+  void advance(double length) {
+    while (result_.reached < 1) {
+      progress_.update("solving", result_.reached);
+      if (!step(result_.reached + length > 1 - 1e-9 ? 1 : result_.reached + length)) break;
+    }
+  }
+  std::int64_t crossings() const { return std::ssize(crossing_pairs(x_, skin_)); }
   bool at_rest() const;
   bool step(double to);
   bool part(double from, double to, Places& x);
@@ -151,9 +167,10 @@ class PoseSolve {
   const Places rest_;
   Places x_;
   Eigen::MatrixX3i skin_;  // with contact
-  Eigen::MatrixX4i air_;   // around the skin at `reached`, corners from #V on at the box
+  Eigen::MatrixX4i air_;   // around the skin at `reached`, without what is at the box or over one bone
   bool air_is_of_now_ = false;
   double shortest_ = 0;    // step, of the path
+  std::vector<std::pair<double, Places>> former_;  // where the last two steps began
   Places missed_;          // how far the last guess was off, #V, or empty,
   double missed_way_ = 1;  // of so much of the path
   FemEnergy energy_;
@@ -206,7 +223,11 @@ bool PoseSolve::mesh_air(const Places& next) {
       if (air_.rows() == 0) result_.blocked_by = "the air around the skin cannot be meshed: " + air.failure;
       return air_.rows() > 0;
     }
-    air_ = *air.T;
+    // Air over one bone's own surface goes with the bone.
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index t = 0; t < air.T->rows(); ++t)
+      if (air.T->row(t).maxCoeff() < x_.rows() && !held_by_one(model_, air.T->row(t))) kept.push_back(t);
+    air_ = (*air.T)(kept, Eigen::all);
     air_is_of_now_ = true;
   }
   const Eigen::MatrixX4i moving = moving_air(air_, x_, next);
@@ -346,6 +367,7 @@ bool PoseSolve::part(double from, double to, Places& x) {
 // As far towards `to` as one air mesh goes, in as few parts as can be. False when not even the shortest part can be done.
 bool PoseSolve::step(double to) {
   if (settings_.contact && !mesh_air(x_ + blend_increment(path_(result_.reached), path_(to), x_, true))) return false;
+  const Places start = x_;
   double from = result_.reached, way = to - from;
   while (from < to) {
     const double next = way < 0.999 * (to - from) ? from + way : to;
@@ -360,6 +382,8 @@ bool PoseSolve::step(double to) {
   }
   if (from == result_.reached) return false;
 
+  if (former_.size() == 2) former_.erase(former_.begin());
+  former_.emplace_back(result_.reached, start);
   result_.min_air_det_f = std::min(result_.min_air_det_f, energy_.min_air_ratio(x_));
   air_is_of_now_ = false;
   result_.reached = from;

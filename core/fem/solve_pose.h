@@ -35,11 +35,11 @@ using BonePath = std::function<std::vector<RigidTransform>(double t)>;
 
 struct SolveSettings {
   bool contact = false;
-  double step_degrees = 7.5;        // of the joint that turns furthest
+  double step_degrees = 7.5;        // of the joint that turns furthest; with contact the air is meshed anew that often
   double step_tolerance_mm = 4;     // a step before the last ends when no node would move further than this
   double tolerance_mm = 0.3;        // the last one
-  int step_iterations = 40;         // a step that needs more is tried again at half its length
-  double shortest_step_degrees = 0.9;  // shorter ones are not tried: the pose is out of reach
+  int step_iterations = 40;         // a step that needs more is done in parts: half of it, a quarter, ...
+  double shortest_step_degrees = 0.9;  // much shorter parts are not tried: the pose is out of reach
   double bone_drift_mm = 2;         // a step that bends a bone's nodes further than this from the bone is out of reach too
 };
 
@@ -63,7 +63,8 @@ struct SolvedPose {
   double min_air_det_f = 1;  // of air tets that hold against contact, against their shape at the start of the step; of all steps
   double bone_drift_mm = 0;  // furthest that a bone's node is from where its bone is, at the end
   std::int64_t inverted = 0;  // tets with det F <= 0 at the end of any step, flesh, bone and air
-  int crossings_mended = 0;  // times that skin was found crossing and the last two steps were done again at half the angle
+  std::int64_t crossings = 0;  // with contact: pairs of the border's triangles that cross, at the end
+  int crossings_mended = 0;  // times that some were found and the last two steps were done again at half the angle
   int air_meshes_kept = 0;   // times that the air could not be meshed and the former air went on
   FemSeconds seconds;
 };

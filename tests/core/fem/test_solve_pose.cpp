@@ -88,6 +88,7 @@ TEST_CASE("solve pose: without contact the skin passes through itself, with cont
   CHECK(with.inverted == 0);
   CHECK(with.min_air_det_f > 0);
   CHECK(with.air_meshes_kept == 0);
+  CHECK(with.crossings == 0);
   CHECK(skin_crossings(bar.fem.mesh, with.V) == 0);
   CHECK(furthest_from_target(bar.fem, bar.bend(125)(1), with.V) < 0.5);
 }
