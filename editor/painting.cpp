@@ -185,12 +185,12 @@ void show_stroke(Editor& editor, Painting::Running& running) {
   if (dirty.empty()) return;
   if (const WeightLayers* layers = running.edited.layers.get()) {
     for (const int brick : dirty) {
-      const SkinWeights::Chunk& is = running.stroke->chunk(brick);
+      const SkinWeights::Influences is = running.stroke->chunk(brick);
       const auto& layer = running.edited.layer;
       const auto came_out = [&] {
         if (!layer) return composed_over_base(*layers, brick, is);
         if (running.of == Painting::Running::Of::Mask) return composed_while_masked(*layers, *layer, brick, is);
-        const SkinWeights::Chunk& was = running.before->chunk(brick);
+        const SkinWeights::Influences was = running.before->chunk(brick);
         return running.of == Painting::Running::Of::Shares ? composed_while_shared(*layers, *layer, brick, was, is) : composed_while_painted(*layers, *layer, brick, was, is);
       };
       running.shown->set_chunk(brick, came_out());

@@ -82,8 +82,9 @@ class Gather {
     tissue_.for_each(brick_index, brick_index + 1, [&](std::int64_t, const glm::ivec3& voxel) {
       const glm::ivec3 v = voxel - brick.corner;
       const int piece = piece_of_[v.x + 8 * v.y + 64 * v.z];
-      add(*influence, piece, (glm::dvec3(v % step_) + 0.5) / double(step_));
-      add(*influence++, pieces[first + piece], v % step_);
+      const Influence follows = *influence++;
+      add(follows, piece, (glm::dvec3(v % step_) + 0.5) / double(step_));
+      add(follows, pieces[first + piece], v % step_);
     });
     for (std::int64_t piece = 0; piece < count_; ++piece)
       for (size_t slot = 0; slot < bones_.size(); ++slot)

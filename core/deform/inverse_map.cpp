@@ -201,7 +201,7 @@ void RigidBones::find_pieces() {
     std::map<int, VoxelRange> ranges;
     auto influence = weights_->chunk(brick).begin();
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
-      const int bone = (influence++)->bone[0];
+      const int bone = (*influence++).bone[0];
       if (!(*is_bone_)[volume.at(v)]) return;
       auto [range, is_new] = ranges.try_emplace(bone, VoxelRange{v, v});
       range->second = {glm::min(range->second.low, v), glm::max(range->second.high, v)};
@@ -255,7 +255,7 @@ LabelVolume RigidBones::numbered() const {
     last = piece.brick;
     auto influence = weights_->chunk(last).begin();
     tissue.for_each(last, last + 1, [&](std::int64_t, const glm::ivec3& v) {
-      if ((*is_bone_)[volume.at(v)]) result.at(v) = static_cast<Label>(influence->bone[0] + 1);
+      if ((*is_bone_)[volume.at(v)]) result.at(v) = static_cast<Label>((*influence).bone[0] + 1);
       ++influence;
     });
   }

@@ -201,7 +201,7 @@ SkinWeights with_rigid_rest(const SkinWeights& weights, const TissueVoxels& tiss
   for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
     const TissueVoxels::Brick& cells = tissue.bricks()[brick];
     if (moving.free[brick] == cells.mask) continue;
-    SkinWeights::Chunk chunk = weights.chunk(brick);
+    SkinWeights::Influences chunk = weights.chunk(brick);
     auto influence = chunk.begin();
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
       const glm::ivec3 v = voxel - cells.corner;

@@ -65,7 +65,7 @@ bool is_in(const TissueMask& mask, const TissueVoxels& tissue, const glm::ivec3&
   return brick >= 0 && (mask[brick][v.z & 7] >> ((v.x & 7) + 8 * (v.y & 7)) & 1);
 }
 
-const Influence& influence_at(const SkinWeights& weights, const TissueVoxels& tissue, const glm::ivec3& v) {
+Influence influence_at(const SkinWeights& weights, const TissueVoxels& tissue, const glm::ivec3& v) {
   const int brick = tissue.brick_at(v);
   return weights.chunk(brick)[tissue.index_of(v) - tissue.bricks()[brick].first];
 }
@@ -78,7 +78,7 @@ std::vector<BoneWeight> influences_around(const SkinWeights& weights, const Labe
   for (int i = 0; i < 27; ++i) {
     const glm::ivec3 v = voxel + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
     if (volume.at_or_air(v) == 0) continue;
-    const Influence& influence = influence_at(weights, tissue, v);
+    const Influence influence = influence_at(weights, tissue, v);
     for (int k = 0; k < 4 && influence.weight[k]; ++k) sums[moves_as[influence.bone[k]]] += influence.weight[k];
     total += kFullWeight;
   }
@@ -236,7 +236,7 @@ LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissu
   for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
     auto influence = weights.chunk(brick).begin();
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
-      const int bone = (influence++)->bone[0];
+      const int bone = (*influence++).bone[0];
       if (is_in(moving.meshed, tissue, v)) regions.at(v) = is_bone[volume.at(v)] ? static_cast<Label>(2 + moving.moves_as[bone]) : Label{1};
     });
   }

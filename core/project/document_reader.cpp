@@ -437,7 +437,7 @@ class Reading {
                                      [](const auto& brick, std::uint16_t count) { return brick->size() == count; });
       if (!shared || known.empty()) known = read_group(leaf, counts, in);
       for (const auto& brick : known)
-        for (const Influence& influence : *brick)
+        for (const Influence influence : *brick)
           for (int k = 0; k < 4; ++k) in.require(influence.bone[k] < std::max<std::size_t>(1, bones.size()));
       chunks.insert(chunks.end(), known.begin(), known.end());
     });
@@ -456,7 +456,7 @@ class Reading {
     std::vector<std::shared_ptr<const SkinWeights::Chunk>> bricks;
     std::size_t place = 0;
     for (std::uint16_t length : counts) {
-      SkinWeights::Chunk brick(length);
+      SkinWeights::Influences brick(length);
       for (Influence& influence : brick) {
         int sum = 0;
         for (std::size_t k = 0; k < 4; ++k) {
@@ -467,7 +467,7 @@ class Reading {
         in.require(sum == kFullWeight);
         ++place;
       }
-      bricks.push_back(std::make_shared<const SkinWeights::Chunk>(std::move(brick)));
+      bricks.push_back(std::make_shared<const SkinWeights::Chunk>(brick));
     }
     return bricks;
   }

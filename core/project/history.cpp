@@ -38,7 +38,7 @@ std::int64_t own_bytes(const SkinWeights& weights) {  // without its chunks, whi
   for (const std::string& bone : weights.bones()) bytes += heap_bytes(bone) + std::int64_t{sizeof bone};
   return bytes;
 }
-std::int64_t own_bytes(const SkinWeights::Chunk& chunk) { return heap_bytes(chunk); }
+std::int64_t own_bytes(const SkinWeights::Chunk& chunk) { return chunk.heap_bytes() + kBlock; }
 std::int64_t own_bytes(const Pose& pose) { return heap_bytes(pose.rotation); }
 std::int64_t own_bytes(const Motion& motion) {
   std::int64_t bytes = heap_bytes(motion.joints) + heap_bytes(motion.values) + heap_bytes(motion.warnings);

@@ -66,7 +66,7 @@ SkinWeights with_rigid_bones(const SkinWeights& weights, const LabelVolume& volu
     bool rigid = true;
     auto influence = weights.chunk(brick).begin();
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
-      rigid &= (influence++)->weight[0] == kFullWeight || !is_bone[volume.at(v)];
+      rigid &= (*influence++).weight[0] == kFullWeight || !is_bone[volume.at(v)];
     });
     return rigid;
   };
@@ -82,7 +82,7 @@ SkinWeights with_rigid_bones(const SkinWeights& weights, const LabelVolume& volu
   }
   SkinWeights rigid = weights;
   for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
-    SkinWeights::Chunk chunk = weights.chunk(brick);
+    SkinWeights::Influences chunk = weights.chunk(brick);
     auto influence = chunk.begin();
     tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
       Influence& mine = *influence++;

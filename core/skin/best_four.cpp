@@ -54,7 +54,7 @@ SkinWeights BestFour::weights(std::vector<std::string> bone_names, const TissueV
   SkinWeights weights(std::move(bone_names), tissue);
   for (std::int64_t b = 0; b < std::ssize(tissue.bricks()); ++b) {
     const auto& brick = tissue.bricks()[b];
-    SkinWeights::Chunk chunk(best_.begin() + brick.first, best_.begin() + brick.first + brick.count());
+    SkinWeights::Influences chunk(best_.begin() + brick.first, best_.begin() + brick.first + brick.count());
     for (Influence& influence : chunk) influence = normalized(influence);
     weights.set_chunk(b, std::move(chunk));
   }

@@ -14,11 +14,16 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 // How far beside the tissue a dab may be set down, voxels.
 constexpr int kMostBeside = 2;
 
-// Few machines are built for without an instruction for it, but ours must run on those.
+// Few machines are built for without an instruction for it, but ours must run on those. (Added up by shifts: compilers know the
+// multiplication at the end for what it is, and call a function.)
 int bit_count(std::uint64_t word) {
   word -= word >> 1 & 0x5555555555555555u;
   word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
-  return static_cast<int>(((word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
+  word = (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  word += word >> 32;
+  word += word >> 16;
+  word += word >> 8;
+  return static_cast<int>(word & 0x7f);
 }
 
 std::uint64_t reversed(std::uint64_t word) {
@@ -597,6 +602,17 @@ void BrushReach::emit(int index, const Mask& touched, const Mask* far) {
     const std::uint64_t all = brick.mask[z], word = touched[z];
     if (!word) {
       place += bit_count(all);
+      continue;
+    }
+    if (word == ~std::uint64_t{0} && !(far && (*far)[z])) {
+      for (int i = 0; i < kBrick * kBrick; ++i) {
+        at[count + i] = static_cast<std::uint16_t>(place + i);
+        cell[count + i] = static_cast<std::uint16_t>(64 * z + i);
+      }
+      for (int y = 0; y < kBrick; ++y)
+        for (int x = 0; x < kBrick; ++x) distance[count + kBrick * y + x] = x_squared[x] + (y_squared[y] + z_squared[z]);
+      count += kBrick * kBrick;
+      place += kBrick * kBrick;
       continue;
     }
     for (int y = 0; y < kBrick; ++y) {

@@ -35,14 +35,14 @@ std::optional<SkinWeights> carried(const SkinWeights& weights, const std::vector
       chunks.push_back(weights.shared_chunk(brick));
       continue;
     }
-    auto chunk = std::make_shared<SkinWeights::Chunk>();
-    chunk->reserve(weights.chunk(brick).size());
+    SkinWeights::Influences made;
+    made.reserve(weights.chunk(brick).size());
     for (const Influence& influence : weights.chunk(brick)) {
       const auto next = carried(influence, to);
       if (!next) return std::nullopt;
-      chunk->push_back(*next);
+      made.push_back(*next);
     }
-    chunks.push_back(std::move(chunk));
+    chunks.push_back(std::make_shared<const SkinWeights::Chunk>(made));
   }
   return SkinWeights(names, std::move(chunks));
 }

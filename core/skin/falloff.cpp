@@ -41,6 +41,15 @@ std::vector<double> slopes(std::span<const glm::dvec2> points) {
   return slope;
 }
 
+void find_covers(const float* table, int steps, const float* distance, int count, float per_radius, float strength, std::uint16_t* covers) {
+  for (int i = 0; i < count; ++i) {
+    const float share = std::min(distance[i] * per_radius, 1.0f), at = share * static_cast<float>(steps);
+    const int step = std::min(static_cast<int>(at), steps - 1);
+    const float cover = table[step] + (at - static_cast<float>(step)) * (table[step + 1] - table[step]);
+    covers[i] = static_cast<std::uint16_t>(static_cast<int>(strength * cover * 65535 + 0.5f));
+  }
+}
+
 }  // namespace
 
 Falloff::Falloff(FalloffShape shape) {
@@ -68,6 +77,10 @@ Falloff::Falloff(std::span<const glm::dvec2> points) {
     }
     table_[i] = static_cast<float>(std::clamp(y, 0.0, 1.0));
   }
+}
+
+void Falloff::covers(const float* distance, int count, float per_radius, float strength, std::uint16_t* covers) const {
+  find_covers(table_.data(), kSteps, distance, count, per_radius, strength, covers);
 }
 
 }  // namespace limber

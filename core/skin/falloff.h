@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include <glm/glm.hpp>
@@ -24,6 +25,9 @@ class Falloff {
     const int step = at < kSteps - 1 ? static_cast<int>(at) : kSteps - 1;
     return table_[step] + (at - static_cast<float>(step)) * (table_[step + 1] - table_[step]);
   }
+  // Of many distances at once: strength times the falloff of distance * per_radius (1 and more: the rim), in 1/65535, rounded.
+  //   distance, covers  #count each
+  void covers(const float* distance, int count, float per_radius, float strength, std::uint16_t* covers) const;
   bool operator==(const Falloff&) const = default;
 
  private:

@@ -25,7 +25,7 @@ class Sampler {
       double weight = 1;
       for (int axis = 0; axis < 3; ++axis) weight *= bits[axis] ? share[axis] : 1 - share[axis];
       if (weight <= 0 || !volume_.grid.contains(v) || tissue_.index_of(v) < 0) continue;
-      const Influence& influence = of(v);
+      const Influence influence = of(v);
       for (int i = 0; i < 4; ++i)
         if (influence.weight[i]) add(bones, influence.bone[i], weight * influence.weight[i]);
       if (weight > most) most = weight, label = volume_.voxels[volume_.grid.index(v)];
@@ -42,7 +42,7 @@ class Sampler {
     else bones.emplace_back(bone, weight);
   }
 
-  const Influence& of(const glm::ivec3& v) const {
+  Influence of(const glm::ivec3& v) const {
     const int brick = tissue_.brick_at(v);
     return weights_.chunk(brick)[tissue_.index_of(v) - tissue_.bricks()[brick].first];
   }

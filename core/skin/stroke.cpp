@@ -5,9 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 
 #include "core/base/error.h"
@@ -39,29 +37,41 @@ class Stroke::Work {
   void to(const glm::dvec3& point, double pressure);
   void lift();
   void dab(const glm::dvec3& centre, double pressure);
-  const SkinWeights::Chunk& chunk(std::int64_t brick) const {
+  InfluenceView view(std::int64_t brick) const {
     const int slot = slot_of_[brick];
     return slot < 0 ? weights_->chunk(brick) : now_of(bricks_[slot]);
   }
+  SkinWeights::Influences chunk(std::int64_t brick) {
+    paint_waiting();
+    const int slot = slot_of_[brick];
+    if (slot >= 0 && !bricks_[slot].now.empty()) return bricks_[slot].now;
+    return slot >= 0 && bricks_[slot].shown ? shown_.chunk(brick) : weights_->chunk(brick);
+  }
   const SkinWeights& original() const { return *weights_; }
   std::vector<int> take_dirty();
-  bool empty() const;
+  bool empty();
   const SkinWeights& weights();
   SkinWeights finish();
   std::int64_t memory_bytes() const;
 
+  const std::vector<std::int64_t>& blocked_by() {
+    paint_waiting();
+    return blocked_;
+  }
+
   int dab_count = 0;
-  std::vector<std::int64_t> blocked;  // #bones
 
  private:
   // A brick that the stroke came to.
   struct Brick {
-    int brick;
-    SkinWeights::Chunk now;  // as it is now, where shown_ has it as it was; else empty
+    int brick = 0;
+    SkinWeights::Influences now;  // as it is now, where shown_ has it as it was; else empty
     // #chunk: the most any dab has covered each voxel so far, in 1/65535, for either side; empty where dabs accumulate.
     std::array<std::vector<std::uint16_t>, 2> cover;
     bool dirty = false;
     bool shown = false;  // shown_ has it
+    bool waits = false;
+    std::array<std::uint64_t, 8> waiting{};  // a bit per voxel that is covered more than when it was painted last
     std::vector<std::uint64_t> blocked;  // a bit per voxel that a lock kept from changing; empty until there is one
   };
   // What is painted on one side of the body.
@@ -84,11 +94,17 @@ class Stroke::Work {
   Side side_of(std::vector<int> bones) const;
   void find_nearby(const Reached& reached);
   void dab_side(int side, const glm::dvec3& centre, double strength);
-  const SkinWeights::Chunk& now_of(const Brick& brick) const {
-    return !brick.now.empty() ? brick.now : brick.shown ? shown_.chunk(brick.brick) : weights_->chunk(brick.brick);
+  InfluenceView now_of(const Brick& brick) const {
+    if (!brick.now.empty()) return brick.now;
+    return brick.shown ? shown_.chunk(brick.brick) : weights_->chunk(brick.brick);
   }
+  SkinWeights::Influences& unpacked(Brick& brick) const;
   void touch(const Reached& reached, int plane);
+  void cover_plainly(const Reached& reached, const Reached::Brick& part, float strength);
+  void paint_waiting();
   void paint_plainly(const Reached& reached, const Reached::Brick& part, int side, float strength, Blocked& blocked);
+  void paint_plainly(Influence& influence, int bone, int covered, Brick& brick, int at, Blocked& blocked) const;
+  void count_blocked(const std::vector<Blocked>& blocked_in);
   void put(Brick& brick, int at, const Influence& made) const;
   bool differs(const Brick& brick) const;
   void paint_brick(const Reached& reached, const Reached::Brick& part, int side, float strength, Influence* next, Blocked& blocked);
@@ -96,7 +112,7 @@ class Stroke::Work {
   bool looks_around() const { return brush_.kind >= BrushKind::Smooth && brush_.kind <= BrushKind::Smear; }
 
   // Of the weights that this dab starts from.
-  const SkinWeights::Chunk& source(int brick) const { return accumulate_ ? chunk(brick) : weights_->chunk(brick); }
+  InfluenceView source(int brick) const { return accumulate_ ? view(brick) : weights_->chunk(brick); }
   bool target_at(const Side& side, const glm::ivec3& voxel, const std::optional<WeightsAround>& views, const Influence& own,
                  Target& target) const;
   void smeared(const Side& side, const glm::ivec3& voxel, Target& target) const;
@@ -115,6 +131,7 @@ class Stroke::Work {
   BoneSet locked_;
   Normalize normalize_;
   bool ready_ = false;
+  std::vector<std::int64_t> blocked_;  // #bones
 
   std::vector<std::int32_t> slot_of_;  // #bricks, -1: not touched
   std::vector<Brick> bricks_;
@@ -172,7 +189,7 @@ Stroke::Work::Work(const StrokeBody& body, std::shared_ptr<const SkinWeights> we
   const auto in_rig = [&](int bone) { return bone >= 0 && bone < std::ssize(body.armature.bones); };
   if (settings.bones.empty() || !std::all_of(settings.bones.begin(), settings.bones.end(), in_rig))
     throw std::logic_error("Stroke: no bone of the rig");
-  blocked.assign(body.armature.bones.size(), 0);
+  blocked_.assign(body.armature.bones.size(), 0);
   slot_of_.assign(body.tissue.bricks().size(), -1);
   sides_[0] = side_of(settings.bones);
   if (mirror_) {
@@ -269,7 +286,7 @@ void Stroke::Work::touch(const Reached& reached, int plane) {
     std::int32_t& slot = slot_of_[part.brick];
     if (slot < 0) {
       slot = static_cast<std::int32_t>(bricks_.size());
-      bricks_.push_back({part.brick, {}, {}, false, false, {}});
+      bricks_.emplace_back().brick = part.brick;
     }
     auto& cover = bricks_[slot].cover[plane];
     if (!accumulate_ && cover.empty()) cover.assign(weights_->chunk(part.brick).size(), 0);
@@ -286,6 +303,10 @@ void Stroke::Work::dab_side(int side, const glm::dvec3& centre, double strength)
   // What looks around must not see what this dab does.
   const bool keep = looks_around() && accumulate_;
   const bool plain = brush_.kind <= BrushKind::Multiply && sides_[side].bones.size() == 1 && (!mirror_ || same_bones_ || accumulate_) && !relative_to_locks_;
+  if (plain && !accumulate_) {
+    for (const Reached::Brick& part : reached.bricks) cover_plainly(reached, part, static_cast<float>(strength));
+    return;
+  }
   if (keep) next_.resize(reached.size());
 
   const std::int64_t count = std::ssize(reached.bricks), grain = count <= 2 * kBricksAtOnce ? count : kBricksAtOnce;
@@ -303,68 +324,118 @@ void Stroke::Work::dab_side(int side, const glm::dvec3& centre, double strength)
     for (const Reached::Brick& part : reached.bricks) {
       Brick& brick = bricks_[slot_of_[part.brick]];
       for (int i = part.begin; i < part.end; ++i) {
-        if (!equal(next_[i], chunk(part.brick)[reached.at[i]])) put(brick, reached.at[i], next_[i]);
+        if (!equal(next_[i], view(part.brick)[reached.at[i]])) put(brick, reached.at[i], next_[i]);
       }
     }
+  count_blocked(blocked_in);
+}
+
+void Stroke::Work::count_blocked(const std::vector<Blocked>& blocked_in) {
   for (const Blocked& some : blocked_in)
-    for (const auto& [bone, times] : some.by) blocked[bone] += times;
+    for (const auto& [bone, times] : some.by) blocked_[bone] += times;
+}
+
+SkinWeights::Influences& Stroke::Work::unpacked(Brick& brick) const {
+  if (brick.now.empty()) brick.now = brick.shown ? shown_.chunk(brick.brick) : weights_->chunk(brick.brick);
+  return brick.now;
 }
 
 void Stroke::Work::put(Brick& brick, int at, const Influence& made) const {
-  if (brick.now.empty()) brick.now = now_of(brick);
-  Influence& now = brick.now[at];
+  Influence& now = unpacked(brick)[at];
   // By halves, as they were written: the whole would have to wait for both.
   now.bone = made.bone;
   now.weight = made.weight;
   brick.dirty = true;
 }
 
-// By far the most frequent brushes: one bone, and nothing to look at but the voxel itself. Covers are found for the whole brick
-// first, so that most voxels are done with one comparison.
+// By far the most frequent brushes: one bone, and nothing to look at but the voxel itself. What comes out hangs on the most that
+// any dab has covered a voxel, so a dab only notes that, and voxels are painted when they are looked at, once for all dabs.
+void Stroke::Work::cover_plainly(const Reached& reached, const Reached::Brick& part, float strength) {
+  Brick& brick = bricks_[slot_of_[part.brick]];
+  const int count = part.end - part.begin;
+  std::array<std::uint16_t, kBrick * kBrick * kBrick> covers;
+  brush_.falloff.covers(reached.distance.data() + part.begin, count, static_cast<float>(1 / brush_.radius), strength, covers.data());
+  const std::uint16_t* places = reached.at.data() + part.begin;
+  std::uint16_t* most = brick.cover[0].data();
+  std::uint64_t grown = 0, any = 0;
+  int word = places[0] / 64;
+  for (int i = 0; i < count; ++i) {
+    const int at = places[i];
+    if (at / 64 != word) {
+      brick.waiting[word] |= grown;
+      any |= grown;
+      grown = 0;
+      word = at / 64;
+    }
+    const std::uint16_t before = most[at];
+    grown |= std::uint64_t{covers[i] > before} << (at % 64);
+    most[at] = std::max(covers[i], before);
+  }
+  brick.waiting[word] |= grown;
+  brick.waits = brick.waits || any || grown;
+}
+
+void Stroke::Work::paint_waiting() {
+  std::vector<Brick*> waiting;
+  for (Brick& brick : bricks_)
+    if (brick.waits) waiting.push_back(&brick);
+  const std::int64_t count = std::ssize(waiting), grain = count <= 2 * kBricksAtOnce ? std::max<std::int64_t>(count, 1) : kBricksAtOnce;
+  std::vector<Blocked> blocked_in((count + grain - 1) / grain);
+  parallel_for(count, grain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto b = begin; b < end; ++b) {
+      Brick& brick = *waiting[b];
+      const SkinWeights::Chunk& original = weights_->chunk(brick.brick);
+      InfluenceView now = now_of(brick);
+      for (int word = 0; word < std::ssize(brick.waiting); ++word)
+        for (std::uint64_t bits = std::exchange(brick.waiting[word], 0); bits; bits &= bits - 1) {
+          const int at = 64 * word + std::countr_zero(bits);
+          Influence made = original[at];
+          paint_plainly(made, sides_[0].bones[0], brick.cover[0][at], brick, at, blocked_in[begin / grain]);
+          if (equal(made, now[at])) continue;
+          put(brick, at, made);
+          now = brick.now;
+        }
+      brick.waits = false;
+    }
+  });
+  count_blocked(blocked_in);
+}
+
+// Where dabs accumulate.
 void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& part, int side, float strength, Blocked& blocked_here) {
   Brick& brick = bricks_[slot_of_[part.brick]];
-  const SkinWeights::Chunk& original = weights_->chunk(part.brick);
-  const int bone = sides_[side].bones[0], count = part.end - part.begin;
-  const float per_radius = static_cast<float>(1 / brush_.radius);
+  const int count = part.end - part.begin;
   std::array<std::uint16_t, kBrick * kBrick * kBrick> covers;
+  brush_.falloff.covers(reached.distance.data() + part.begin, count, static_cast<float>(1 / brush_.radius), strength, covers.data());
+  InfluenceView now = now_of(brick);
   for (int i = 0; i < count; ++i) {
-    const float share = std::min(reached.distance[part.begin + i] * per_radius, 1.0f);
-    covers[i] = static_cast<std::uint16_t>(static_cast<int>(strength * brush_.falloff(share) * kFullWeight + 0.5f));
-  }
-  std::uint16_t* most = accumulate_ ? nullptr : brick.cover[0].data();
-  // to = before * factor + added, at full cover
-  const double factor = brush_.kind == BrushKind::Set ? 0 : brush_.kind == BrushKind::Multiply ? brush_.value : 1;
-  double added = 0;
-  if (brush_.kind == BrushKind::Set) added = brush_.value * kFullWeight;
-  if (brush_.kind == BrushKind::Add) added = kFullWeight;
-  if (brush_.kind == BrushKind::Subtract) added = -kFullWeight;
-  // Those that are covered more than before, told without a jump.
-  std::array<std::uint16_t, kBrick * kBrick * kBrick> more;
-  int more_count = 0;
-  for (int i = 0; i < count; ++i) {
-    const std::uint16_t covered = covers[i], before = most ? most[reached.at[part.begin + i]] : 0;
-    more[more_count] = static_cast<std::uint16_t>(i);
-    more_count += covered > before;
-    if (most) most[reached.at[part.begin + i]] = std::max(covered, before);
-  }
-  const Influence *first = original.data(), *now = now_of(brick).data();
-  for (int m = 0; m < more_count; ++m) {
-    const int at = reached.at[part.begin + more[m]], covered = covers[more[m]];
-    Influence made = accumulate_ ? now[at] : first[at];
-    int before = 0;
-    for (int k = 0; k < 4; ++k) before += made.bone[k] == bone ? made.weight[k] : 0;
-    const double cover = covered / double(kFullWeight), to = before + (before * (factor - 1) + added) * cover;
-    const int whole = static_cast<int>(std::clamp(to, 0.0, double(kFullWeight)) + 0.5);
-    const WeightChange change = rules_.set(made, bone, whole);
-    if (!change.changed && change.blocked_by >= 0) {
-      blocked_here.brick = &brick;
-      blocked_here.at = at;
-      blocked_here.add(change.blocked_by);
-    }
-    if (equal(made, now[at])) continue;
+    if (covers[i] == 0) continue;
+    const int at = reached.at[part.begin + i];
+    const Influence before = now[at];
+    Influence made = before;
+    paint_plainly(made, sides_[side].bones[0], covers[i], brick, at, blocked_here);
+    if (equal(made, before)) continue;
     put(brick, at, made);
-    now = brick.now.data();
+    now = brick.now;
   }
+}
+
+void Stroke::Work::paint_plainly(Influence& influence, int bone, int covered, Brick& brick, int at, Blocked& blocked_here) const {
+  int before = 0, whole;
+  for (int k = 0; k < 4; ++k) before += influence.bone[k] == bone ? influence.weight[k] : 0;
+  if (brush_.kind == BrushKind::Add) {
+    whole = std::min(before + covered, kFullWeight);
+  } else if (brush_.kind == BrushKind::Subtract) {
+    whole = std::max(before - covered, 0);
+  } else {
+    const double to = brush_.kind == BrushKind::Set ? brush_.value * kFullWeight : before * brush_.value;
+    whole = static_cast<int>(std::clamp(before + (to - before) * (covered / double(kFullWeight)), 0.0, double(kFullWeight)) + 0.5);
+  }
+  const WeightChange change = rules_.set(influence, bone, whole);
+  if (change.changed || change.blocked_by < 0) return;
+  blocked_here.brick = &brick;
+  blocked_here.at = at;
+  blocked_here.add(change.blocked_by);
 }
 
 void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& part, int side, float strength, Influence* next, Blocked& blocked_here) {
@@ -376,7 +447,7 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
   const bool two = mirror_ && !same_bones_ && !accumulate_ && !brick.cover[other].empty();
   const bool around = looks_around();
   std::optional<WeightsAround> views;
-  if (around) views.emplace(body_.tissue, part.brick, [&](int index) -> const SkinWeights::Chunk& { return source(index); });
+  if (around) views.emplace(body_.tissue, part.brick, [&](int index) { return source(index); });
   Target target, other_target;
   for (int i = part.begin; i < part.end; ++i) {
     const int at = reached.at[i], cell = reached.cell[i];
@@ -470,17 +541,17 @@ bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, const st
     smeared(side, voxel, target);
     return !target.empty();
   }
-  std::array<const Influence*, 6> beside;
+  std::array<Influence, 6> beside;
   const int count = views->beside(voxel & (kBrick - 1), beside);
   bool differs = false;
-  for (int i = 0; i < count; ++i) differs = differs || !equal(*beside[i], own);
+  for (int i = 0; i < count; ++i) differs = differs || !equal(beside[i], own);
   if (!differs) return false;
   if (brush_.kind == BrushKind::Smooth) {
-    for (int i = 0; i < count; ++i) add_to(target, *beside[i], 1);
+    for (int i = 0; i < count; ++i) add_to(target, beside[i], 1);
   } else {
     // As far again from the mean as it is.
     add_to(target, own, 2 * count);
-    for (int i = 0; i < count; ++i) add_to(target, *beside[i], -1);
+    for (int i = 0; i < count; ++i) add_to(target, beside[i], -1);
     std::erase_if(target, [](const auto& t) { return t.second <= 0; });
   }
   return !target.empty();
@@ -489,12 +560,12 @@ bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, const st
 // From where the stroke came, as far as tissue leads there; between voxels interpolated.
 void Stroke::Work::smeared(const Side& side, const glm::ivec3& voxel, Target& target) const {
   if (side.shift == glm::dvec3(0)) return;
-  const auto influence_at = [&](const glm::ivec3& v) -> const Influence* {
-    if (!body_.volume.grid.contains(v)) return nullptr;
+  const auto influence_at = [&](const glm::ivec3& v) -> std::optional<Influence> {
+    if (!body_.volume.grid.contains(v)) return std::nullopt;
     const std::int64_t place = body_.tissue.index_of(v);
-    if (place < 0) return nullptr;
+    if (place < 0) return std::nullopt;
     const int brick = body_.tissue.brick_at(v);
-    return &source(brick)[place - body_.tissue.bricks()[brick].first];
+    return source(brick)[place - body_.tissue.bricks()[brick].first];
   };
   const glm::dvec3 from = glm::dvec3(voxel) - side.shift;
   const int steps = static_cast<int>(std::ceil(2 * std::max({std::abs(side.shift.x), std::abs(side.shift.y), std::abs(side.shift.z)})));
@@ -519,7 +590,7 @@ void Stroke::Work::smeared(const Side& side, const glm::ivec3& voxel, Target& ta
     double part = 1;
     for (int axis = 0; axis < 3; ++axis) part *= bits[axis] ? share[axis] : 1 - share[axis];
     if (part <= 0) continue;
-    if (const Influence* influence = influence_at(glm::ivec3(low) + bits)) add_to(target, *influence, part);
+    if (const auto influence = influence_at(glm::ivec3(low) + bits)) add_to(target, *influence, part);
   }
 }
 
@@ -528,7 +599,7 @@ void Stroke::Work::find_average(Side& side, const Reached& reached, float streng
   std::vector<std::int64_t> sum(body_.armature.bones.size());
   const float per_radius = static_cast<float>(1 / brush_.radius);
   for (const Reached::Brick& part : reached.bricks) {
-    const SkinWeights::Chunk& from = source(part.brick);
+    const InfluenceView from = source(part.brick);
     for (int i = part.begin; i < part.end; ++i) {
       const auto cover = static_cast<std::int64_t>(strength * brush_.falloff(std::min(reached.distance[i] * per_radius, 1.0f)) * kFullWeight);
       const Influence& influence = from[reached.at[i]];
@@ -543,6 +614,7 @@ void Stroke::Work::find_average(Side& side, const Reached& reached, float streng
 // What came of it
 
 std::vector<int> Stroke::Work::take_dirty() {
+  paint_waiting();
   std::vector<int> dirty;
   for (Brick& brick : bricks_) {
     if (brick.dirty) dirty.push_back(brick.brick);
@@ -554,23 +626,23 @@ std::vector<int> Stroke::Work::take_dirty() {
 
 // From the original.
 bool Stroke::Work::differs(const Brick& brick) const {
-  if (brick.now.empty()) return brick.shown;
-  static_assert(std::has_unique_object_representations_v<Influence>);
-  return std::memcmp(brick.now.data(), weights_->chunk(brick.brick).data(), brick.now.size() * sizeof(Influence)) != 0;
+  return brick.now.empty() ? brick.shown : weights_->chunk(brick.brick) != brick.now;
 }
 
-bool Stroke::Work::empty() const {
+bool Stroke::Work::empty() {
+  paint_waiting();
   return std::all_of(bricks_.begin(), bricks_.end(), [&](const Brick& brick) { return !differs(brick); });
 }
 
 const SkinWeights& Stroke::Work::weights() {
+  paint_waiting();
   if (shown_.chunk_count() == 0) shown_ = *weights_;
   for (Brick& brick : bricks_) {
     if (brick.now.empty()) continue;
     brick.shown = differs(brick);
-    if (brick.shown) shown_.set_chunk(brick.brick, std::move(brick.now));
+    if (brick.shown) shown_.set_chunk(brick.brick, brick.now);
     else shown_.share_chunk(brick.brick, *weights_);
-    brick.now = {};
+    brick.now = SkinWeights::Influences();  // frees its memory, too
   }
   return shown_;
 }
@@ -587,7 +659,8 @@ std::int64_t Stroke::Work::memory_bytes() const {
                        static_cast<std::int64_t>(next_.capacity() * sizeof(Influence));
   bytes += shown_.chunk_count() * static_cast<std::int64_t>(sizeof(std::shared_ptr<const SkinWeights::Chunk>));
   for (const Brick& brick : bricks_) {
-    bytes += static_cast<std::int64_t>((brick.now.capacity() + (brick.shown ? shown_.chunk(brick.brick).capacity() : 0)) * sizeof(Influence));
+    bytes += static_cast<std::int64_t>(brick.now.capacity() * sizeof(Influence));
+    if (brick.shown) bytes += shown_.chunk(brick.brick).heap_bytes() + static_cast<std::int64_t>(sizeof(SkinWeights::Chunk));
     bytes += static_cast<std::int64_t>(2 * (brick.cover[0].capacity() + brick.cover[1].capacity()) + 8 * brick.blocked.capacity());
   }
   return bytes;
@@ -602,7 +675,7 @@ Stroke& Stroke::operator=(Stroke&&) noexcept = default;
 void Stroke::to(const glm::dvec3& point, double pressure) { work_->to(point, pressure); }
 void Stroke::lift() { work_->lift(); }
 void Stroke::dab(const glm::dvec3& centre, double pressure) { work_->dab(centre, pressure); }
-const SkinWeights::Chunk& Stroke::chunk(std::int64_t brick) const { return work_->chunk(brick); }
+SkinWeights::Influences Stroke::chunk(std::int64_t brick) const { return work_->chunk(brick); }
 const SkinWeights& Stroke::original() const { return work_->original(); }
 std::vector<int> Stroke::take_dirty() { return work_->take_dirty(); }
 bool Stroke::empty() const { return work_->empty(); }
@@ -613,13 +686,14 @@ std::int64_t Stroke::memory_bytes() const { return work_->memory_bytes(); }
 
 std::int64_t Stroke::blocked_count() const {
   std::int64_t all = 0;
-  for (const std::int64_t times : work_->blocked) all += times;
+  for (const std::int64_t times : work_->blocked_by()) all += times;
   return all;
 }
 
 int Stroke::blocked_by() const {
-  const auto most = std::max_element(work_->blocked.begin(), work_->blocked.end());
-  return most != work_->blocked.end() && *most > 0 ? static_cast<int>(most - work_->blocked.begin()) : -1;
+  const std::vector<std::int64_t>& blocked = work_->blocked_by();
+  const auto most = std::max_element(blocked.begin(), blocked.end());
+  return most != blocked.end() && *most > 0 ? static_cast<int>(most - blocked.begin()) : -1;
 }
 
 }  // namespace limber

@@ -84,7 +84,7 @@ class Stroke {
   void dab(const glm::dvec3& centre, double pressure = 1);
 
   // As it is now.
-  const SkinWeights::Chunk& chunk(std::int64_t brick) const;
+  SkinWeights::Influences chunk(std::int64_t brick) const;
   const SkinWeights& original() const;
   // Bricks that changed since the last call, in order.
   std::vector<int> take_dirty();

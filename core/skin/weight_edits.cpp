@@ -94,13 +94,13 @@ WeightEdit edited_voxels(const StrokeBody& body, const SkinWeights& weights, con
   const WeightRules rules = rules_of(body, weights, scope);
   const LabelSet bone = bone_labels(body);
   const std::int64_t bricks = std::ssize(body.tissue.bricks());
-  std::vector<SkinWeights::Chunk> made(bricks);
+  std::vector<SkinWeights::Influences> made(bricks);
   std::vector<Tally> tallies((bricks + kBricksAtOnce - 1) / kBricksAtOnce);
   const auto edit_bricks = [&](std::int64_t begin, std::int64_t end) {
     for (auto b = begin; b < end; ++b) {
       const std::int64_t first = body.tissue.bricks()[b].first;
-      const SkinWeights::Chunk& before = weights.chunk(b);
-      const WeightsAround around(body.tissue, static_cast<int>(b), [&](int index) -> const SkinWeights::Chunk& { return weights.chunk(index); });
+      const SkinWeights::Influences before = weights.chunk(b);
+      const WeightsAround around(body.tissue, static_cast<int>(b), [&](int index) -> InfluenceView { return weights.chunk(index); });
       body.tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
         if (!scope.region.empty() && !scope.region[place]) return;
         if (scope.rigid_bone_tissue && bone[body.volume.at(voxel)]) return;
@@ -222,13 +222,13 @@ WeightEdit smoothed(const StrokeBody& body, const SkinWeights& weights, int pass
     if (!scope.progress) progress.update("smoothing", double(pass) / passes);
     const auto towards_mean = [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3& voxel,
                                   const WeightsAround& around) {
-      std::array<const Influence*, 6> beside;
+      std::array<Influence, 6> beside;
       const int count = around.beside(voxel & (kBrick - 1), beside);
       bool differs = false;
-      for (int i = 0; i < count; ++i) differs = differs || *beside[i] != influence;
+      for (int i = 0; i < count; ++i) differs = differs || beside[i] != influence;
       if (!differs) return WeightChange{};
       WeightSum mean;
-      for (int i = 0; i < count; ++i) add_to(mean, *beside[i], 1);
+      for (int i = 0; i < count; ++i) add_to(mean, beside[i], 1);
       return rules.blend(influence, mean, amount);
     };
     WeightEdit once = edited_voxels(body, all.weights, scope, towards_mean, {double(pass) / passes, double(pass + 1) / passes});

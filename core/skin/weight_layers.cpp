@@ -29,7 +29,7 @@ Influence mixed(const Influence& below, const Influence& above, double cover) {
   return made;
 }
 
-void cover_with(SkinWeights::Chunk& chunk, const WeightLayer& layer, std::int64_t brick) {
+void cover_with(SkinWeights::Influences& chunk, const WeightLayer& layer, std::int64_t brick) {
   if (!layer.visible || !layer.mask[brick]) return;
   const SkinWeights::Chunk& above = layer.weights.chunk(brick);
   for (std::size_t i = 0; i < chunk.size(); ++i) chunk[i] = mixed(chunk[i], above[i], layer.cover(brick, i));
@@ -38,7 +38,7 @@ void cover_with(SkinWeights::Chunk& chunk, const WeightLayer& layer, std::int64_
 // make(brick) for the bricks for which `wanted` says so; the others are those of `from`.
 template <class Wanted, class Make>
 SkinWeights made_from(const SkinWeights& from, const Wanted& wanted, const Make& make) {
-  std::vector<SkinWeights::Chunk> made(from.chunk_count());
+  std::vector<SkinWeights::Influences> made(from.chunk_count());
   parallel_for(from.chunk_count(), kBricksAtOnce, [&](std::int64_t begin, std::int64_t end) {
     for (auto b = begin; b < end; ++b)
       if (wanted(b)) made[b] = make(b);
@@ -70,13 +70,13 @@ WeightLayers with_new_layer(const WeightLayers& layers, const std::string& name)
   return more;
 }
 
-SkinWeights::Chunk composed_chunk(const WeightLayers& layers, std::int64_t brick, std::size_t count) {
-  SkinWeights::Chunk chunk = layers.base->chunk(brick);
+SkinWeights::Influences composed_chunk(const WeightLayers& layers, std::int64_t brick, std::size_t count) {
+  SkinWeights::Influences chunk = layers.base->chunk(brick);
   for (std::size_t l = 0; l < count; ++l) cover_with(chunk, *layers.layers[l], brick);
   return chunk;
 }
 
-SkinWeights::Chunk composed_over_base(const WeightLayers& layers, std::int64_t brick, SkinWeights::Chunk base) {
+SkinWeights::Influences composed_over_base(const WeightLayers& layers, std::int64_t brick, SkinWeights::Influences base) {
   for (const auto& layer : layers.layers) cover_with(base, *layer, brick);
   return base;
 }
@@ -115,7 +115,7 @@ std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const Weigh
 
 SkinWeights recomposed(const WeightLayers& layers, const WeightLayers& before, const SkinWeights& came_out) {
   const std::vector<std::int64_t> changed = changed_bricks(layers, before);
-  std::vector<SkinWeights::Chunk> made(changed.size());
+  std::vector<SkinWeights::Influences> made(changed.size());
   parallel_for(std::ssize(changed), kBricksAtOnce, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = begin; i < end; ++i) made[i] = composed_chunk(layers, changed[i], layers.layers.size());
   });
@@ -139,7 +139,7 @@ SkinWeights canvas(const WeightLayers& layers, std::size_t index) {
     return !whole[brick] && std::any_of(layers.layers.begin(), layers.layers.begin() + index + 1, [&](const auto& l) { return l->mask[brick] != nullptr; });
   };
   SkinWeights shown = made_from(*layers.base, mixed_here, [&](std::int64_t brick) {
-    SkinWeights::Chunk chunk = composed_chunk(layers, brick, index);
+    SkinWeights::Influences chunk = composed_chunk(layers, brick, index);
     if (layer.mask[brick])
       for (std::size_t i = 0; i < chunk.size(); ++i)
         if ((*layer.mask[brick])[i]) chunk[i] = layer.weights.chunk(brick)[i];
@@ -154,11 +154,11 @@ namespace {
 
 // A brick of a layer after its canvas was painted on.
 struct PaintedBrick {
-  SkinWeights::Chunk weights;
+  SkinWeights::Influences weights;
   WeightLayer::Mask mask;
 };
 
-PaintedBrick painted_brick(const WeightLayer& layer, std::int64_t brick, const SkinWeights::Chunk& was, const SkinWeights::Chunk& is) {
+PaintedBrick painted_brick(const WeightLayer& layer, std::int64_t brick, const SkinWeights::Influences& was, const SkinWeights::Influences& is) {
   PaintedBrick painted{layer.weights.chunk(brick), layer.mask[brick] ? *layer.mask[brick] : WeightLayer::Mask(was.size(), 0)};
   for (std::size_t i = 0; i < was.size(); ++i) {
     if (was[i] == is[i]) continue;
@@ -185,19 +185,19 @@ WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, cons
 namespace {
 
 // What comes out with that brick in the layer's place.
-SkinWeights::Chunk composed_with(const WeightLayers& layers, std::size_t index, std::int64_t brick, const PaintedBrick& painted) {
+SkinWeights::Influences composed_with(const WeightLayers& layers, std::size_t index, std::int64_t brick, const PaintedBrick& painted) {
   const WeightLayer& layer = layer_at(layers, index);
-  SkinWeights::Chunk chunk = composed_chunk(layers, brick, index);
+  SkinWeights::Influences chunk = composed_chunk(layers, brick, index);
   if (layer.visible)
     for (std::size_t i = 0; i < chunk.size(); ++i) chunk[i] = mixed(chunk[i], painted.weights[i], layer.opacity * painted.mask[i] / kFullWeight);
   for (std::size_t above = index + 1; above < layers.layers.size(); ++above) cover_with(chunk, *layers.layers[above], brick);
   return chunk;
 }
 
-PaintedBrick masked_brick(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Chunk& is) {
+PaintedBrick masked_brick(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Influences& is) {
   const WeightLayer& layer = layer_at(layers, index);
   PaintedBrick masked{layer.weights.chunk(brick), WeightLayer::Mask(is.size(), 0)};
-  const SkinWeights::Chunk below = composed_chunk(layers, brick, index);
+  const SkinWeights::Influences below = composed_chunk(layers, brick, index);
   for (std::size_t i = 0; i < is.size(); ++i) {
     for (int k = 0; k < 4; ++k)
       if (is[i].weight[k] && is[i].bone[k] == kCovering) masked.mask[i] = is[i].weight[k];
@@ -208,12 +208,12 @@ PaintedBrick masked_brick(const WeightLayers& layers, std::size_t index, std::in
 
 }  // namespace
 
-SkinWeights::Chunk composed_while_painted(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Chunk& before,
-                                          const SkinWeights::Chunk& after) {
+SkinWeights::Influences composed_while_painted(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Influences& before,
+                                          const SkinWeights::Influences& after) {
   return composed_with(layers, index, brick, painted_brick(layer_at(layers, index), brick, before, after));
 }
 
-SkinWeights::Chunk composed_while_masked(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Chunk& mask) {
+SkinWeights::Influences composed_while_masked(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Influences& mask) {
   return composed_with(layers, index, brick, masked_brick(layers, index, brick, mask));
 }
 
@@ -232,9 +232,9 @@ SkinWeights as_painted(const WeightLayer& layer, std::vector<std::string> bones,
       chunks.push_back(shared);
       continue;
     }
-    SkinWeights::Chunk chunk(count);
+    SkinWeights::Influences chunk(count);
     for (std::size_t i = 0; i < count; ++i) chunk[i] = made(layer.weights.chunk(b)[i], int{(*layer.mask[b])[i]});
-    chunks.push_back(std::make_shared<const SkinWeights::Chunk>(std::move(chunk)));
+    chunks.push_back(std::make_shared<const SkinWeights::Chunk>(chunk));
   }
   return {std::move(bones), std::move(chunks)};
 }
@@ -293,7 +293,7 @@ SkinWeights shares_as_weights(const WeightLayer& layer) {
 
 namespace {
 
-PaintedBrick shared_brick(const WeightLayer& layer, std::int64_t brick, const SkinWeights::Chunk& was, const SkinWeights::Chunk& is) {
+PaintedBrick shared_brick(const WeightLayer& layer, std::int64_t brick, const SkinWeights::Influences& was, const SkinWeights::Influences& is) {
   PaintedBrick painted{layer.weights.chunk(brick), layer.mask[brick] ? *layer.mask[brick] : WeightLayer::Mask(was.size(), 0)};
   for (std::size_t i = 0; i < was.size(); ++i) {
     if (was[i] == is[i]) continue;
@@ -309,8 +309,8 @@ PaintedBrick shared_brick(const WeightLayer& layer, std::int64_t brick, const Sk
 
 }  // namespace
 
-SkinWeights::Chunk composed_while_shared(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Chunk& before,
-                                         const SkinWeights::Chunk& after) {
+SkinWeights::Influences composed_while_shared(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Influences& before,
+                                         const SkinWeights::Influences& after) {
   return composed_with(layers, index, brick, shared_brick(layer_at(layers, index), brick, before, after));
 }
 
@@ -353,7 +353,7 @@ WeightLayer with_mask(const WeightLayers& layers, std::size_t index, const Tissu
   const auto value = static_cast<std::uint16_t>(std::lround(std::clamp(cover, 0.0, 1.0) * kFullWeight));
   for (std::int64_t b = 0; b < layer.weights.chunk_count(); ++b) {
     const std::int64_t first = tissue.bricks()[b].first;
-    SkinWeights::Chunk own = layer.weights.chunk(b);
+    SkinWeights::Influences own = layer.weights.chunk(b);
     WeightLayer::Mask mask = layer.mask[b] ? *layer.mask[b] : WeightLayer::Mask(own.size(), 0);
     bool changed = false, any = false;
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -382,7 +382,7 @@ WeightLayers merged_down(const WeightLayers& layers, std::size_t index) {
   const auto covered = [&](std::int64_t brick) { return upper.mask[brick] != nullptr; };
   if (index == 0) {
     fewer.base = std::make_shared<const SkinWeights>(made_from(*layers.base, covered, [&](std::int64_t brick) {
-      SkinWeights::Chunk chunk = layers.base->chunk(brick);
+      SkinWeights::Influences chunk = layers.base->chunk(brick);
       cover_with(chunk, upper, brick);
       return chunk;
     }));
@@ -395,7 +395,7 @@ WeightLayers merged_down(const WeightLayers& layers, std::size_t index) {
   both.opacity = 1;
   for (std::int64_t b = 0; b < lower.weights.chunk_count(); ++b) {
     if (!upper.mask[b] && (!lower.mask[b] || lower.opacity == 1)) continue;
-    SkinWeights::Chunk chunk = lower.weights.chunk(b);
+    SkinWeights::Influences chunk = lower.weights.chunk(b);
     WeightLayer::Mask mask(chunk.size());
     for (std::size_t i = 0; i < chunk.size(); ++i) {
       const double below = lower.cover(b, i), above = upper.cover(b, i), all = 1 - (1 - below) * (1 - above);

@@ -38,7 +38,7 @@ struct WeightLayers {
 WeightLayers with_new_layer(const WeightLayers& layers, const std::string& name);
 
 // One brick of what comes out, of the base and the first `count` layers.
-SkinWeights::Chunk composed_chunk(const WeightLayers& layers, std::int64_t brick, std::size_t count);
+SkinWeights::Influences composed_chunk(const WeightLayers& layers, std::int64_t brick, std::size_t count);
 // All of it. Bricks that no layer covers are shared with the base.
 SkinWeights composed(const WeightLayers& layers);
 // The bricks whose weights may come out otherwise than of `before`, layers of the same body. Those whose parts are shared do not.
@@ -51,14 +51,14 @@ SkinWeights canvas(const WeightLayers& layers, std::size_t layer);
 // The layer after its canvas was changed from `before` to `after`: where they differ it has what is new, and covers fully.
 WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after);
 // One brick of what would come out then, or with another base.
-SkinWeights::Chunk composed_over_base(const WeightLayers& layers, std::int64_t brick, SkinWeights::Chunk base);
-SkinWeights::Chunk composed_while_painted(const WeightLayers& layers, std::size_t layer, std::int64_t brick, const SkinWeights::Chunk& before,
-                                          const SkinWeights::Chunk& after);
+SkinWeights::Influences composed_over_base(const WeightLayers& layers, std::int64_t brick, SkinWeights::Influences base);
+SkinWeights::Influences composed_while_painted(const WeightLayers& layers, std::size_t layer, std::int64_t brick, const SkinWeights::Influences& before,
+                                          const SkinWeights::Influences& after);
 
 // A mask as weights that a stroke can paint: what the layer covers follows kCovering, the rest kNotCovering.
 constexpr int kNotCovering = 0, kCovering = 1;
 SkinWeights mask_as_weights(const WeightLayer& layer);
-SkinWeights::Chunk composed_while_masked(const WeightLayers& layers, std::size_t layer, std::int64_t brick, const SkinWeights::Chunk& mask);
+SkinWeights::Influences composed_while_masked(const WeightLayers& layers, std::size_t layer, std::int64_t brick, const SkinWeights::Influences& mask);
 // The layer after its mask was changed. Where it did not cover before it now has what its canvas shows.
 WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t layer, const SkinWeights& before, const SkinWeights& after);
 
@@ -67,8 +67,8 @@ WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t layer, const
 constexpr int kBelow = 0;
 SkinWeights shares_as_weights(const WeightLayer& layer);
 Armature with_below(const Armature& armature);
-SkinWeights::Chunk composed_while_shared(const WeightLayers& layers, std::size_t layer, std::int64_t brick, const SkinWeights::Chunk& before,
-                                         const SkinWeights::Chunk& after);
+SkinWeights::Influences composed_while_shared(const WeightLayers& layers, std::size_t layer, std::int64_t brick, const SkinWeights::Influences& before,
+                                         const SkinWeights::Influences& after);
 // The layer after its shares were changed: it covers as much as its bones have together.
 WeightLayer shares_painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after);
 

@@ -37,7 +37,7 @@ class Body {
     if (count % kOften == 0) progress_.update("looking for problems", done_);
   }
   glm::ivec3 voxel(std::int64_t place) const { return glm::ivec3(voxel_[place]); }
-  const Influence& influence(std::int64_t place) const {
+  Influence influence(std::int64_t place) const {
     const int brick = body_.tissue.brick_at(voxel(place));
     return weights_.chunk(brick)[place - body_.tissue.bricks()[brick].first];
   }
@@ -173,7 +173,7 @@ void find_far_bones(const StrokeBody& body, const Body& all, const ProblemSettin
   std::map<std::pair<int, int>, std::vector<std::int64_t>> found;
   for (std::int64_t place = 0; place < all.size(); ++place) {
     all.go_on(place);
-    const Influence& influence = all.influence(place);
+    const Influence influence = all.influence(place);
     for (int i = 0; i < 4; ++i)
       for (int k = i + 1; k < 4; ++k) {
         if (influence.weight[k] < std::max(least, 1)) continue;

@@ -11,7 +11,7 @@ namespace limber {
 
 class WeightsAround {
  public:
-  // chunk(brick) is that brick's SkinWeights::Chunk and must live as long as this.
+  // chunk(brick) is an InfluenceView of what lives as long as this.
   template <class ChunkOf>
   WeightsAround(const TissueVoxels& tissue, int brick, const ChunkOf& chunk) {
     const glm::ivec3 corner = tissue.bricks()[brick].corner;
@@ -25,7 +25,7 @@ class WeightsAround {
   }
 
   // Those of the up to six neighbours through faces that are tissue.    cell  in the brick, [0, 7]
-  int beside(const glm::ivec3& cell, std::array<const Influence*, 6>& found) const {
+  int beside(const glm::ivec3& cell, std::array<Influence, 6>& found) const {
     int count = 0;
     for (int d = 0; d < 6; ++d) {
       glm::ivec3 v = cell;
@@ -33,7 +33,8 @@ class WeightsAround {
       v[axis] += d & 1 ? 1 : -1;
       const bool inside = v[axis] >= 0 && v[axis] < TissueVoxels::kBrick;
       v[axis] &= TissueVoxels::kBrick - 1;
-      if (const Influence* influence = view_[inside ? 6 : d].at(v)) found[count++] = influence;
+      const View& view = view_[inside ? 6 : d];
+      if (const int at = view.place(v); at >= 0) found[count++] = view.influences[static_cast<std::size_t>(at)];
     }
     return count;
   }
@@ -41,13 +42,13 @@ class WeightsAround {
  private:
   struct View {
     const TissueVoxels::Brick* brick = nullptr;
-    const Influence* influences = nullptr;
+    InfluenceView influences;
     std::array<std::uint16_t, TissueVoxels::kBrick> before{};  // tissue voxels below each slice
 
-    const Influence* at(const glm::ivec3& cell) const {
+    int place(const glm::ivec3& cell) const {  // in the brick, -1: no tissue
       const int bit = cell.x + TissueVoxels::kBrick * cell.y;
-      if (!brick || !(brick->mask[cell.z] >> bit & 1)) return nullptr;
-      return influences + before[cell.z] + std::popcount(brick->mask[cell.z] & ((std::uint64_t{1} << bit) - 1));
+      if (!brick || !(brick->mask[cell.z] >> bit & 1)) return -1;
+      return before[cell.z] + std::popcount(brick->mask[cell.z] & ((std::uint64_t{1} << bit) - 1));
     }
   };
 
@@ -56,7 +57,7 @@ class WeightsAround {
     View made;
     if (brick < 0) return made;
     made.brick = &tissue.bricks()[brick];
-    made.influences = chunk(brick).data();
+    made.influences = chunk(brick);
     int before = 0;
     for (int z = 0; z < TissueVoxels::kBrick; ++z) {
       made.before[z] = static_cast<std::uint16_t>(before);

@@ -262,10 +262,10 @@ SkinWeights parse_weights(std::istream& in, const std::string& where, const Labe
   std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
   chunks.reserve(tissue.bricks().size());
   for (const auto& brick : tissue.bricks()) {
-    auto chunk = std::make_shared<SkinWeights::Chunk>(brick.count());
-    data.read(chunk->data(), chunk->size() * sizeof(Influence));
-    for (Influence& influence : *chunk) accept(influence, in_rig, where);
-    chunks.push_back(std::move(chunk));
+    SkinWeights::Influences influences(brick.count());
+    data.read(influences.data(), influences.size() * sizeof(Influence));
+    for (Influence& influence : influences) accept(influence, in_rig, where);
+    chunks.push_back(std::make_shared<const SkinWeights::Chunk>(influences));
   }
   data.expect_end();
   return {names_of(armature), std::move(chunks)};
@@ -297,8 +297,8 @@ void write_weights(const SkinWeights& weights, const LabelVolume& volume, const 
     std::ofstream out(temporary, std::ios::binary);
     out.write(header.data(), std::ssize(header));
     for (std::int64_t b = 0; b < weights.chunk_count(); ++b) {
-      const auto& chunk = weights.chunk(b);
-      out.write(reinterpret_cast<const char*>(chunk.data()), std::ssize(chunk) * sizeof(Influence));
+      const SkinWeights::Influences influences = weights.chunk(b);
+      out.write(reinterpret_cast<const char*>(influences.data()), std::ssize(influences) * sizeof(Influence));
     }
     out.flush();
     if (!out) throw Error("the weights cannot be written", path.string(), "check permissions and free space");

@@ -157,10 +157,10 @@ std::array<glm::dvec3, 2> box_of_posed(const Grid& rest_grid, const Grid& grid, 
       tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
         std::array<BoneWeight, 4> influences;
         int count = 0;
-        for (; count < 4 && influence->weight[count]; ++count) influences[count] = {influence->bone[count], double(influence->weight[count])};
+        const Influence follows = *influence++;
+        for (; count < 4 && follows.weight[count]; ++count) influences[count] = {follows.bone[count], double(follows.weight[count])};
         const glm::dvec3 posed = to_voxel * blend_point(blend, bones, {influences.data(), size_t(count)}, to_world * glm::dvec3(voxel));
         boxes[brick] = {glm::min(boxes[brick][0], posed - 0.5), glm::max(boxes[brick][1], posed + 0.5)};
-        ++influence;
       });
     }
   });

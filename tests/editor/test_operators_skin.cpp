@@ -21,7 +21,7 @@ std::shared_ptr<const SkinWeights> blended_weights(const Document& document) {
   const AffineTransform world = world_from_voxel(volume.grid);
   SkinWeights weights({"Upper", "Fore"}, tissue);
   for (std::int64_t b = 0; b < weights.chunk_count(); ++b) {
-    SkinWeights::Chunk chunk = weights.chunk(b);
+    SkinWeights::Influences chunk = weights.chunk(b);
     tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
       const double fore = glm::clamp(0.5 - (world * glm::dvec3(voxel)).z / 24, 0.0, 1.0);
       chunk[place - tissue.bricks()[b].first] = quantize({{0, 1 - fore}, {1, fore}});
@@ -156,7 +156,7 @@ TEST_CASE("skin: shares follow weights that change in some bricks alone") {
   SkinEditor test;
   Document next = test.editor->document();
   SkinWeights changed = *next.weights;
-  SkinWeights::Chunk chunk = changed.chunk(3);
+  SkinWeights::Influences chunk = changed.chunk(3);
   for (Influence& influence : chunk) influence = rigid_influence(1);
   changed.set_chunk(3, chunk);
   next.weights = std::make_shared<const SkinWeights>(changed);
@@ -240,7 +240,7 @@ TEST_CASE("skin: an isolated region is all that rays, slices and the pointer fin
     test.editor->skin->painting->edited_at_once = at_once;
     Document next = test.editor->document();
     SkinWeights other = *next.weights;
-    SkinWeights::Chunk chunk(other.chunk(0).size(), rigid_influence(other.chunk(0)[0].bone[0] == 1 ? 0 : 1));
+    SkinWeights::Influences chunk(other.chunk(0).size(), rigid_influence(other.chunk(0)[0].bone[0] == 1 ? 0 : 1));
     other.set_chunk(0, chunk);
     next.weights = std::make_shared<const SkinWeights>(other);
     test.editor->history.commit("One brick", next);

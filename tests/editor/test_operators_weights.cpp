@@ -41,7 +41,7 @@ void weigh_by_four(Stage& s) {
   next.armature = std::make_shared<const Armature>(rig);
   const TissueVoxels tissue(*next.volume);
   SkinWeights weights({"Upper", "Fore", "Third", "Fourth"}, tissue);
-  for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) weights.set_chunk(brick, SkinWeights::Chunk(weights.chunk(brick).size(), limber::quantize({{0, 0.97}, {1, 0.01}, {2, 0.01}, {3, 0.01}})));
+  for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) weights.set_chunk(brick, SkinWeights::Influences(weights.chunk(brick).size(), limber::quantize({{0, 0.97}, {1, 0.01}, {2, 0.01}, {3, 0.01}})));
   next.weights = std::make_shared<const SkinWeights>(weights);
   s.editor().history.commit("Weigh by four", next);
   s.play("wait-idle");
@@ -59,7 +59,7 @@ void weigh_with_other(Stage& s) {
   weigh(s);
   Document other = small_limb();
   SkinWeights weights({"Upper", "Fore"}, TissueVoxels(*other.volume));
-  for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) weights.set_chunk(brick, SkinWeights::Chunk(weights.chunk(brick).size(), rigid_influence(1)));
+  for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) weights.set_chunk(brick, SkinWeights::Influences(weights.chunk(brick).size(), rigid_influence(1)));
   other.weights = std::make_shared<const SkinWeights>(weights);
   DocumentWriter writer;
   create_project({other, "", "", {}, {}}, s.home / "other.limber", writer);

@@ -48,7 +48,7 @@ TEST_CASE("painting: each brush paints by the mouse as it is shown while it does
       const TissueVoxels tissue(*blended.volume);
       const AffineTransform world = world_from_voxel(blended.volume->grid);
       for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
-        SkinWeights::Chunk chunk = weights.chunk(brick);
+        SkinWeights::Influences chunk = weights.chunk(brick);
         tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
           const double fore = 1 / (1 + std::exp((world * glm::dvec3(v)).z / 6));
           chunk[place - tissue.bricks()[brick].first] = quantize({{0, 1 - fore}, {1, fore}});

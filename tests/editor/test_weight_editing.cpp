@@ -359,7 +359,7 @@ TEST_CASE("painting: below the bone a brush changes nothing where other bones ha
   SkinWeights weights({"Upper", "Fore", "Other"}, tissue);
   const AffineTransform world = world_from_voxel(next.volume->grid);
   for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
-    SkinWeights::Chunk chunk = weights.chunk(brick);
+    SkinWeights::Influences chunk = weights.chunk(brick);
     tissue.for_each(brick, brick + 1, [&](std::int64_t at, const glm::ivec3& voxel) { chunk[at - tissue.bricks()[brick].first] = rigid_influence((world * glm::dvec3(voxel)).x > 0 ? 2 : 0); });
     weights.set_chunk(brick, chunk);
   }

@@ -16,7 +16,7 @@ std::shared_ptr<const SkinWeights> bad_weights(const LabelVolume& volume) {
   const TissueVoxels tissue(volume);
   const AffineTransform world = world_from_voxel(volume.grid);
   for (std::int64_t b = 0; b < weights.chunk_count(); ++b) {
-    SkinWeights::Chunk chunk = weights.chunk(b);
+    SkinWeights::Influences chunk = weights.chunk(b);
     tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
       if (glm::distance(world * glm::dvec3(voxel), glm::dvec3(0, -30, 20)) < 8) chunk[place - tissue.bricks()[b].first] = rigid_influence(1);
     });

@@ -31,7 +31,7 @@ struct LargeEditor : LimbEditor {
     const TissueVoxels tissue(volume);
     SkinWeights weights({"Upper", "Fore"}, tissue);
     for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
-      SkinWeights::Chunk chunk = weights.chunk(brick);
+      SkinWeights::Influences chunk = weights.chunk(brick);
       tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
         chunk[place - tissue.bricks()[brick].first] = quantize({{0, kFullWeight - slope * voxel.x}, {1, slope * voxel.x}});
       });

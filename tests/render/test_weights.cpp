@@ -32,7 +32,7 @@ struct Block {
   std::shared_ptr<const SkinWeights> with(const std::function<Influence(const glm::ivec3&)>& influence) const {
     SkinWeights made({"First", "Second", "Third"}, *tissue);
     for (std::int64_t b = 0; b < made.chunk_count(); ++b) {
-      SkinWeights::Chunk chunk = made.chunk(b);
+      SkinWeights::Influences chunk = made.chunk(b);
       const std::int64_t first = tissue->bricks()[b].first;
       tissue->for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& voxel) { chunk[place - first] = influence(voxel); });
       made.set_chunk(b, chunk);
@@ -236,7 +236,7 @@ TEST_CASE("weights: a brick that changes is uploaded alone, and the picture is t
 
   SkinWeights changed = *block.weights;
   const std::int64_t brick = block.tissue->brick_at({40, 2, 20});
-  SkinWeights::Chunk chunk = changed.chunk(brick);
+  SkinWeights::Influences chunk = changed.chunk(brick);
   for (Influence& influence : chunk) influence = rigid_influence(1);
   changed.set_chunk(brick, chunk);
   scene.weights->weights = std::make_shared<const SkinWeights>(changed);
@@ -325,7 +325,7 @@ TEST_CASE("weights: a change of everything comes to the card in several frames, 
   SkinWeights dabbed = *before;
   const auto dab_at = [&](const glm::ivec3& voxel) {
     const std::int64_t brick = block.tissue->brick_at(voxel);
-    dabbed.set_chunk(brick, SkinWeights::Chunk(dabbed.chunk(brick).size(), rigid_influence(1)));
+    dabbed.set_chunk(brick, SkinWeights::Influences(dabbed.chunk(brick).size(), rigid_influence(1)));
     scene.weights->weights = std::make_shared<const SkinWeights>(dabbed);
     cut = {.centre = glm::dvec3(voxel), .millimetres_per_pixel = 0.25};
     frame();
@@ -393,7 +393,7 @@ TEST_CASE("weights: of a picture at rest, what a brush changes is drawn anew whe
   for (std::int64_t b = 0; b < changed.chunk_count(); ++b) {
     const glm::ivec3 corner = block.tissue->bricks()[b].corner;
     if (corner.x != 40) continue;
-    SkinWeights::Chunk chunk = changed.chunk(b);
+    SkinWeights::Influences chunk = changed.chunk(b);
     for (Influence& influence : chunk) influence = rigid_influence(1);
     changed.set_chunk(b, chunk);
   }

@@ -89,7 +89,7 @@ inline BentTube bent_tube(const Grid& grid = {}, int length = 44) {
   const TissueVoxels tissue(tube.volume);
   tube.weights = SkinWeights({"near", "far"}, tissue);
   for (std::int64_t b = 0; b < std::ssize(tissue.bricks()); ++b) {
-    SkinWeights::Chunk chunk;
+    SkinWeights::Influences chunk;
     tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
       const double t = std::clamp((v.z - joint) / (2 * kBlend) + 0.5, 0.0, 1.0), far = t * t * (3 - 2 * t);
       chunk.push_back(tube.volume.at(v) == kBone ? rigid_influence(v.z > joint) : quantize({{0, 1 - far}, {1, far}}));

@@ -155,7 +155,7 @@ void add_layers(Document& document, std::mt19937& random) {
   upper.opacity = 0.1 + 0.9 * unit(random);
   SkinWeights painted = *document.weights;
   const auto brick = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(painted.chunk_count()));
-  SkinWeights::Chunk chunk = painted.chunk(brick);
+  SkinWeights::Influences chunk = painted.chunk(brick);
   for (int i = 0; i < 2; ++i) chunk[random() % chunk.size()] = random_influence(random, 1);
   painted.set_chunk(brick, std::move(chunk));
   layers.layers[1] = shared(painted_on(upper, *document.weights, painted));
@@ -263,7 +263,7 @@ Document random_edit(const Document& document, std::mt19937& random) {
     case 5: {
       SkinWeights weights = *document.weights;
       const auto brick = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(weights.chunk_count()));
-      SkinWeights::Chunk chunk = weights.chunk(brick);
+      SkinWeights::Influences chunk = weights.chunk(brick);
       for (int i = 0; i < 10; ++i) chunk[random() % chunk.size()] = random_influence(random, 1);
       weights.set_chunk(brick, std::move(chunk));
       next.weights = shared(std::move(weights));
@@ -287,7 +287,7 @@ Document large_document(std::uint32_t seed) {
   volume.voxels.assign(volume.grid.voxel_count(), 1);
   SkinWeights weights({"Upper", "Lower"}, TissueVoxels(volume));
   for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
-    SkinWeights::Chunk chunk = weights.chunk(brick);
+    SkinWeights::Influences chunk = weights.chunk(brick);
     for (Influence& influence : chunk) influence = random_influence(random, 1);
     weights.set_chunk(brick, std::move(chunk));
   }

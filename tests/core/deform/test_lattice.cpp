@@ -23,7 +23,7 @@ struct Bar {
     tissue = TissueVoxels(volume);
     weights = SkinWeights({"lower", "upper"}, tissue);
     for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
-      SkinWeights::Chunk chunk = weights.chunk(brick);
+      SkinWeights::Influences chunk = weights.chunk(brick);
       auto influence = chunk.begin();
       tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
         const double upper = glm::clamp((v.z - 40) / 16.0, 0.0, 1.0);

@@ -229,7 +229,7 @@ Sitter fork_sitter(int gap) {
   Sitter sitter{std::make_shared<const LabelVolume>(volume), {}, {}, TissueVoxels(volume), {}};
   sitter.weights = SkinWeights({"A", "B"}, sitter.tissue);
   for (std::int64_t brick = 0; brick < std::ssize(sitter.tissue.bricks()); ++brick) {
-    SkinWeights::Chunk chunk;
+    SkinWeights::Influences chunk;
     sitter.tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
       const double b = v.z < 12 ? 0.5 : v.x < 16 ? std::max(0.0, 0.5 - (v.z - 12) / 16.0) : std::min(1.0, 0.5 + (v.z - 12) / 16.0);
       chunk.push_back(quantize({{0, 1 - b}, {1, b}}));

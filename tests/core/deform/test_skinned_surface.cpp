@@ -31,7 +31,7 @@ struct Ball {
           if (const double r = glm::length(world * glm::dvec3(x, y, z)); r < 11) volume.at({x, y, z}) = r < 8 ? kFlesh : kSkin;
     tissue = TissueVoxels(volume);
     weights = SkinWeights({"Lower", "Upper"}, tissue);
-    for (std::int64_t b = 0; b < weights.chunk_count(); ++b) weights.set_chunk(b, SkinWeights::Chunk(weights.chunk(b).size(), rigid_influence(1)));
+    for (std::int64_t b = 0; b < weights.chunk_count(); ++b) weights.set_chunk(b, SkinWeights::Influences(weights.chunk(b).size(), rigid_influence(1)));
     shown[kFlesh] = shown[kSkin] = 1;
   }
 };

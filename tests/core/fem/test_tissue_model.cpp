@@ -88,7 +88,7 @@ TEST_CASE("moving tissue: what bends lies around the joint, in a rim that is hel
         if (has(moving.free, body.tissue, v))
           kept &= *now == *before;
         else
-          whole &= now->weight[0] == kFullWeight;
+          whole &= (*now).weight[0] == kFullWeight;
         ++now;
         ++before;
       });
@@ -149,7 +149,7 @@ TEST_CASE("tissue model: bones hold the nodes of their tets, the rim is held, an
     for (int y = 10; y < 15; ++y)
       for (int x = 9; x < 14; ++x) body.tube.volume.at({x, y, z}) = test::kBone;
   for (std::int64_t b = 0; b < body.tube.weights.chunk_count(); ++b) {
-    SkinWeights::Chunk chunk = body.tube.weights.chunk(b);
+    SkinWeights::Influences chunk = body.tube.weights.chunk(b);
     auto influence = chunk.begin();
     body.tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
       if (body.tube.volume.at(v) == test::kBone) *influence = rigid_influence(v.z >= 22);

@@ -240,7 +240,7 @@ TEST_CASE("skin at a point: between voxels the mean of their influences, away fr
   LabelVolume volume{{{6, 1, 1}}, {0, 1, 2, 0, 0, 0}};
   const TissueVoxels tissue(volume);
   SkinWeights weights({"a", "b"}, tissue);
-  weights.set_chunk(0, {rigid_influence(0), rigid_influence(1)});
+  weights.set_chunk(0, std::array{rigid_influence(0), rigid_influence(1)});
   const std::vector<glm::dvec3> points{{1, 0, 0}, {1.25, 0, 0}, {2.4, 0, 0}, {5, 0, 0}, {-9, 3, 0}};
   const auto skin = skin_at(volume, tissue, weights, points);
   CHECK(skin[0].influence == rigid_influence(0));

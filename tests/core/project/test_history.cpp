@@ -81,18 +81,23 @@ TEST_CASE("history: parts that steps share are counted once, weights by brick") 
   const Document first = large_document(1);
   History history(first);
   const std::int64_t alone = history.bytes();
-  CHECK(alone >= 64 * 32 * 32 * (2 + 16));
+  std::int64_t packed = 0;
+  for (std::int64_t b = 0; b < first.weights->chunk_count(); ++b) packed += first.weights->chunk(b).heap_bytes();
+  CHECK(packed > 64 * 32 * 32);
+  CHECK(alone >= 64 * 32 * 32 * 2 + packed);
   CHECK(bytes_of(first) == alone);
 
   Document stroke = first;
   SkinWeights weights = *first.weights;
-  SkinWeights::Chunk chunk = weights.chunk(3);
+  SkinWeights::Influences chunk = weights.chunk(3);
   chunk[5] = rigid_influence(0);
   weights.set_chunk(3, std::move(chunk));
   stroke.weights = std::make_shared<const SkinWeights>(std::move(weights));
   history.commit("stroke", stroke);
-  CHECK(history.bytes() - alone > 512 * 16);
-  CHECK(history.bytes() - alone < 512 * 16 + 8192);
+  const std::int64_t own = stroke.weights->chunk(3).heap_bytes();
+  CHECK(own > 512);
+  CHECK(history.bytes() - alone > own);
+  CHECK(history.bytes() - alone < own + 8192);
 
   history.undo();
   Document named = first;
@@ -102,7 +107,7 @@ TEST_CASE("history: parts that steps share are counted once, weights by brick") 
 }
 
 TEST_CASE("history: over the limit the oldest states go, the memory stays under it and a note says so") {
-  constexpr std::int64_t kLimit = std::int64_t{64} << 20;
+  constexpr std::int64_t kLimit = std::int64_t{16} << 20;
   History history(large_document(0), "Open", kLimit);
   std::mt19937 random(3);
   for (int i = 1; i <= 1000; ++i) {
@@ -122,7 +127,7 @@ TEST_CASE("history: over the limit the oldest states go, the memory stays under 
   }
   CHECK(history.dropped() > 0);
   CHECK(history.dropped() + std::ssize(history.steps()) == 1001);
-  CHECK(history.note() == "The " + std::to_string(history.dropped()) + " oldest steps were dropped to keep undo within 64 MB.");
+  CHECK(history.note() == "The " + std::to_string(history.dropped()) + " oldest steps were dropped to keep undo within 16 MB.");
   CHECK(history.steps().size() > 300);
 
   // Adding up again what is left gives the same sum.

@@ -93,7 +93,7 @@ TEST_CASE("project: saving writes only what changed") {
   const ProjectSummary before = summarize_project(path);
 
   SkinWeights weights = *project.document.weights;
-  SkinWeights::Chunk chunk = weights.chunk(3);
+  SkinWeights::Influences chunk = weights.chunk(3);
   chunk[5] = rigid_influence(0);
   weights.set_chunk(3, std::move(chunk));
   project.document.weights = std::make_shared<const SkinWeights>(std::move(weights));

@@ -112,7 +112,7 @@ TEST_CASE("resample: bones stay rigid though the given weights would bend them")
   test::BentTube tube = test::bent_tube();
   const TissueVoxels tissue(tube.volume);
   for (std::int64_t b = 0; b < tube.weights.chunk_count(); ++b) {
-    SkinWeights::Chunk chunk;
+    SkinWeights::Influences chunk;
     tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
       const double far = std::clamp((v.z - 6) / 30.0, 0.0, 1.0);
       chunk.push_back(quantize({{0, 1 - far}, {1, far}}));

@@ -24,7 +24,7 @@ struct Painted {
   void set(const std::function<Influence(const glm::ivec3&)>& of) {
     SkinWeights all = *weights;
     for (std::int64_t b = 0; b < all.chunk_count(); ++b) {
-      SkinWeights::Chunk chunk = all.chunk(b);
+      SkinWeights::Influences chunk = all.chunk(b);
       tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& v) { chunk[place - tissue.bricks()[b].first] = of(v); });
       all.set_chunk(b, std::move(chunk));
     }
@@ -32,7 +32,7 @@ struct Painted {
   }
 };
 
-inline const Influence& at(const TissueVoxels& tissue, const SkinWeights& weights, const glm::ivec3& v) {
+inline Influence at(const TissueVoxels& tissue, const SkinWeights& weights, const glm::ivec3& v) {
   const int brick = tissue.brick_at(v);
   return weights.chunk(brick)[tissue.index_of(v) - tissue.bricks()[brick].first];
 }

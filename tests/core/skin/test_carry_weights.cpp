@@ -8,10 +8,10 @@ using namespace limber;
 namespace {
 
 SkinWeights small_weights() {
-  auto chunk = std::make_shared<SkinWeights::Chunk>();
-  chunk->push_back(rigid_influence(0));
-  chunk->push_back(quantize({{0, 0.2}, {1, 0.5}, {2, 0.3}}));
-  return SkinWeights({"A", "B", "C"}, {chunk});
+  SkinWeights::Influences chunk;
+  chunk.push_back(rigid_influence(0));
+  chunk.push_back(quantize({{0, 0.2}, {1, 0.5}, {2, 0.3}}));
+  return SkinWeights({"A", "B", "C"}, {std::make_shared<const SkinWeights::Chunk>(chunk)});
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct Weighted {
   SkinWeights weights;
   Weighted(LabelVolume of, const TissueTable& tissues, const Armature& armature)
       : volume(std::move(of)), tissue(volume), weights(diffuse_heat(volume, tissues, armature)) {}
-  const Influence& at(const glm::ivec3& v) const {
+  Influence at(const glm::ivec3& v) const {
     const int brick = tissue.brick_at(v);
     return weights.chunk(brick)[tissue.index_of(v) - tissue.bricks()[brick].first];
   }

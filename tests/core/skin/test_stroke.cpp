@@ -391,7 +391,7 @@ TEST_CASE("stroke: weights handed on share the bricks that did not change since,
     for (int i = 0; i < 12; ++i) {
       stroke.dab(glm::mix(bone.head, bone.tail, i / 11.0), 0.5);
       const std::vector<int> dirty = stroke.take_dirty();
-      std::vector<SkinWeights::Chunk> before;
+      std::vector<SkinWeights::Influences> before;
       for (std::int64_t b = 0; b < last.chunk_count(); ++b) before.push_back(last.chunk(b));
       const SkinWeights next = stroke.weights();
       for (std::int64_t b = 0; b < next.chunk_count(); ++b) {

@@ -257,7 +257,7 @@ TEST_CASE("weight edits: bones that another rig lacks leave their weight to the 
   std::vector<std::string> names{"Upper", "Lower", "Hand"};
   SkinWeights source(names, from.tissue);
   for (std::int64_t b = 0; b < source.chunk_count(); ++b)
-    source.set_chunk(b, SkinWeights::Chunk(source.chunk(b).size(), quantize({{0, 0.5}, {2, 0.5}})));
+    source.set_chunk(b, SkinWeights::Influences(source.chunk(b).size(), quantize({{0, 0.5}, {2, 0.5}})));
   const StrokeBody body = to.stroke_body();
   const TransferEdit edit = transferred(body, *to.weights, {from.body.volume, from.tissue, from.body.armature, source});
   CHECK(edit.missing == std::vector<std::string>{"Hand"});

@@ -110,8 +110,8 @@ TEST_CASE("weight layers: merging down changes nothing that comes out, sums stay
     layers = with(layers, l, layer);
   }
   const SkinWeights all = composed(layers);
-  for (const auto& chunk : {all.chunk(0), all.chunk(all.chunk_count() / 2)})
-    for (const Influence& influence : chunk) CHECK(std::accumulate(influence.weight.begin(), influence.weight.end(), 0) == kFullWeight);
+  for (const std::int64_t brick : {std::int64_t{0}, all.chunk_count() / 2})
+    for (const Influence& influence : all.chunk(brick)) CHECK(std::accumulate(influence.weight.begin(), influence.weight.end(), 0) == kFullWeight);
   const WeightLayers one = merged_down(layers, 1);
   CHECK(one.layers.size() == 1);
   CHECK(worst_difference(composed(one), all) < 1e-4);
@@ -162,7 +162,7 @@ TEST_CASE("weight layers: a brick is seen while it is painted as it comes out af
   const SkinWeights before = canvas(layers, 0);
   SkinWeights after = before;
   for (std::int64_t b = 0; b < after.chunk_count(); ++b) {
-    SkinWeights::Chunk chunk = after.chunk(b);
+    SkinWeights::Influences chunk = after.chunk(b);
     for (std::size_t i = 0; i < chunk.size(); i += 3) chunk[i] = quantize({{0, 0.25}, {1, 0.75}});
     after.set_chunk(b, chunk);
   }
@@ -178,7 +178,7 @@ TEST_CASE("weight layers: a mask is painted like weights, to the last step of 1/
   CHECK(mask_painted_on(layers, 0, before, before).mask == layers.layers[0]->mask);
   SkinWeights after = before;
   for (std::int64_t b = 0; b < after.chunk_count(); ++b) {
-    SkinWeights::Chunk chunk = after.chunk(b);
+    SkinWeights::Influences chunk = after.chunk(b);
     for (std::size_t i = 0; i < chunk.size(); ++i) chunk[i] = i % 2 ? rigid_influence(kNotCovering) : Influence{{kNotCovering, kCovering, 0, 0}, {static_cast<std::uint16_t>(kFullWeight - int(i)), static_cast<std::uint16_t>(i), 0, 0}};
     after.set_chunk(b, chunk);
   }
@@ -193,7 +193,7 @@ TEST_CASE("weight layers: a mask is painted like weights, to the last step of 1/
   for (std::int64_t b = 0; b < out.chunk_count(); ++b) CHECK(composed_while_masked(layers, 0, b, after.chunk(b)) == out.chunk(b));
   // Painted away wholly, a brick is no part of the layer any more.
   SkinWeights nothing = after;
-  for (std::int64_t b = 0; b < nothing.chunk_count(); ++b) nothing.set_chunk(b, SkinWeights::Chunk(nothing.chunk(b).size(), rigid_influence(kNotCovering)));
+  for (std::int64_t b = 0; b < nothing.chunk_count(); ++b) nothing.set_chunk(b, SkinWeights::Influences(nothing.chunk(b).size(), rigid_influence(kNotCovering)));
   for (const auto& mask : mask_painted_on(with(layers, 0, masked), 0, after, nothing).mask) CHECK(!mask);
 }
 
