@@ -179,6 +179,9 @@ struct Editor {
     std::string method = "dqs";
     double spacing = 0;  // mm; 0: as the volume
     bool fit_joints = false;
+    // Of finite elements.
+    bool contact = true;
+    std::string quality = "normal";  // "draft", "normal", "fine"
   } resampling;
   struct {
     bool keep_limits = true;                    // joints stop where their limits end

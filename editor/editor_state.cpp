@@ -84,6 +84,7 @@ std::string editor_state(const Editor& editor) {
   json["weights"] = {{"display", editor.skin->display ? static_cast<int>(*editor.skin->display) : 4}, {"contours", editor.skin->contours}};
   json["arrangements"] = Json::parse(json_text(editor.arrangements));
   json["method"] = editor.resampling.method;
+  json["finite_elements"] = {{"quality", editor.resampling.quality}, {"contact", editor.resampling.contact}};
   for (const SliceState& slice : views.slices)
     json["slice_cameras"].push_back({{"centre", json_of(slice.camera.centre)}, {"millimetres_per_pixel", slice.camera.millimetres_per_pixel}});
   if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
@@ -97,7 +98,11 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   take_choice(json, "workspace", 4, editor.workspace);
   take_choice(json, "display", 3, views.display);
   take_choice(json, "slices", 2, views.slice_display);
-  if (const Json method = json.value("method", Json()); method == "lbs" || method == "dqs") editor.resampling.method = method;
+  if (const Json method = json.value("method", Json()); method == "lbs" || method == "dqs" || method == "fem") editor.resampling.method = method;
+  if (const auto fem = json.find("finite_elements"); fem != json.end() && fem->is_object()) {
+    if (const Json quality = fem->value("quality", Json()); quality == "draft" || quality == "normal" || quality == "fine") editor.resampling.quality = quality;
+    take(*fem, "contact", editor.resampling.contact);
+  }
   if (const auto weights = json.find("weights"); weights != json.end() && weights->is_object()) {
     int display = editor.skin->display ? static_cast<int>(*editor.skin->display) : 4;
     take(*weights, "display", 0, 4, display);

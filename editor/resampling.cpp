@@ -44,7 +44,8 @@ struct Request {
   Document from;  // with a pose
   std::string method;
   double spacing = 0;  // mm; 0: as the volume
-  bool fit_joints = false;
+  bool fit_joints = false, contact = false;
+  std::string quality;  // of finite elements
   std::string scratch;
   WorkerSettings worker;
 };
@@ -65,6 +66,10 @@ void write_inputs(const Request& request, const ScratchFolder& folder, Progress&
                              {"pose", "pose.json"},   {"method", request.method}, {"output", "posed.nrrd"}, {"report", "report.json"}};
   if (request.spacing > 0) job["spacing"] = request.spacing;
   if (request.fit_joints) job["fit-joints"] = true;
+  if (request.method == "fem") {
+    job["quality"] = request.quality;
+    if (request.contact) job["contact"] = true;
+  }
   write_file_atomically(folder / "job.json", job.dump(1) + "\n");
 }
 
@@ -87,7 +92,7 @@ Edit resample_in_worker(const Request& request, std::shared_ptr<std::string>& na
   write_inputs(request, folder, progress);
   run_worker(folder / "job.json", progress, request.worker);
   auto result = std::make_shared<Result>();
-  result->method = request.method;
+  result->method = request.method + (request.method == "fem" && request.contact ? "-contact" : "");
   result->volume = read_posed(folder / "posed.nrrd", *request.from.tissues, progress);
   result->report = read_file(folder / "report.json");
   result->from_volume = request.from.volume;
@@ -95,7 +100,7 @@ Edit resample_in_worker(const Request& request, std::shared_ptr<std::string>& na
   result->from_armature = request.from.armature;
   result->from_weights = request.from.weights;
   result->from_pose = request.from.pose;
-  const std::string wanted = name_of_pose(*request.from.armature, *request.from.pose) + ", " + method_name(request.method);
+  const std::string wanted = name_of_pose(*request.from.armature, *request.from.pose) + ", " + method_name(result->method);
   return [result, wanted, name](const Document& now) {
     Document next = now;
     result->name = *name = unique_name(now.results, wanted);
@@ -129,7 +134,8 @@ std::string why_no_resampling(const Editor& editor) {
 }
 
 void start_resampling(Editor& editor) {
-  Request request{editor.document(), editor.resampling.method, editor.resampling.spacing, editor.resampling.fit_joints, editor.preferences.scratch_folder, {}};
+  Request request{editor.document(), editor.resampling.method, editor.resampling.spacing, editor.resampling.fit_joints, editor.resampling.contact, editor.resampling.quality,
+                  editor.preferences.scratch_folder, {}};
   if (!request.from.pose) request.from.pose = std::make_shared<const Pose>(rest_pose(*request.from.armature));
   request.worker.program = editor.worker_program;
   request.worker.memory_limit_mb = editor.preferences.worker_memory_mb;

@@ -85,7 +85,9 @@ std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_pt
   return known.back().facts;
 }
 
-std::string method_name(const std::string& method) { return method == "lbs" ? "LBS" : method == "dqs" ? "DQ" : method; }
+std::string method_name(const std::string& method) {
+  return method == "lbs" ? "LBS" : method == "dqs" ? "DQ" : method == "fem" ? "FEM" : method == "fem-contact" ? "FEM with contact" : method;
+}
 
 std::string stale_reason(const Document& document, const Result& result) {
   if (result.from_volume != document.volume) return "volume changed";

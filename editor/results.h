@@ -35,7 +35,7 @@ struct KnownResult {
 };
 std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_ptr<const Result>& result);
 
-// "linear" -> "LBS"
+// "lbs" -> "LBS"
 std::string method_name(const std::string& method);
 // What the result was made from is no longer what the document holds: "weights changed"; "" while it is. Its pose may be
 // another one: a result stands for the pose it was made of.

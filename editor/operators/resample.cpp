@@ -101,6 +101,7 @@ std::vector<Operator> resample_operators() {
       {"resample.run", "Resample this pose", icon::kResample, "Result", "Writes the posed body as a new label volume, beside the work.", [](Editor& e) { start_resampling(e); }, why_no_resampling},
       method_operator("resample.lbs", "LBS", "Linear blending: quick, loses volume at bent and twisted joints.", "lbs"),
       method_operator("resample.dqs", "DQ", "Dual quaternions: keeps the thickness of twisted limbs.", "dqs"),
+      method_operator("resample.fem", "FEM", "Finite elements: tissue keeps its volume and skin touches skin. Takes minutes, in the background.", "fem"),
       {"result.toggle", "Posed volume", icon::kPose, "Result", "The views show the chosen result, or the volume at rest again.", toggle_posed, needs_result,
        [](const Editor& e) { return shown_result(e) != nullptr; }},
       {"result.show_last", "Show", icon::kVisible, "Result", "The views show the last result.", [](Editor& e) { show_result(e, e.document().results.back()->name); }, needs_result},

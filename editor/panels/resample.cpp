@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How this pose is resampled: method, spacing, and the button.
+#include <array>
+
 #include "editor/fields.h"
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
@@ -7,18 +9,36 @@
 
 namespace limber::editor {
 
+namespace {
+
+// Of finite elements: how fine, and whether skin touches skin.
+void draw_fem(Editor& editor, Column& column) {
+  auto& settings = editor.resampling;
+  const Rect quality = column.property("Quality");
+  const PathScope path(editor, "Quality");
+  int chosen = settings.quality == "draft" ? 0 : settings.quality == "fine" ? 2 : 1;
+  if (choice_field(editor, quality, {"Draft, 12 mm", "Normal, 8 mm", "Fine, 4 mm at joints"}, chosen)) settings.quality = std::array{"draft", "normal", "fine"}[static_cast<std::size_t>(chosen)];
+  if (ImGui::IsItemHovered()) tooltip(editor, quality, "Quality", "Edge of the tetrahedra that tissue is made of. Finer ones take longer.");
+  const Rect contact = column.property("Contact");
+  checkbox(editor, "Contact", contact, "Skin touches skin", settings.contact);
+  if (ImGui::IsItemHovered()) tooltip(editor, contact, "Skin touches skin", "Folds press against each other instead of passing through.");
+}
+
+}  // namespace
+
 void draw_resample(Editor& editor, Column& column) {
   const Look& look = editor.look;
   if (column.begin_section("Resample")) {
     auto& settings = editor.resampling;
     const Rect method = column.property("Method");
-    const float half = std::round(method.width() / 2);
+    const float third = std::floor(method.width() / 3);
     float x = method.low.x;
-    for (const char* id : {"resample.lbs", "resample.dqs"}) {
+    for (const char* id : {"resample.lbs", "resample.dqs", "resample.fem"}) {
       const Operator* op = find_operator(editor, id);
-      operator_button(editor, id, {{x, method.low.y}, {x + half - look.px(1), method.high.y}}, op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
-      x += half;
+      operator_button(editor, id, {{x, method.low.y}, {x + third - look.px(1), method.high.y}}, op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
+      x += third;
     }
+    if (settings.method == "fem") draw_fem(editor, column);
     const Rect spacing = column.property("Output");
     bool committed = false;
     const char* format = settings.spacing > 0 ? "%.2f" : "as the volume";

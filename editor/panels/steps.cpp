@@ -64,7 +64,7 @@ Step pose_step(const Editor& editor) {
 }
 
 Step resample_step(const Editor& editor) {
-  Step step{"Resample", StepState::Later, "Not resampled yet", "resample.run", "Resample", {"resample.lbs", "resample.dqs", "result.toggle"}};
+  Step step{"Resample", StepState::Later, "Not resampled yet", "resample.run", "Resample", {"resample.lbs", "resample.dqs", "resample.fem", "result.toggle"}};
   const Document& document = editor.document();
   for (const auto& result : document.results) {
     if (!is_of_this_pose(document, *result)) continue;

@@ -92,6 +92,7 @@ std::vector<Proof> proofs_of_work() {
       {"resample.lbs", "click Edit/Resample/LBS", [](Stage& s, const Seen&) { return s.editor().resampling.method == "lbs"; }},
       {"resample.run", "key Ctrl+Return\n wait-job", [](Stage& s, const Seen&) { return results(s) == 1 && s.document().results[0]->name == "Fore 30\u00b0, LBS"; }},
       {"resample.dqs", "click Edit/Resample/DQ", [](Stage& s, const Seen&) { return s.editor().resampling.method == "dqs"; }},
+      {"resample.fem", "click Edit/Resample/FEM", [](Stage& s, const Seen&) { return s.editor().resampling.method == "fem"; }},
       {"result.show_last", "key F3\n type \"show\"\n key Return", [](Stage& s, const Seen&) { return shown_result(s.editor()) && s.editor().views->scene.volume == s.document().results.back()->volume; }, Shows::Nothing,
        "click \"Edit/Resample/Posed volume\"\n click \"Edit/Resample/Posed volume\""},
       {"result.toggle", "click \"Edit/Resample/Posed volume\"", [](Stage& s, const Seen&) { return !shown_result(s.editor()) && s.editor().views->scene.volume == s.document().volume; }, Shows::InBody},

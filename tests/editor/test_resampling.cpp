@@ -280,3 +280,34 @@ TEST_CASE("help: pages of keys, licences and system facts") {
   )");
   CHECK(test.host->clipboard().find("OpenGL") != std::string::npos);
 }
+
+TEST_CASE("resample: finite elements run in the worker as the panel says, and the result says how it was made") {
+  LimbEditor test;
+  bend(test);
+  test.play(R"(
+    key Ctrl+4
+    click resample.fem
+    click Quality/list
+    click "Draft, 12 mm"
+  )");
+  CHECK(test.editor->resampling.quality == "draft");
+  CHECK(test.editor->resampling.contact);
+  test.play("click Contact");
+  CHECK_FALSE(test.editor->resampling.contact);
+  run(*test.editor, "resample.run");
+  test.play("wait-job");
+  const Document& document = test.editor->document();
+  REQUIRE(document.results.size() == 1);
+  CHECK(document.results[0]->name == "Fore 30\u00b0, FEM");
+  CHECK(document.results[0]->method == "fem");
+  CHECK(document.results[0]->report.find("\"solve\"") != std::string::npos);
+  const auto facts = facts_of(*test.editor, document.results[0]);
+  REQUIRE(facts->change_percent);
+  CHECK(std::abs(*facts->change_percent) < 2);
+  CHECK(stale_reason(document, *document.results[0]).empty());
+  test.play("click Contact");
+  run(*test.editor, "resample.run");
+  test.play("wait-job");
+  REQUIRE(test.editor->document().results.size() == 2);
+  CHECK(test.editor->document().results[1]->name == "Fore 30\u00b0, FEM with contact");
+}
