@@ -17,8 +17,8 @@ void draw_fem(Editor& editor, Column& column) {
   const Rect quality = column.property("Quality");
   const PathScope path(editor, "Quality");
   int chosen = settings.quality == "draft" ? 0 : settings.quality == "fine" ? 2 : 1;
-  if (choice_field(editor, quality, {"Draft, 12 mm", "Normal, 8 mm", "Fine, 4 mm at joints"}, chosen)) settings.quality = std::array{"draft", "normal", "fine"}[static_cast<std::size_t>(chosen)];
-  if (ImGui::IsItemHovered()) tooltip(editor, quality, "Quality", "Edge of the tetrahedra that tissue is made of. Finer ones take longer.");
+  if (choice_field(editor, quality, {"Draft, 12 mm", "Normal, 8 mm", "Fine, 4 mm"}, chosen)) settings.quality = std::array{"draft", "normal", "fine"}[static_cast<std::size_t>(chosen)];
+  if (ImGui::IsItemHovered()) tooltip(editor, quality, "Quality", "Edge of the tetrahedra that tissue is made of; the fine ones stand around bent joints. Finer takes longer.");
   const Rect contact = column.property("Contact");
   checkbox(editor, "Contact", contact, "Skin touches skin", settings.contact);
   if (ImGui::IsItemHovered()) tooltip(editor, contact, "Skin touches skin", "Folds press against each other instead of passing through.");
