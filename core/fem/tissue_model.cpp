@@ -24,7 +24,7 @@ TetMaterial material_of(const Tissue& tissue) {
 // Tissue near places of the world.
 class Surroundings {
  public:
-  Surroundings(const LabelVolume& volume, const TissueVoxels& tissue) : volume_(volume), tissue_(tissue), voxel_(voxel_from_world(volume.grid)) {}
+  explicit Surroundings(const LabelVolume& volume) : volume_(volume), voxel_(voxel_from_world(volume.grid)) {}
 
   // The nearest voxel that passes, mm counted; false where there is none around.
   template <class Passes>
@@ -56,7 +56,6 @@ class Surroundings {
   }
 
   const LabelVolume& volume_;
-  const TissueVoxels& tissue_;
   AffineTransform voxel_;
 };
 
@@ -107,7 +106,7 @@ void count_voxels(TissueModel& model, const LabelVolume& volume) {
   model.first.push_back(static_cast<std::int32_t>(model.counts.size()));
 }
 
-void choose_materials(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+void choose_materials(TissueModel& model, const LabelVolume& volume, const TissueTable& tissues,
                       const TissueModelSettings& settings) {
   std::vector<TetMaterial> of_label(65536);
   LabelSet is_soft(65536, 1);
@@ -115,7 +114,7 @@ void choose_materials(TissueModel& model, const LabelVolume& volume, const Tissu
     of_label[each.label] = material_of(each);
     is_soft[each.label] = !is_bone(each.kind);
   }
-  const Surroundings around(volume, tissue);
+  const Surroundings around(volume);
   const TetMesh& mesh = model.fem.mesh;
   for (int t = 0; t < mesh.T.rows(); ++t) {
     const bool in_bone = mesh.region[t] != TetMesh::kSoft;
@@ -213,7 +212,7 @@ void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueV
     model.joint.push_back(between || inside);
   }
 
-  const Surroundings around(volume, tissue);
+  const Surroundings around(volume);
   for (int i = 0; i < mesh.V.rows(); ++i) {
     glm::ivec3 voxel(0);
     const bool found = around.nearest(mesh.V.row(i), [&](const glm::ivec3& v) { return is_in(moving.meshed, tissue, v); }, voxel);
@@ -250,7 +249,7 @@ TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, 
   model.fem.bone_names = weights.bones();
   choose_holders(model, volume, tissue, weights, moving, settings.joint_mm);
   count_voxels(model, volume);
-  choose_materials(model, volume, tissue, tissues, settings);
+  choose_materials(model, volume, tissues, settings);
   return model;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // One stroke of a brush over the weights of a body, from press to release. Only bricks that change are cloned; the original
-// weights are never touched, so that giving a stroke up costs nothing. The same for any number of threads.
+// weights are never touched, so that giving a stroke up costs nothing. Where dabs do not accumulate they only note what they
+// cover; voxels are painted when somebody looks, once for all dabs since. The same for any number of threads.
 //
 //   Stroke stroke(body, weights, settings);
 //   stroke.to(cursor);  ...                        as often as the cursor moves; dabs stand a spacing apart
