@@ -16,9 +16,9 @@ namespace {
 constexpr int kReach = 16;               // voxels: as far as tissue is looked for from a node that lies in air
 constexpr double kMostPoisson = 0.499;   // what volume terms are made for; 0.5 cannot be computed with
 
-TetMaterial material_of(const Tissue& tissue) {
+TetMaterial material_of(const Tissue& tissue, double stiffest) {
   const double nu = std::clamp(tissue.poisson_ratio, 0.0, kMostPoisson);
-  return {std::max(1e-3, tissue.young_modulus / (2 * (1 + nu))), nu};
+  return {std::clamp(tissue.young_modulus / (2 * (1 + nu)), 1e-3, stiffest), nu};
 }
 
 // Tissue near places of the world.
@@ -111,7 +111,7 @@ void choose_materials(TissueModel& model, const LabelVolume& volume, const Tissu
   std::vector<TetMaterial> of_label(65536);
   LabelSet is_soft(65536, 1);
   for (const Tissue& each : tissues.tissues) {
-    of_label[each.label] = material_of(each);
+    of_label[each.label] = material_of(each, settings.stiffest);
     is_soft[each.label] = !is_bone(each.kind);
   }
   const Surroundings around(volume);

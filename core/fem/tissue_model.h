@@ -4,7 +4,8 @@
 // Material. A tet of 4 to 12 mm holds many voxels, and skin is often one voxel thick: so a tet's moduli mu and lambda are the
 // means over the soft voxels whose centres lie in it (by Young's modulus and Poisson ratio of the tissue table; the Poisson ratio
 // itself would not do: a tenth of cartilage would take half of the resistance of flesh to losing volume). A tet without any
-// voxel takes the nearest one's.
+// voxel takes the nearest one's. No soft tissue counts as stiffer than `stiffest`: a tendon of 1 GPa is a cord that slides in
+// its sheath and buckles; as a solid as thick as a tet it would be a strut from bone to bone, against which no joint can turn.
 //
 // Bones. Nodes of a bone's tets are held by it; nodes of what is meshed but does not bend (moving_tissue.h) by the bone that
 // tissue goes with. A node of two bones that move differently is held by none. Tets between two bones are the joint: soft and
@@ -24,6 +25,7 @@ namespace limber {
 struct TissueModelSettings {
   double joint_mm = 12;
   TetMaterial joint{.shear_modulus = 1, .poisson_ratio = 0.3};  // kPa
+  double stiffest = 360;                                          // shear modulus of soft tissue, kPa
   TetMaterial bone{.shear_modulus = 100, .poisson_ratio = 0.3};  // of tets that are held at every node
 };
 

@@ -209,3 +209,14 @@ TEST_CASE("tissue model: a tet is as stiff as its voxels in the mean, and a mesh
   grown.col(2) *= 1.03;
   for (const Label label : {test::kSkin, test::kFat, test::kBone}) CHECK(volume_change_percent(model, grown).at(label) == doctest::Approx(3));
 }
+
+TEST_CASE("tissue model: no soft tissue counts as stiffer than a solid of its width could be, whatever the table says") {
+  Body body;
+  for (Tissue& tissue : body.tube.tissues.tissues)
+    if (tissue.label == test::kFat) tissue.young_modulus = 1.2e6;  // a tendon's, along its fibres
+  const TissueModel model = model_of(body, body.moving(50), 4);
+  double stiffest = 0;
+  for (int t = 0; t < model.fem.mesh.T.rows(); ++t)
+    if (model.fem.mesh.region[t] == TetMesh::kSoft) stiffest = std::max(stiffest, model.fem.material[t].shear_modulus);
+  CHECK(stiffest == doctest::Approx(TissueModelSettings{}.stiffest));
+}

@@ -89,6 +89,17 @@ TEST_CASE("fem: the bent arm keeps the volume of its tissues where dual quaterni
   CHECK(fem < 0.3 * dqs);
 }
 
+TEST_CASE("fem: the arm's tendons, thousands of times stiffer than its flesh, do not keep the elbow from bending") {
+  const Arm arm;
+  CHECK(std::any_of(arm.phantom.tissues.tissues.begin(), arm.phantom.tissues.tissues.end(), [](const Tissue& tissue) { return tissue.kind == TissueKind::Tendon && tissue.young_modulus > 1e6; }));
+  const Posed posed = arm.posed(arm.flexed(60), Fem{.contact = true, .quality = FemQuality::Draft});
+  REQUIRE(posed.report.solve);
+  INFO(posed.report.solve->blocked_by);
+  CHECK(posed.report.solve->converged);
+  CHECK(posed.report.mesh->inverted == 0);
+  CHECK(posed.report.mesh->min_det_f > 0.1);
+}
+
 TEST_CASE("fem: the result is the same for 1 and 2 threads, bit for bit") {
   const Arm arm;
   std::vector<Posed> results;
