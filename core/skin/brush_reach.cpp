@@ -159,9 +159,11 @@ void BrushReach::place_ball(double radius, std::vector<Span>& ball) const {
         *row = {1, 0};
         continue;
       }
-      const double half = std::sqrt(left) / spacing.x;
-      *row = {std::max(low_.x, static_cast<int>(std::ceil(std::max(centre_.x - half, -1e9)))),
-              std::min(low_.x + size_.x - 1, static_cast<int>(std::floor(std::min(centre_.x + half, 1e9))))};
+      // Within the window, and rounded by cutting off: std::ceil is a call.
+      const double half = std::sqrt(left) / spacing.x, first = std::max(centre_.x - half - low_.x, 0.0);
+      const double last = std::min(centre_.x + half - low_.x, size_.x - 1.0);
+      const int cut = static_cast<int>(std::min(first, 1.0 * size_.x));
+      *row = {low_.x + cut + (first > cut), last < 0 ? low_.x - 1 : low_.x + static_cast<int>(last)};
     }
   }
 }
@@ -173,9 +175,9 @@ std::uint64_t BrushReach::ball_word(const std::vector<Span>& ball, const glm::iv
   std::uint64_t word = 0;
   for (int y = std::max(0, low_.y - corner.y), end = std::min(kBrick, low_.y + size_.y - corner.y); y < end; ++y) {
     const Span& row = rows[corner.y + y - low_.y];
-    const int first = std::max(row.first - corner.x, 0), last = std::min(row.last - corner.x, kBrick - 1);
-    if (first > last) continue;
-    word |= std::uint64_t{(0xffu << first) & (0xffu >> (kBrick - 1 - last))} << (8 * y);
+    // A span that lies on either side of the brick shifts everything out.
+    const int first = std::clamp(row.first - corner.x, 0, kBrick), behind = std::clamp(corner.x + kBrick - 1 - row.last, 0, kBrick);
+    word |= std::uint64_t{(0xffu << first) & (0xffu >> behind)} << (8 * y);
   }
   return word;
 }

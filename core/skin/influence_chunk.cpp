@@ -66,34 +66,56 @@ InfluenceChunk::InfluenceChunk(std::size_t count, const Influence& all) : Influe
 
 namespace {
 
+// Records of one shape.
 template <int kSetBytes, int kWeights>
-void unpack_records(const std::uint8_t* bytes, const std::uint8_t* record, std::size_t count, Influence* influences) {
-  for (std::size_t i = 0; i < count; ++i, record += kSetBytes + 2 * kWeights) {
+struct Records {
+  const std::uint8_t *sets, *first;
+  void unpack(std::size_t place, Influence& influence) const {
+    const std::uint8_t* record = first + place * (kSetBytes + 2 * kWeights);
     std::uint16_t set = 0;
     std::memcpy(&set, record, kSetBytes);
-    std::array<std::uint16_t, 4> weight{kFullWeight};
-    std::memcpy(&weight[1], record + kSetBytes, 2 * kWeights);
-    weight[0] = static_cast<std::uint16_t>(kFullWeight - weight[1] - weight[2] - weight[3]);
-    std::memcpy(influences[i].bone.data(), bytes + set * sizeof(Bones), sizeof(Bones));
-    influences[i].weight = weight;
+    // Two numbers written whole: written in parts they would be waited for where they are read whole.
+    std::uint64_t bones, others;
+    std::memcpy(&bones, sets + set * sizeof(Bones), sizeof bones);
+    std::memcpy(&others, record + kSetBytes, sizeof others);  // what lies behind is masked
+    others &= (std::uint64_t{1} << (16 * kWeights)) - 1;
+    const std::uint64_t weights = (kFullWeight - ((others & 0xffff) + (others >> 16 & 0xffff) + (others >> 32))) | others << 16;
+    std::memcpy(influence.bone.data(), &bones, sizeof bones);
+    std::memcpy(influence.weight.data(), &weights, sizeof weights);
+  }
+};
+
+// body(records) of the shape there is; false where it is a rare one.
+template <class Body>
+bool with_records(int set_bytes, int weights, const std::uint8_t* sets, const std::uint8_t* first, const Body& body) {
+  switch (set_bytes * 4 + weights) {
+    case 0: return body(Records<0, 0>{sets, first}), true;
+    case 1: return body(Records<0, 1>{sets, first}), true;
+    case 2: return body(Records<0, 2>{sets, first}), true;
+    case 3: return body(Records<0, 3>{sets, first}), true;
+    case 4: return body(Records<1, 0>{sets, first}), true;
+    case 5: return body(Records<1, 1>{sets, first}), true;
+    case 6: return body(Records<1, 2>{sets, first}), true;
+    case 7: return body(Records<1, 3>{sets, first}), true;
+    default: return false;
   }
 }
 
 }  // namespace
 
 void InfluenceChunk::unpack(Influence* influences) const {
-  const std::uint8_t *bytes = bytes_.get(), *records = bytes + records_;
-  switch (set_bytes_ * 4 + weights_) {
-    case 0: return count_ ? std::fill_n(influences, count_, (*this)[0]), void() : void();
-    case 1: return unpack_records<0, 1>(bytes, records, count_, influences);
-    case 2: return unpack_records<0, 2>(bytes, records, count_, influences);
-    case 3: return unpack_records<0, 3>(bytes, records, count_, influences);
-    case 4: return unpack_records<1, 0>(bytes, records, count_, influences);
-    case 5: return unpack_records<1, 1>(bytes, records, count_, influences);
-    case 6: return unpack_records<1, 2>(bytes, records, count_, influences);
-    case 7: return unpack_records<1, 3>(bytes, records, count_, influences);
-    default: std::copy(begin(), end(), influences);
-  }
+  const auto all = [&](const auto& records) {
+    for (std::size_t i = 0; i < count_; ++i) records.unpack(i, influences[i]);
+  };
+  if (!with_records(set_bytes_, weights_, bytes_.get(), bytes_.get() + records_, all)) std::copy(begin(), end(), influences);
+}
+
+void InfluenceChunk::unpack(std::span<const std::uint16_t> places, Influence* influences) const {
+  const auto some = [&](const auto& records) {
+    for (std::size_t i = 0; i < places.size(); ++i) records.unpack(places[i], influences[i]);
+  };
+  if (!with_records(set_bytes_, weights_, bytes_.get(), bytes_.get() + records_, some))
+    std::transform(places.begin(), places.end(), influences, [&](std::uint16_t place) { return (*this)[place]; });
 }
 
 bool InfluenceChunk::operator==(const InfluenceChunk& other) const {

@@ -68,6 +68,8 @@ class InfluenceChunk {
 
   // Writes size() influences.
   void unpack(Influence* influences) const;
+  // Those at `places`.
+  void unpack(std::span<const std::uint16_t> places, Influence* influences) const;
   operator std::vector<Influence>() const {
     std::vector<Influence> influences(count_);
     unpack(influences.data());

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/skin/weight_lanes.h"
 #include "core/skin/weights_around.h"
 
 namespace limber {
@@ -21,11 +22,12 @@ constexpr int kBrick = TissueVoxels::kBrick;
 constexpr std::int64_t kBricksAtOnce = 16;
 
 using Target = WeightSum;
+using Words = std::array<std::uint64_t, 2>;  // of an influence
 
 // As two numbers: arrays are compared by a call.
 bool equal(const Influence& a, const Influence& b) {
-  const auto number = [](const std::array<std::uint16_t, 4>& four) { return std::bit_cast<std::uint64_t>(four); };
-  return number(a.bone) == number(b.bone) && number(a.weight) == number(b.weight);
+  const Words first = std::bit_cast<Words>(a), second = std::bit_cast<Words>(b);
+  return first[0] == second[0] && first[1] == second[1];
 }
 
 }  // namespace
@@ -83,6 +85,11 @@ class Stroke::Work {
     glm::dvec3 shift{0};      // Smear: where weights come from, voxels
     Target average;
   };
+  // Where a brick's waiting voxels are painted.
+  struct Canvas {
+    std::array<Influence, kBrick * kBrick * kBrick> made;
+    std::array<std::uint16_t, kBrick * kBrick * kBrick> at, weight;
+  };
   struct Blocked {
     std::vector<std::pair<int, std::int64_t>> by;
     Brick* brick = nullptr;  // of the voxel at hand, and its place there
@@ -102,6 +109,8 @@ class Stroke::Work {
   void touch(const Reached& reached, int plane);
   void cover_plainly(const Reached& reached, const Reached::Brick& part, float strength);
   void paint_waiting();
+  void paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked);
+  std::uint16_t painted(int before, int covered) const;
   void paint_plainly(const Reached& reached, const Reached::Brick& part, int side, float strength, Blocked& blocked);
   void paint_plainly(Influence& influence, int bone, int covered, Brick& brick, int at, Blocked& blocked) const;
   void count_blocked(const std::vector<Blocked>& blocked_in);
@@ -382,23 +391,58 @@ void Stroke::Work::paint_waiting() {
   const std::int64_t count = std::ssize(waiting), grain = count <= 2 * kBricksAtOnce ? std::max<std::int64_t>(count, 1) : kBricksAtOnce;
   std::vector<Blocked> blocked_in((count + grain - 1) / grain);
   parallel_for(count, grain, [&](std::int64_t begin, std::int64_t end) {
+    Canvas canvas;
     for (auto b = begin; b < end; ++b) {
       Brick& brick = *waiting[b];
-      const SkinWeights::Chunk& original = weights_->chunk(brick.brick);
-      InfluenceView now = now_of(brick);
-      for (int word = 0; word < std::ssize(brick.waiting); ++word)
-        for (std::uint64_t bits = std::exchange(brick.waiting[word], 0); bits; bits &= bits - 1) {
-          const int at = 64 * word + std::countr_zero(bits);
-          Influence made = original[at];
-          paint_plainly(made, sides_[0].bones[0], brick.cover[0][at], brick, at, blocked_in[begin / grain]);
-          if (equal(made, now[at])) continue;
-          put(brick, at, made);
-          now = brick.now;
-        }
+      paint_waiting(brick, canvas, blocked_in[begin / grain]);
       brick.waits = false;
     }
   });
   count_blocked(blocked_in);
+}
+
+// What no lock keeps is painted together, the rest voxel by voxel.
+void Stroke::Work::paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked) {
+  auto& [made, at, weight] = canvas;
+  const int bone = sides_[0].bones[0], heir = rules_.heir(bone);
+  int waiting = 0;
+  for (int word = 0; word < std::ssize(brick.waiting); ++word)
+    for (std::uint64_t bits = std::exchange(brick.waiting[word], 0); bits; bits &= bits - 1)
+      at[waiting++] = static_cast<std::uint16_t>(64 * word + std::countr_zero(bits));
+  weights_->chunk(brick.brick).unpack(std::span(at.data(), waiting), made.data());
+  int count = waiting;
+  if (heir < 0 || !rules_.is_free_everywhere()) {
+    count = 0;
+    for (int i = 0; i < waiting; ++i) {
+      if (heir >= 0 && rules_.is_free(made[i], bone)) {
+        made[count] = made[i];
+        at[count++] = at[i];
+        continue;
+      }
+      paint_plainly(made[i], bone, brick.cover[0][at[i]], brick, at[i], blocked);
+      if (!equal(made[i], now_of(brick)[at[i]])) put(brick, at[i], made[i]);
+    }
+  }
+  const int padded = (count + kWeightLanes - 1) / kWeightLanes * kWeightLanes;
+  weights_of(std::span(made.data(), padded), bone, std::span(weight.data(), padded));
+  if (brush_.kind == BrushKind::Add)
+    for (int i = 0; i < count; ++i) weight[i] = static_cast<std::uint16_t>(std::min(weight[i] + brick.cover[0][at[i]], kFullWeight));
+  else
+    for (int i = 0; i < count; ++i) weight[i] = painted(weight[i], brick.cover[0][at[i]]);
+  set_weights(std::span(made.data(), padded), bone, heir, std::span(weight.data(), padded));
+
+  int i = 0;
+  if (brick.now.empty())
+    for (const InfluenceView now = now_of(brick); i < count && equal(made[i], now[at[i]]);) ++i;
+  if (i == count) return;
+  Influence* const now = unpacked(brick).data();
+  std::uint64_t changed = 0;
+  for (; i < count; ++i) {
+    const Words next = std::bit_cast<Words>(made[i]), before = std::bit_cast<Words>(now[at[i]]);
+    changed |= (next[0] ^ before[0]) | (next[1] ^ before[1]);
+    now[at[i]] = made[i];
+  }
+  brick.dirty = brick.dirty || changed;
 }
 
 // Where dabs accumulate.
@@ -420,18 +464,18 @@ void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& p
   }
 }
 
+// A weight under a brush that looks at nothing but it.
+std::uint16_t Stroke::Work::painted(int before, int covered) const {
+  if (brush_.kind == BrushKind::Add) return static_cast<std::uint16_t>(std::min(before + covered, kFullWeight));
+  if (brush_.kind == BrushKind::Subtract) return static_cast<std::uint16_t>(std::max(before - covered, 0));
+  const double to = brush_.kind == BrushKind::Set ? brush_.value * kFullWeight : before * brush_.value;
+  return static_cast<std::uint16_t>(std::clamp(before + (to - before) * (covered / double(kFullWeight)), 0.0, double(kFullWeight)) + 0.5);
+}
+
 void Stroke::Work::paint_plainly(Influence& influence, int bone, int covered, Brick& brick, int at, Blocked& blocked_here) const {
-  int before = 0, whole;
+  int before = 0;
   for (int k = 0; k < 4; ++k) before += influence.bone[k] == bone ? influence.weight[k] : 0;
-  if (brush_.kind == BrushKind::Add) {
-    whole = std::min(before + covered, kFullWeight);
-  } else if (brush_.kind == BrushKind::Subtract) {
-    whole = std::max(before - covered, 0);
-  } else {
-    const double to = brush_.kind == BrushKind::Set ? brush_.value * kFullWeight : before * brush_.value;
-    whole = static_cast<int>(std::clamp(before + (to - before) * (covered / double(kFullWeight)), 0.0, double(kFullWeight)) + 0.5);
-  }
-  const WeightChange change = rules_.set(influence, bone, whole);
+  const WeightChange change = rules_.set(influence, bone, painted(before, covered));
   if (change.changed || change.blocked_by < 0) return;
   blocked_here.brick = &brick;
   blocked_here.at = at;

@@ -230,14 +230,7 @@ int WeightRules::sum_of(const Influence& influence, std::span<const int> bones) 
 }
 
 WeightChange WeightRules::set(Influence& influence, int bone, int weight) const {
-  if (normalize_ != Normalize::All) {
-    bool free = true;
-    if (any_locked_) {
-      free = !locked_[bone];
-      for (int i = 0; i < 4; ++i) free = free && (influence.weight[i] == 0 || !locked_[influence.bone[i]]);
-    }
-    if (free) return set_freely(influence, bone, weight);
-  }
+  if (is_free(influence, bone)) return set_freely(influence, bone, weight);
   return set(influence, std::span(&bone, 1), weight);
 }
 
@@ -257,7 +250,9 @@ WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight)
       return {true, -1};
     }
   }
-  // Without jumps, which would go either way as often.
+  // Without jumps, which would go either way as often. (weight_lanes.h does the same for several voxels at once.)
+  const Influence unsorted = influence;
+  sort_influence(influence);
   int count = 0, found = 0;
   for (int i = 0; i < 4; ++i) {
     count += influence.weight[i] != 0;
@@ -267,7 +262,10 @@ WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight)
   int slot = found ? std::countr_zero(static_cast<unsigned>(found)) : count;
   const int before = found ? influence.weight[slot] : 0;
   const int now = std::clamp(weight, 0, kFullWeight), others = kFullWeight - now;
-  if (now == before) return {};
+  if (now == before) {
+    influence = unsorted;
+    return {};
+  }
   if (others == 0) {
     influence = rigid_influence(bone);
     return {true, -1};

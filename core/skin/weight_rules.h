@@ -40,6 +40,15 @@ class WeightRules {
   bool is_locked(int bone) const { return locked_[bone] != 0; }
   // What locks leave, [0, kFullWeight].
   int room(const Influence& influence) const;
+  // Nothing is locked in it, and `bone` may be set there without regard to what others ask for.
+  bool is_free(const Influence& influence, int bone) const {
+    if (is_free_everywhere()) return true;
+    bool free = normalize_ != Normalize::All && !locked_[bone];
+    for (int i = 0; i < 4; ++i) free = free && (influence.weight[i] == 0 || !locked_[influence.bone[i]]);
+    return free;
+  }
+  // In every voxel.
+  bool is_free_everywhere() const { return normalize_ != Normalize::All && !any_locked_; }
   // -1 where every other bone is locked. Not one of `group`.
   int heir(int bone, std::span<const int> group = {}) const;
 

@@ -52,6 +52,21 @@ TEST_CASE("packed influences: every brick comes back bit for bit, one voxel at a
       }
 }
 
+TEST_CASE("packed influences: some places of every shape") {
+  std::mt19937 random(11);
+  for (const int bones : {1, 2, 6, 300})
+    for (int most = 1; most <= 4; ++most) {
+      const std::vector<Influence> influences = random_influences(random, 512, bones, most);
+      const InfluenceChunk chunk{std::span(influences)};
+      std::vector<std::uint16_t> places;
+      for (std::uint16_t i = 0; i < 512; ++i)
+        if (random() % 3 || i == 511) places.push_back(i);
+      std::vector<Influence> some(places.size());
+      chunk.unpack(places, some.data());
+      for (std::size_t i = 0; i < places.size(); ++i) REQUIRE(some[i] == influences[places[i]]);
+    }
+}
+
 TEST_CASE("packed influences: a brick of one bone costs next to nothing, of two bones three bytes a voxel, of any at most eight") {
   std::mt19937 random(12);
   CHECK(InfluenceChunk(512, rigid_influence(3)).heap_bytes() <= 16);

@@ -169,9 +169,13 @@ TEST_CASE("stroke: the same for one and two threads") {
   Painted painted({arm.volume, arm.tissues, arm.armature});
   std::mt19937 random(2);
   const int bones = static_cast<int>(arm.armature.bones.size());
-  painted.set([&](const glm::ivec3&) { return quantize({{random() % bones, 0.5}, {random() % bones, 0.3}, {random() % bones, 0.2}}); });
+  painted.set([&](const glm::ivec3&) {
+    const int first = static_cast<int>(random() % bones);
+    return quantize({{first, 0.5}, {(first + 1) % bones, 0.3}, {(first + 2 + random() % (bones - 2)) % bones, 0.2}});
+  });
   for (int kind = 0; kind < 9; ++kind) {
     StrokeSettings settings = brush_of(static_cast<BrushKind>(kind), 40, 2);
+    settings.brush.value = 0.5;
     settings.brush.accumulate = kind % 2 == 0;
     settings.locked.assign(bones, 0);
     settings.locked[1] = kind == 4 || kind == 0;
