@@ -4,6 +4,7 @@
 // others leave of one. That is 0 to 8 bytes a voxel where an Influence has 16. Nothing is lost.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -104,6 +105,13 @@ class InfluenceView {
   InfluenceView(const InfluenceChunk& packed) : packed_(&packed) {}
   InfluenceView(const std::vector<Influence>& plain) : plain_(plain.data()) {}
   Influence operator[](std::size_t i) const { return plain_ ? plain_[i] : (*packed_)[i]; }
+  // The whole brick, of `count`.
+  void unpack(std::size_t count, Influence* influences) const {
+    if (plain_)
+      std::copy_n(plain_, count, influences);
+    else
+      packed_->unpack(influences);
+  }
 
  private:
   const InfluenceChunk* packed_ = nullptr;

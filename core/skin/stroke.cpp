@@ -491,27 +491,31 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
   const bool two = mirror_ && !same_bones_ && !accumulate_ && !brick.cover[other].empty();
   const bool around = looks_around();
   std::optional<WeightsAround> views;
-  if (around) views.emplace(body_.tissue, part.brick, [&](int index) { return source(index); });
+  const auto look = [&] {
+    if ((brush_.kind == BrushKind::Smooth || brush_.kind == BrushKind::Sharpen) && !views)
+      views.emplace(body_.tissue, part.brick, [&](int index) { return source(index); });
+  };
   Target target, other_target;
   for (int i = part.begin; i < part.end; ++i) {
     const int at = reached.at[i], cell = reached.cell[i];
+    const float cover = strength * brush_.falloff(std::min(reached.distance[i] * per_radius, 1.0f));
+    const auto covered = static_cast<std::uint16_t>(cover * kFullWeight + 0.5f);
+    if (!accumulate_ && covered <= brick.cover[plane][at]) continue;
     const Influence now = now_of(brick)[at];
     if (next) next[i] = now;
     blocked_here.brick = &brick;
     blocked_here.at = at;
-    float cover = strength * brush_.falloff(std::min(reached.distance[i] * per_radius, 1.0f));
     const glm::ivec3 voxel = tissue.corner + glm::ivec3(cell & 7, cell >> 3 & 7, cell >> 6);
     Influence made = now;
     if (accumulate_) {
       if (!(cover > 0)) continue;
+      look();
       if (around && !target_at(sides_[side], voxel, views, now, target)) continue;
       apply(sides_[side], made, around ? &target : nullptr, voxel, cover, blocked_here);
     } else {
-      const auto covered = static_cast<std::uint16_t>(cover * kFullWeight + 0.5f);
-      std::uint16_t& most = brick.cover[plane][at];
-      if (covered <= most) continue;
-      most = covered;
+      brick.cover[plane][at] = covered;
       made = original[at];
+      look();
       const std::uint16_t beside = two ? brick.cover[other][at] : 0;
       const bool has_target = !around || target_at(sides_[side], voxel, views, original[at], target);
       const auto here = [&] {
@@ -591,6 +595,18 @@ bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, const st
   for (int i = 0; i < count; ++i) differs = differs || !equal(beside[i], own);
   if (!differs) return false;
   if (brush_.kind == BrushKind::Smooth) {
+    // Most often all follow the same bones in the same order.
+    bool alike = true;
+    std::array<int, 4> sum{};
+    for (int i = 0; i < count; ++i) {
+      alike = alike && std::bit_cast<Words>(beside[i])[0] == std::bit_cast<Words>(beside[0])[0];
+      for (int k = 0; k < 4; ++k) sum[k] += beside[i].weight[k];
+    }
+    if (alike) {
+      for (int k = 0; k < 4; ++k)
+        if (sum[k] > 0) target.emplace_back(beside[0].bone[k], sum[k]);
+      return true;
+    }
     for (int i = 0; i < count; ++i) add_to(target, beside[i], 1);
   } else {
     // As far again from the mean as it is.

@@ -334,7 +334,34 @@ WeightChange WeightRules::set(Influence& influence, std::span<const int> group, 
   return changed_to(influence, entries.influence());
 }
 
+// Of the bones that a voxel has anyway, in its order: the same as below, without searching.
+bool WeightRules::blend_own(Influence& influence, std::span<const std::pair<int, double>> target, double amount) const {
+  if (any_locked_ || target.size() > 4 || !(amount > 0)) return false;
+  const std::size_t count = target.size();
+  double sum = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (influence.weight[i] == 0 || influence.bone[i] != target[i].first || !(target[i].second > 0)) return false;
+    sum += target[i].second;
+  }
+  if (count == 0 || (count < 4 && influence.weight[count] != 0)) return false;
+  std::array<std::pair<int, double>, 4> mixed{};
+  for (std::size_t i = 0; i < count; ++i)
+    mixed[i] = {influence.bone[i], (1 - amount) * influence.weight[i] + amount * target[i].second / sum * kFullWeight};
+  for (std::size_t i = 1; i < count; ++i)
+    for (std::size_t k = i; k > 0 && (mixed[k].second > mixed[k - 1].second || (mixed[k].second == mixed[k - 1].second && mixed[k].first < mixed[k - 1].first)); --k)
+      std::swap(mixed[k], mixed[k - 1]);
+  std::array<double, 4> share{};
+  std::array<int, 4> out{};
+  for (std::size_t i = 0; i < count; ++i) share[i] = mixed[i].second;
+  share_out(std::span(share.data(), count), kFullWeight, std::span(out.data(), count));
+  influence.bone = four(mixed[0].first, mixed[1].first, mixed[2].first, mixed[3].first);
+  influence.weight = four(out[0], out[1], out[2], out[3]);
+  sort_influence(influence);
+  return true;
+}
+
 WeightChange WeightRules::blend(Influence& influence, std::span<const std::pair<int, double>> target, double amount) const {
+  if (Influence made = influence; blend_own(made, target, amount)) return changed_to(influence, made);
   Entries entries = entries_of(influence, locked_, {});
   const int room = entries.sum(Part::Other), slots = 4 - entries.number(Part::Locked);
   if (room == 0) return {false, largest_locked(entries)};

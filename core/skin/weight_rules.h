@@ -80,6 +80,7 @@ class WeightRules {
   WeightChange levels(Influence& influence, int bone, const Levels& levels) const;
 
  private:
+  bool blend_own(Influence& influence, std::span<const std::pair<int, double>> target, double amount) const;
   WeightChange set_freely(Influence& influence, int bone, int weight) const;
   int nearest_relative(int bone, std::span<const int> group, bool locked) const;
 

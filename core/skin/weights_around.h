@@ -11,62 +11,73 @@ namespace limber {
 
 class WeightsAround {
  public:
-  // chunk(brick) is an InfluenceView of what lives as long as this.
+  // chunk(brick) is an InfluenceView.
   template <class ChunkOf>
   WeightsAround(const TissueVoxels& tissue, int brick, const ChunkOf& chunk) {
-    const glm::ivec3 corner = tissue.bricks()[brick].corner;
-    view_[6] = view(tissue, brick, chunk);
+    const TissueVoxels::Brick& own = tissue.bricks()[brick];
+    std::array<Influence, kBrick * kBrick * kBrick> all;
+    chunk(brick).unpack(std::size_t(own.count()), all.data());
+    std::size_t next = 0;
+    for (int z = 0; z < kBrick; ++z)
+      for (std::uint64_t word = own.mask[z]; word; word &= word - 1) {
+        const int bit = std::countr_zero(word);
+        around_[place({bit & 7, bit >> 3, z})] = all[next++];
+      }
     for (int d = 0; d < 6; ++d) {
-      glm::ivec3 beside = corner;
-      beside[d >> 1] += d & 1 ? TissueVoxels::kBrick : -TissueVoxels::kBrick;
-      const bool inside = beside[d >> 1] >= 0 && beside[d >> 1] < tissue.grid_size()[d >> 1];
-      view_[d] = view(tissue, inside ? tissue.brick_at(beside) : -1, chunk);
+      const int axis = d >> 1, step = d & 1 ? kBrick : -kBrick;
+      glm::ivec3 shift(0);
+      shift[axis] = step;
+      const glm::ivec3 corner = own.corner + shift;
+      if (corner[axis] < 0 || corner[axis] >= tissue.grid_size()[axis]) continue;
+      const int beside = tissue.brick_at(corner);
+      if (beside < 0) continue;
+      // Of its voxels those that touch.
+      const int layer = d & 1 ? 0 : kBrick - 1;
+      Mask touching{};
+      for (int z = 0; z < kBrick; ++z)
+        touching[z] = tissue.bricks()[beside].mask[z] & (axis == 0   ? std::uint64_t{0x0101010101010101u} << layer
+                                                         : axis == 1 ? std::uint64_t{0xff} << (kBrick * layer)
+                                                         : z == layer ? ~std::uint64_t{0}
+                                                                      : 0);
+      copy(tissue.bricks()[beside], chunk(beside), shift, touching);
     }
   }
 
   // Those of the up to six neighbours through faces that are tissue.    cell  in the brick, [0, 7]
   int beside(const glm::ivec3& cell, std::array<Influence, 6>& found) const {
+    const Influence* here = &around_[place(cell)];
     int count = 0;
-    for (int d = 0; d < 6; ++d) {
-      glm::ivec3 v = cell;
-      const int axis = d >> 1;
-      v[axis] += d & 1 ? 1 : -1;
-      const bool inside = v[axis] >= 0 && v[axis] < TissueVoxels::kBrick;
-      v[axis] &= TissueVoxels::kBrick - 1;
-      const View& view = view_[inside ? 6 : d];
-      if (const int at = view.place(v); at >= 0) found[count++] = view.influences[static_cast<std::size_t>(at)];
+    for (const std::ptrdiff_t step : {-1, 1, -kSide, kSide, -kSide * kSide, kSide * kSide}) {
+      found[count] = here[step];
+      count += is_tissue(found[count]);
     }
     return count;
   }
 
  private:
-  struct View {
-    const TissueVoxels::Brick* brick = nullptr;
-    InfluenceView influences;
-    std::array<std::uint16_t, TissueVoxels::kBrick> before{};  // tissue voxels below each slice
+  static constexpr int kBrick = TissueVoxels::kBrick, kSide = kBrick + 2;
+  using Mask = std::array<std::uint64_t, kBrick>;
 
-    int place(const glm::ivec3& cell) const {  // in the brick, -1: no tissue
-      const int bit = cell.x + TissueVoxels::kBrick * cell.y;
-      if (!brick || !(brick->mask[cell.z] >> bit & 1)) return -1;
-      return before[cell.z] + std::popcount(brick->mask[cell.z] & ((std::uint64_t{1} << bit) - 1));
-    }
-  };
+  static int place(const glm::ivec3& cell) { return cell.x + 1 + kSide * (cell.y + 1 + kSide * (cell.z + 1)); }
+  static bool is_tissue(const Influence& influence) { return std::bit_cast<std::uint64_t>(influence.weight) != 0; }
 
-  template <class ChunkOf>
-  static View view(const TissueVoxels& tissue, int brick, const ChunkOf& chunk) {
-    View made;
-    if (brick < 0) return made;
-    made.brick = &tissue.bricks()[brick];
-    made.influences = chunk(brick);
-    int before = 0;
-    for (int z = 0; z < TissueVoxels::kBrick; ++z) {
-      made.before[z] = static_cast<std::uint16_t>(before);
-      before += std::popcount(made.brick->mask[z]);
+  // The voxels in `wanted`, each at its cell and `shift`.
+  void copy(const TissueVoxels::Brick& brick, const InfluenceView& influences, const glm::ivec3& shift, const Mask& wanted) {
+    std::size_t before = 0;  // tissue voxels of the slices below
+    for (int z = 0; z < kBrick; ++z) {
+      const std::uint64_t all = brick.mask[z];
+      const bool whole = wanted[z] == all;
+      std::size_t next = before;
+      for (std::uint64_t word = wanted[z]; word; word &= word - 1, ++next) {
+        const int bit = std::countr_zero(word);
+        const std::size_t at = whole ? next : before + std::size_t(std::popcount(all & ((std::uint64_t{1} << bit) - 1)));
+        around_[place(glm::ivec3(bit & 7, bit >> 3, z) + shift)] = influences[at];
+      }
+      before = whole ? next : before + std::size_t(std::popcount(all));
     }
-    return made;
   }
 
-  std::array<View, 7> view_;
+  std::array<Influence, kSide * kSide * kSide> around_{};  // no weights where there is no tissue
 };
 
 // Weights of several voxels added up, each times a factor.

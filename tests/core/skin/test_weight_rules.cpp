@@ -222,6 +222,28 @@ TEST_CASE("weight rules: blending goes all the way, none of it, and to what it i
   }
 }
 
+TEST_CASE("weight rules: blending with the bones that a voxel has is the same in whatever order they are told") {
+  std::mt19937 random(5);
+  const WeightRules rules(tree(), {});
+  int changed = 0;
+  for (int round = 0; round < 5000; ++round) {
+    const Influence before = any_influence(random);
+    std::vector<std::pair<int, double>> target;
+    for (int i = 0; i < 4; ++i)
+      if (before.weight[i]) target.emplace_back(before.bone[i], 1 + random() % (random() % 2 ? 6 * kFullWeight : 2));
+    const double amount = random() % 4 == 0 ? 1 : double(random() % 1001) / 1000;
+    Influence one = before, other = before;
+    const WeightChange first = rules.blend(one, target, amount);
+    std::reverse(target.begin(), target.end());
+    const WeightChange second = rules.blend(other, target, amount);
+    REQUIRE(one == other);
+    REQUIRE(first.changed == second.changed);
+    REQUIRE(is_sound(one));
+    changed += first.changed;
+  }
+  CHECK(changed > 2000);
+}
+
 TEST_CASE("weight rules: limits, pruning and steps do what they say") {
   std::mt19937 random(5);
   const WeightRules rules(tree(), {});
