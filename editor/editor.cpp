@@ -9,6 +9,7 @@
 #include "editor/adjust.h"
 #include "editor/assets.h"
 #include "editor/dispatch.h"
+#include "editor/fem_view.h"
 #include "editor/frame_log.h"
 #include "editor/handling.h"
 #include "editor/live_pose.h"
@@ -94,7 +95,7 @@ void Dialog::escape(Editor& editor) { editor.close_dialog(); }
 Editor::Editor(Host& host, const Preferences& preferences)
     : host(host), preferences(preferences), keymap(read_keymap(asset("keymap.json"))), operators(gather_operators()),
       jobs(kJobsAtOnce, [&host] { host.wake(); }), arrangements(preferences.arrangements),
-      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
+      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), fem(std::make_unique<FemView>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
   IMGUI_CHECKVERSION();
   imgui = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();

@@ -41,6 +41,7 @@ struct Timeline;
 struct Handling;
 struct LastOperation;
 struct SkinDisplay;
+struct FemView;
 
 // What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
 struct Drag {
@@ -116,6 +117,7 @@ struct Editor {
   Jobs jobs;
   std::map<int, std::function<void(Editor&, const JobStatus&)>> after_job;  // what follows the end of a job, by id
   Path worker_program = "/proc/self/exe";                                  // what runs `limber job`
+  bool workers_yield = true;  // to everything else on the machine
   std::map<int, Task> tasks;  // jobs whose end the editor meets, by id
   std::map<int, StepOfWork> step_of_job;  // what a running job is for
   ProjectLife life;
@@ -169,6 +171,7 @@ struct Editor {
   std::vector<Pickable> pick_list;  // what lies under the pointer, nearest first
   Comparison comparison;
   std::unique_ptr<LivePose> live;
+  std::unique_ptr<FemView> fem;  // of fem_view.h; never null
   struct {
     std::string result;  // whose name is a text field now; "" for none
     std::string text;

@@ -55,7 +55,7 @@ const std::vector<std::pair<std::string, Fact>>& facts() {
       {"layout", [](const Editor& e) { constexpr const char* kNames[] = {"one", "split", "four"}; return std::string(kNames[static_cast<int>(e.arrangement().views)]); }},
       {"maximized", [](const Editor& e) { return e.arrangement().maximized ? name_of(*e.arrangement().maximized) : std::string("no"); }},
       {"display", [](const Editor& e) { constexpr const char* kNames[] = {"solid", "xray", "tissue"}; return std::string(kNames[static_cast<int>(e.views->display)]); }},
-      {"weights", [](const Editor& e) { constexpr const char* kNames[] = {"active", "dominant", "mixed", "count"}; return std::string(!e.views->scene.weights ? "none" : kNames[static_cast<int>(e.views->scene.weights->display)]); }},
+      {"weights", [](const Editor& e) { constexpr const char* kNames[] = {"active", "dominant", "mixed", "count", "field"}; return std::string(!e.views->scene.weights ? "none" : kNames[static_cast<int>(e.views->scene.weights->display)]); }},
       {"bone", [](const Editor& e) { const auto bone = e.workspace == Workspace::Skin ? skin_bone(e) : e.selection.bone; return bone && e.document().armature && *bone < std::ssize(e.document().armature->bones) ? e.document().armature->bones[static_cast<std::size_t>(*bone)].name : std::string("none"); }},
       {"locked", [](const Editor& e) { return std::to_string(e.document().locks ? e.document().locks->bones.size() : 0); }},
       {"slices", [](const Editor& e) { return std::string(e.views->slice_display == render::SliceDisplay::Labels ? "labels" : "outline"); }},

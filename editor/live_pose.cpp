@@ -9,6 +9,7 @@
 #include "core/base/background.h"
 #include "core/base/error.h"
 #include "editor/editor.h"
+#include "editor/fem_view.h"
 #include "editor/posing.h"
 #include "editor/test_pose.h"
 
@@ -50,7 +51,7 @@ ReadyBody make_ready(const PosedBody& body, int divisor) {
 }  // namespace
 
 bool PoseWish::operator==(const PoseWish& other) const {
-  return body == other.body && blend == other.blend && surface == other.surface && std::equal(motions.begin(), motions.end(), other.motions.begin(), other.motions.end(), same_motion);
+  return body == other.body && blend == other.blend && surface == other.surface && mesh == other.mesh && std::equal(motions.begin(), motions.end(), other.motions.begin(), other.motions.end(), same_motion);
 }
 
 MapMaker::MapMaker(int divisor, std::function<void()> wake) : divisor_(divisor), wake_(std::move(wake)), thread_([this] { work(); }) {}
@@ -97,12 +98,12 @@ void MapMaker::work() {
           ready = {};  // two at once would be too much memory
           ready = make_ready(made.wish.body, divisor_);
         }
-        made.map = ready.preview->update(made.wish.motions, made.wish.blend);
+        made.map = ready.preview->update(made.wish.motions, made.wish.blend, made.wish.mesh);
         if (made.wish.surface && divisor_ == 1) made.surface = std::make_shared<const PosedSurface>(posed_surface(made.wish.surface, made.wish.motions, made.wish.blend));
       };
       // After a stroke the next one may be under way, and its frames come first.
       const bool is_painted = ready.body.volume == made.wish.body.volume && ready.body.weights != made.wish.body.weights;
-      if (is_painted) in_background(make);
+      if (is_painted || made.wish.mesh.rest) in_background(make);
       else make();
     } catch (const Error& error) {
       made.trouble = error.what();
@@ -158,12 +159,28 @@ std::shared_ptr<const SkinnedSurface> LivePose::surface_of(Editor& editor, const
   return nullptr;
 }
 
+// Tissue where the mesh of a solve carries it.
+void LivePose::follow(const Solve& solve, double now) {
+  const SolveFeed::Seen seen = solve.feed->seen();
+  PoseWish wish{{solve.from.volume, solve.from.tissues, solve.from.weights}, seen.motions, Blend::Linear, nullptr, seen.mesh};
+  if (!(wish == wish_)) {
+    wish_ = std::move(wish);
+    since_ = now;
+  }
+  swift_.ask(wish_);
+  if (coarse_.wish.mesh.rest == seen.mesh.rest) shown_ = coarse_.map, trouble_ = coarse_.trouble;
+}
+
 // Which map is shown; returns what it stands for.
 std::optional<DenseWish> LivePose::choose(Editor& editor) {
   shown_ = nullptr;
   shown_surface_ = nullptr;
   posed_ = false;
   trouble_.clear();
+  if (const Solve* solve = watched_solve(editor)) {
+    follow(*solve, editor.now);
+    return {};
+  }
   const Document& document = editor.document();
   const bool painting = editor.workspace == Workspace::Skin;
   if (!shows_pose(editor) || !document.volume || !document.tissues) return {};
@@ -190,7 +207,7 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
     return {};
   }
   posed_ = true;
-  if (coarse_.wish.body.volume == document.volume) shown_ = coarse_.map, shown_surface_ = coarse_.surface;
+  if (coarse_.wish.body.volume == document.volume && !coarse_.wish.mesh.rest) shown_ = coarse_.map, shown_surface_ = coarse_.surface;
   if (coarse_.wish == wish_) trouble_ = coarse_.trouble;
   if (fine_.wish == wish_ && fine_.map) shown_ = fine_.map;  // of the same pose as the surface
   else if (editor.now < since_ + kRest) editor.wake_at(since_ + kRest);

@@ -28,6 +28,7 @@
 namespace limber::editor {
 
 struct Editor;
+struct Solve;
 
 // A body that maps are made of. Equal pointers are equal contents.
 struct PosedBody {
@@ -44,6 +45,7 @@ struct PoseWish {
   std::vector<RigidTransform> motions;  // of the weights' bones
   Blend blend = Blend::DualQuaternion;
   std::shared_ptr<const SkinnedSurface> surface;  // posed as well; null: none
+  MeshPose mesh = {};  // what carries tissue in place of its bones; empty: nothing
 
   bool operator==(const PoseWish&) const;
 };
@@ -97,6 +99,7 @@ class LivePose {
 
  private:
   std::optional<DenseWish> choose(Editor& editor);
+  void follow(const Solve& solve, double now);
   std::shared_ptr<const SkinnedSurface> surface_of(Editor& editor, const PosedBody& body);
 
   MapMaker swift_, thorough_;

@@ -9,9 +9,12 @@
 #include "core/base/error.h"
 #include "core/pose/pose_io.h"
 #include "core/project/worker.h"
+#include "core/resample/fem_steps.h"
+#include "core/resample/pose_path.h"
 #include "core/rig/armature_io.h"
 #include "core/skin/weights_io.h"
 #include "core/volume/volume_io.h"
+#include "editor/fem_view.h"
 #include "editor/results.h"
 
 namespace limber::editor {
@@ -48,7 +51,10 @@ struct Request {
   std::string quality;  // of finite elements
   std::string scratch;
   WorkerSettings worker;
+  std::shared_ptr<SolveFeed> feed;  // of finite elements; else null
 };
+
+constexpr char kSteps[] = "solve";  // of the files that the solver leaves
 
 void write_inputs(const Request& request, const ScratchFolder& folder, Progress& progress) {
   const Document& from = request.from;
@@ -68,6 +74,7 @@ void write_inputs(const Request& request, const ScratchFolder& folder, Progress&
   if (request.fit_joints) job["fit-joints"] = true;
   if (request.method == "fem") {
     job["quality"] = request.quality;
+    job["steps"] = kSteps;
     if (request.contact) job["contact"] = true;
   }
   write_file_atomically(folder / "job.json", job.dump(1) + "\n");
@@ -87,9 +94,39 @@ std::shared_ptr<const LabelVolume> read_posed(const Path& path, const TissueTabl
   return std::make_shared<const LabelVolume>(std::move(file.volume));
 }
 
-Edit resample_in_worker(const Request& request, std::shared_ptr<std::string>& name, Progress& progress) {
+// Hands on what the worker has left of its solve, as it goes.
+class StepReader {
+ public:
+  StepReader(Path name, std::shared_ptr<SolveFeed> feed) : name_(std::move(name)), feed_(std::move(feed)) {}
+  void operator()(const WorkerProgress& progress) {
+    feed_->tell(progress);
+    if (!progress.iteration) return;
+    if (!rest_) read_rest();
+    auto step = read_fem_step(name_);
+    if (rest_ && step && step->V.rows() == rest_->V.rows()) feed_->show(rest_, std::move(*step));
+  }
+
+ private:
+  void read_rest() {
+    if (auto mesh = read_fem_mesh(name_)) rest_ = std::make_shared<const TetMesh>(std::move(mesh->tets));
+  }
+  Path name_;
+  std::shared_ptr<SolveFeed> feed_;
+  std::shared_ptr<const TetMesh> rest_;
+};
+
+// Null where nothing bends.
+std::shared_ptr<const SolvedMesh> read_solved(const Path& name) {
+  auto mesh = read_fem_mesh(name);
+  auto step = read_fem_step(name);
+  if (!mesh || !step || mesh->tets.V.rows() != step->V.rows()) return nullptr;
+  return std::make_shared<const SolvedMesh>(SolvedMesh{std::move(*mesh), std::move(step->V)});
+}
+
+Edit resample_in_worker(Request& request, std::shared_ptr<std::string>& name, Progress& progress) {
   const ScratchFolder folder(request.scratch);
   write_inputs(request, folder, progress);
+  if (request.feed) request.worker.on_progress = StepReader(folder / kSteps, request.feed);
   run_worker(folder / "job.json", progress, request.worker);
   auto result = std::make_shared<Result>();
   result->method = request.method + (request.method == "fem" && request.contact ? "-contact" : "");
@@ -100,6 +137,7 @@ Edit resample_in_worker(const Request& request, std::shared_ptr<std::string>& na
   result->from_armature = request.from.armature;
   result->from_weights = request.from.weights;
   result->from_pose = request.from.pose;
+  if (request.feed) result->solved = read_solved(folder / kSteps);
   const std::string wanted = name_of_pose(*request.from.armature, *request.from.pose) + ", " + method_name(result->method);
   return [result, wanted, name](const Document& now) {
     Document next = now;
@@ -135,17 +173,28 @@ std::string why_no_resampling(const Editor& editor) {
 
 void start_resampling(Editor& editor) {
   Request request{editor.document(), editor.resampling.method, editor.resampling.spacing, editor.resampling.fit_joints, editor.resampling.contact, editor.resampling.quality,
-                  editor.preferences.scratch_folder, {}};
+                  editor.preferences.scratch_folder, {}, {}};
   if (!request.from.pose) request.from.pose = std::make_shared<const Pose>(rest_pose(*request.from.armature));
+  if (request.method == "fem") request.feed = std::make_shared<SolveFeed>();
   request.worker.program = editor.worker_program;
+  request.worker.yields = editor.workers_yield;
   request.worker.memory_limit_mb = editor.preferences.worker_memory_mb;
   request.worker.time_limit = editor.preferences.worker_minutes * 60.0;
   auto name = std::make_shared<std::string>();
   const std::string label = "Resample " + name_of_pose(*request.from.armature, *request.from.pose);
-  const int id = editor.jobs.start(label, [request, name](Progress& progress) mutable { return resample_in_worker(request, name, progress); });
+  const int id = editor.jobs.start(label, [request, name](Progress& progress) mutable { return resample_in_worker(request, name, progress); }, request.feed ? Lane::Long : Lane::Common);
   editor.step_of_job[id] = StepOfWork::Resample;
+  if (request.feed) {
+    editor.fem->solves[id] = {request.from, largest_angle_degrees(*request.from.pose), request.feed};
+    watch(editor);
+  }
   editor.after_job[id] = [name](Editor& e, const JobStatus& job) {
-    if (job.state == JobState::Done) tell(e, *name);
+    const bool was_watched = e.fem->watched == job.id;
+    e.fem->solves.erase(job.id);
+    if (was_watched) stop_watching(e);
+    if (job.state != JobState::Done) return;
+    tell(e, *name);
+    if (was_watched && e.workspace == Workspace::Resample) show_result(e, *name);
   };
   editor.touch();
 }

@@ -6,7 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/resample/pose_path.h"
 #include "editor/editor.h"
+#include "editor/fem_view.h"
 #include "editor/live_pose.h"
 #include "editor/posing.h"
 #include "editor/test_pose.h"
@@ -32,10 +34,13 @@ std::optional<double> number(const Json& json, const char* key) {
 
 std::int64_t count(const Json& json, const char* key) { return static_cast<std::int64_t>(number(json, key).value_or(0)); }
 
-bool same_kinds(const std::shared_ptr<const TissueTable>& a, const std::shared_ptr<const TissueTable>& b) {
+// What a resampling reads of tissues; finite elements also ask how stiff they are.
+bool same_tissues(const std::shared_ptr<const TissueTable>& a, const std::shared_ptr<const TissueTable>& b, bool stiffness) {
   if (a == b || !a || !b) return true;
-  return std::equal(a->tissues.begin(), a->tissues.end(), b->tissues.begin(), b->tissues.end(),
-                    [](const Tissue& x, const Tissue& y) { return x.label == y.label && x.kind == y.kind && x.priority == y.priority; });
+  return std::equal(a->tissues.begin(), a->tissues.end(), b->tissues.begin(), b->tissues.end(), [&](const Tissue& x, const Tissue& y) {
+    if (stiffness && (x.young_modulus != y.young_modulus || x.poisson_ratio != y.poisson_ratio)) return false;
+    return x.label == y.label && x.kind == y.kind && x.priority == y.priority;
+  });
 }
 
 template <class T>
@@ -91,7 +96,7 @@ std::string method_name(const std::string& method) {
 
 std::string stale_reason(const Document& document, const Result& result) {
   if (result.from_volume != document.volume) return "volume changed";
-  if (!same_kinds(result.from_tissues, document.tissues)) return "tissues changed";
+  if (!same_tissues(result.from_tissues, document.tissues, result.method.starts_with("fem"))) return "tissues changed";
   if (!same(result.from_armature, document.armature)) return "rig changed";
   if (!same(result.from_weights, document.weights)) return "weights changed";
   return "";
@@ -129,6 +134,7 @@ std::shared_ptr<const Result> result_named(const Document& document, const std::
 }
 
 std::shared_ptr<const Result> shown_result(const Editor& editor) {
+  if (watched_solve(editor)) return nullptr;
   const Comparison& comparison = editor.comparison;
   auto result = result_named(editor.document(), comparison.shows_a && !wiping(editor) ? comparison.a : comparison.b);
   if (result && editor.workspace == Workspace::Pose && !(result->from_pose && *result->from_pose == shown_pose(editor))) return nullptr;
@@ -141,6 +147,7 @@ std::shared_ptr<const Result> chosen_result(const Editor& editor) {
 }
 
 void show_result(Editor& editor, const std::string& name) {
+  stop_watching(editor);
   editor.comparison.b = name;
   editor.comparison.shows_a = false;
 }
@@ -181,6 +188,17 @@ Document shown_document(const Editor& editor) {
 
 namespace {
 
+// Of the bones of the rig that the solve began with, as far as it has come.
+std::vector<RigidTransform> motions_of(const Solve& solve) {
+  const SolveFeed::Seen seen = solve.feed->seen();
+  const Armature& armature = *solve.from.armature;
+  std::vector<RigidTransform> motions = posed_from_rest(armature, part_of_pose(*solve.from.pose, seen.reached));
+  const auto& bones = solve.from.weights->bones();
+  for (std::size_t b = 0; b < bones.size() && b < seen.motions.size(); ++b)
+    if (const auto bone = armature.find(bones[b])) motions[static_cast<std::size_t>(*bone)] = seen.motions[b];
+  return motions;
+}
+
 // `result` null: at rest, or in the pose of the moment.
 void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<const Result>& result) {
   const Document& document = editor.document();
@@ -196,6 +214,9 @@ void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<
     }
     if (document.armature && result->from_pose && result->from_pose->rotation.size() == document.armature->bones.size())
       scene.posed_from_rest = posed_from_rest(*document.armature, *result->from_pose);
+  } else if (const Solve* solve = watched_solve(editor)) {
+    scene.pose = editor.live->map();
+    if (scene.pose) scene.posed_from_rest = motions_of(*solve);
   } else if (shows_pose(editor)) {
     scene.posed_from_rest = posed_from_rest(*document.armature, shown_pose(editor));
     scene.pose = editor.live->map();

@@ -265,7 +265,8 @@ const char* name_of(const std::optional<render::WeightDisplay>& display) {
     case render::WeightDisplay::Active: return "Active bone weight";
     case render::WeightDisplay::Dominant: return "Dominant bones";
     case render::WeightDisplay::Mixed: return "All influences";
-    case render::WeightDisplay::Count: break;
+    case render::WeightDisplay::Count:
+    case render::WeightDisplay::Field: break;
   }
   return "Number of influences";
 }

@@ -71,14 +71,16 @@ enum class WeightDisplay {
   Dominant,  // the bone that has most of a voxel
   Mixed,     // all its bones, by their shares
   Count,     // how many bones it follows
+  Field,     // no weights: a colour of its own for each voxel, of whatever is measured there
 };
 struct ShownWeights {
-  std::shared_ptr<const SkinWeights> weights;
+  std::shared_ptr<const SkinWeights> weights;  // null of a field
   std::shared_ptr<const TissueVoxels> tissue;  // of the volume
   WeightDisplay display = WeightDisplay::Active;
   int bone = -1;  // of the weights' bones, the active one; -1: none
   std::shared_ptr<const std::vector<glm::vec3>> swatches;  // #bones of the weights, sRGB
   std::shared_ptr<const std::vector<std::uint8_t>> region;  // a byte per voxel of `tissue`: where it is 0 colours are dull; null: none are
+  std::shared_ptr<const std::vector<glm::u8vec3>> field = nullptr;  // #voxels of `tissue`, sRGB; of a field alone
   bool contours = true;  // lines where the active bone's weight passes a quarter, a half, three quarters; else between colours
 
   bool operator==(const ShownWeights&) const = default;

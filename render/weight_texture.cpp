@@ -35,7 +35,8 @@ class Texels {
       case WeightDisplay::Active: return of_active(influence);
       case WeightDisplay::Dominant: return of_colour(swatches_[influence.bone[0]]);
       case WeightDisplay::Mixed: return of_colour(mixed_colour(influence, swatches_));
-      case WeightDisplay::Count: break;
+      case WeightDisplay::Count:
+      case WeightDisplay::Field: break;
     }
     return of_colour(count_colour(static_cast<int>(std::count_if(influence.weight.begin(), influence.weight.end(), [](auto weight) { return weight > 0; }))));
   }
@@ -138,13 +139,13 @@ std::vector<glm::u8vec4> texels_of_tissue(const Box& box, const ShownWeights& sh
       for (int x = low.x & ~7; x < high.x; x += TissueVoxels::kBrick) {
         const int brick = tissue.brick_at({x, y, z});
         if (brick < 0) continue;
-        const SkinWeights::Chunk& chunk = shown.weights->chunk(brick);
+        const SkinWeights::Chunk* chunk = shown.field ? nullptr : &shown.weights->chunk(brick);
         const std::int64_t first = tissue.bricks()[static_cast<std::size_t>(brick)].first;
         tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
           const glm::ivec3 at = (voxel >> halvings) + kPad - box.low;
           if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, size))) return;
           glm::u8vec4& texel = result[(static_cast<std::size_t>(at.z) * size.y + at.y) * size.x + at.x];
-          texel = texels.of(chunk[static_cast<std::size_t>(place - first)]);
+          texel = chunk ? texels.of((*chunk)[static_cast<std::size_t>(place - first)]) : glm::u8vec4((*shown.field)[static_cast<std::size_t>(place)], 255);
           if (shown.region && (*shown.region)[static_cast<std::size_t>(place)]) texel = glm::u8vec4((glm::ivec4(texel) + 1) / 2);
         });
       }
@@ -217,7 +218,7 @@ bool WeightTexture::region_differs(const ShownWeights& shown, std::int64_t brick
 }
 
 bool WeightTexture::means_the_same(const ShownWeights& shown) const {
-  return shown_ && shown.tissue == shown_->tissue && shown.display == shown_->display && shown.swatches == shown_->swatches &&
+  return shown_ && !shown.field && !shown_->field && shown.tissue == shown_->tissue && shown.display == shown_->display && shown.swatches == shown_->swatches &&
          shown.weights->chunk_count() == shown_->weights->chunk_count();
 }
 
@@ -234,7 +235,8 @@ std::vector<std::uint8_t> WeightTexture::changed_bricks(const ShownWeights& show
 }
 
 void WeightTexture::change_to(const VolumeTexture& volume, const ShownWeights& shown) {
-  if (shown.weights->size() != shown.tissue->size() || shown.weights->chunk_count() != std::ssize(shown.tissue->bricks()))
+  if ((shown.display == WeightDisplay::Field) != (shown.field != nullptr)) throw std::logic_error("a field has colours, weights have none");
+  if (shown.field ? std::ssize(*shown.field) != shown.tissue->size() : shown.weights->size() != shown.tissue->size() || shown.weights->chunk_count() != std::ssize(shown.tissue->bricks()))
     throw std::logic_error("the weights are another volume's");
   if (shown.region && std::ssize(*shown.region) != shown.tissue->size()) throw std::logic_error("the region is another volume's");
   const BlockLayout& layout = volume.layout();
@@ -349,7 +351,7 @@ int WeightTexture::bind(const VolumeTexture& volume, gl::Program& program, int f
 }
 
 WeightReading reading_of(WeightDisplay display) {
-  return display == WeightDisplay::Active ? WeightReading::Ramp : display == WeightDisplay::Mixed ? WeightReading::Filtered : WeightReading::Voxels;
+  return display == WeightDisplay::Active ? WeightReading::Ramp : display == WeightDisplay::Mixed || display == WeightDisplay::Field ? WeightReading::Filtered : WeightReading::Voxels;
 }
 
 std::string weight_functions(int atlases, WeightReading reading) {

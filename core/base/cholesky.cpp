@@ -7,6 +7,8 @@
 #include <utility>
 
 #include <cholmod.h>
+#include <dlfcn.h>
+#include <sys/mman.h>
 
 #include "core/base/error.h"
 
@@ -29,6 +31,27 @@ class OneThread {
  private:
   int before_;
 };
+
+// OpenBLAS takes its working memory at its first call, and where there is none it asks again for ever. So it is led to take
+// it here, once the memory is seen to be there.
+void require_blas_memory() {
+  static const bool has_memory = [] {
+    constexpr std::size_t kMost = std::size_t{160} << 20;  // it takes 128 MB of address space
+    void* room = ::mmap(nullptr, kMost, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED) throw Error("not enough memory to solve with", "factorization", "use a coarser mesh, or more memory");
+    ::munmap(room, kMost);
+    using Factorize = void (*)(const char* half, const int* n, double* A, const int* lda, int* info);
+    if (const auto factorize = reinterpret_cast<Factorize>(::dlsym(RTLD_DEFAULT, "dpotrf_"))) {
+      constexpr int kSize = 1;
+      double one = 1;
+      int info = 0;
+      factorize("L", &kSize, &one, &kSize, &info);
+    }
+    return true;
+  }();
+  assert(has_memory);
+  static_cast<void>(has_memory);
+}
 
 // Positions of A's entries, without values.
 cholmod_sparse pattern_of(std::vector<int>& column, std::vector<int>& row) {
@@ -207,6 +230,7 @@ void Cholesky::clear() { std::fill(factor_->value.begin(), factor_->value.end(),
 
 bool Cholesky::factorize() {
   const OneThread one_thread;
+  require_blas_memory();
   cholmod_sparse A = pattern_of(factor_->column, factor_->row);
   A.x = factor_->value.data();
   A.xtype = CHOLMOD_REAL;

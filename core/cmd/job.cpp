@@ -60,10 +60,11 @@ struct Options {
   std::string file;
   std::string progress;
   int memory_limit = 0, parent = 0;
+  bool yields = false;
 };
 
 void run(const Options& options) {
-  become_worker(options.memory_limit, options.parent);
+  become_worker(options.memory_limit, options.yields, options.parent);
   const Path path = options.file;
   Json job = read_job(path);
   if (!options.progress.empty()) job["progress"] = options.progress;
@@ -89,6 +90,7 @@ void add_job(CLI::App& app) {
   command->add_option("JOB", options->file, "JSON: {\"command\": \"resample\", \"volume\", \"rig\", ... as the command's options}")->required();
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
   command->add_option("--memory-limit", options->memory_limit, "MB of memory it may take")->check(CLI::Range(1, 1 << 30));
+  command->add_flag("--yield", options->yields, "takes of the machine what all others leave");
   command->add_option("--parent", options->parent, "the process that it must not outlive");
   command->callback([options] { run(*options); });
 }

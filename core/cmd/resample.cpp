@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] POSE-OPTIONS --method lbs|dqs|fem [--fit-joints]
-//        [--contact] [--quality draft|normal|fine] [--mesh-out NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--with GREY=OUT2] [--field OUT.nrrd] [--jacobian OUT.nrrd]
+//        [--contact] [--quality draft|normal|fine] [--mesh-out NAME] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--with GREY=OUT2] [--field OUT.nrrd] [--jacobian OUT.nrrd]
 //        [--threads N] [--progress json]
 #include "core/resample/resample.h"
 
@@ -17,6 +17,7 @@
 #include "core/mesh/tetgen_files.h"
 #include "core/report/report.h"
 #include "core/resample/fem_shape.h"
+#include "core/resample/fem_steps.h"
 #include "core/resample/pose_path.h"
 #include "core/rig/bone_parts.h"
 #include "core/rig/fit_joint.h"
@@ -31,7 +32,7 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method, output, report, grey, field, jacobian, quality, mesh_out;
+  std::string weights, method, output, report, grey, field, jacobian, quality, mesh_out, steps;
   std::optional<double> spacing;
   bool nearest = false, fit_joints = false, contact = false;
 };
@@ -62,6 +63,7 @@ void check_outputs(const Options& options) {
     if (!volume.empty()) check_writable(volume);
   std::vector<std::string> others = {options.report};
   if (!options.mesh_out.empty()) others.insert(others.end(), {mesh_file(options.mesh_out, ".node"), mesh_file(options.mesh_out, ".ele")});
+  if (!options.steps.empty()) others.insert(others.end(), {options.steps + ".mesh", options.steps + ".step"});
   for (const std::string& other : others)
     if (!other.empty()) check_place(other);
   outputs.insert(outputs.end(), others.begin(), others.end());
@@ -90,34 +92,50 @@ SkinWeights weights_of(const Body& body, const TissueVoxels& tissue, const BoneP
 // Options of finite elements alone.
 void check_method(const Options& options) {
   if (options.method == "fem") return;
-  for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"}, {!options.quality.empty(), "--quality"}, {!options.mesh_out.empty(), "--mesh-out"}})
+  for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"}, {!options.quality.empty(), "--quality"}, {!options.mesh_out.empty(), "--mesh-out"}, {!options.steps.empty(), "--steps"}})
     if (is_given) throw Error(std::string(name) + " needs finite elements", "--method " + options.method, "use --method fem, or leave it out");
 }
 
-// How far the solve is, for the user, with what it takes to the end at the pace so far.
+// How far the solve is, for the user, with what it takes to the end at the pace so far; and for a program that watches.
 class SolveProgress {
  public:
-  SolveProgress(CommandProgress& progress, double angle_degrees) : progress_(progress), angle_degrees_(angle_degrees) {}
-  void operator()(const SolveStep& step) {
-    if (step.iteration <= 1) watch_ = {};
-    const double left = step.reached > 0 ? watch_.seconds() * (1 / step.reached - 1) : 0;
-    progress_.show({step.reached, step.reached * angle_degrees_, step.iteration, step.residual, left});
+  SolveProgress(CommandProgress& progress, const Options& options, const std::vector<std::string>& bones, const Armature& rig, const Pose& pose)
+      : progress_(progress), name_(options.steps), bones_(bones), rig_(rig), pose_(pose) {}
+  void begin(const TissueModel& model) const {
+    if (!name_.empty()) write_fem_mesh(fem_mesh_of(model), name_);
   }
+  void show(const SolveStep& step) {
+    if (step.iteration <= 1) watch_ = {};
+    leave({step.reached, step.iteration, step.residual, {}, step.V});
+    const double left = step.reached > 0 ? watch_.seconds() * (1 / step.reached - 1) : 0;
+    progress_.show({step.reached, step.reached * largest_angle_degrees(pose_), step.iteration, step.residual, left});
+  }
+  // Where everything has come to rest.
+  void end(const FemShape& shape) const { leave({shape.reached, shape.solve.iterations, shape.solve.residual_mm, {}, shape.V}); }
 
  private:
+  void leave(FemStep step) const {
+    if (name_.empty()) return;
+    step.motions = bone_motions(bones_, rig_, part_of_pose(pose_, step.reached));
+    write_fem_step(step, name_);
+  }
   CommandProgress& progress_;
-  double angle_degrees_;
+  std::string name_;
+  const std::vector<std::string>& bones_;
+  const Armature& rig_;
+  const Pose& pose_;
   Stopwatch watch_;
 };
 
-Method method_of(const Options& options, const Pose& pose, CommandProgress& progress) {
+Method method_of(const Options& options, SolveProgress& solve) {
   if (options.method == "dqs") return DualQuaternion{};
   if (options.method == "lbs") return LinearBlend{};
   Fem fem;
   fem.contact = options.contact;
   if (options.quality == "draft") fem.quality = FemQuality::Draft;
   if (options.quality == "fine") fem.quality = FemQuality::Fine;
-  fem.on_step = SolveProgress(progress, largest_angle_degrees(pose));
+  fem.on_mesh = [&solve](const TissueModel& model) { solve.begin(model); };
+  fem.on_step = [&solve](const SolveStep& step) { solve.show(step); };
   return fem;
 }
 
@@ -264,10 +282,12 @@ void run(const Options& options) {
   const ResampleSettings settings{.nearest = options.nearest, .spacing = options.spacing,
                                   .displacement = !options.field.empty(), .jacobian = !options.jacobian.empty(),
                                   .grey = grey ? &*grey : nullptr};
+  SolveProgress solve(progress, options, weights.bones(), body.rig, pose);
   Posed posed = [&] {
     const CommandProgress::LeavesAtOnce nothing_is_written_yet;
-    return resample(body.file.volume, body.tissues, body.rig, weights, pose, method_of(options, pose, progress), settings, progress);
+    return resample(body.file.volume, body.tissues, body.rig, weights, pose, method_of(options, solve), settings, progress);
   }();
+  if (posed.shape) solve.end(*posed.shape);
   if (!options.mesh_out.empty() && !posed.shape)
     throw Error("the pose bends nothing, so there is no mesh", options.mesh_out, "leave --mesh-out out, or give a pose");
   report.seconds.mesh = posed.report.seconds_mesh;
@@ -308,6 +328,7 @@ void add_resample(CLI::App& app) {
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));
   command->add_option("--mesh-out", options->mesh_out, "fem: the posed mesh as NAME.node and NAME.ele, with the tissue of each tet")->type_name("NAME");
+  command->add_option("--steps", options->steps, "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step")->type_name("NAME");
   command->add_flag("--fit-joints", options->fit_joints, "first move each bent joint so that its bones do not collide");
   command->add_option("-o,--output", options->output, "the posed volume")->required();
   command->add_option("--report", options->report, "what changed: JSON there, a table on stdout");

@@ -5,12 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
-
 #include "core/base/parallel.h"
 #include "core/deform/claims.h"
-#include "core/deform/nearest_in_triangle.h"
+#include "core/deform/mesh_border.h"
 
 namespace limber {
 
@@ -62,87 +59,29 @@ std::uint32_t index_of(const Grid& grid, const glm::ivec3& voxel) { return stati
 
 }  // namespace
 
-// The faces that one tet alone has, and how what lies outside moves with them.
+// How what lies outside the mesh moves with its border.
 class PosedTets::Border {
  public:
-  explicit Border(const PosedTets& tets) : tets_(tets) {
-    const TetMesh& mesh = *tets.mesh_;
-    const auto neighbours = neighbours_of(mesh.T);
-    std::vector<VoxelRange> boxes;
-    for (int t = 0; t < mesh.T.rows(); ++t)
-      for (int f = 0; f < 4; ++f) {
-        if (neighbours[t][f] >= 0) continue;
-        faces_.push_back({{mesh.T(t, kTetFaces[f][0]), mesh.T(t, kTetFaces[f][1]), mesh.T(t, kTetFaces[f][2])}, t});
-        glm::dvec3 low(INFINITY), high(-INFINITY);
-        for (int node : faces_.back().corners) {
-          low = glm::min(low, tets.rest_[node]);
-          high = glm::max(high, tets.rest_[node]);
-        }
-        boxes.push_back({glm::ivec3(glm::floor(low)), glm::ivec3(glm::ceil(high))});
-      }
-    bins_ = BoxBins(std::move(boxes), TissueVoxels::kBrick);
-  }
+  explicit Border(const PosedTets& tets) : tets_(tets), border_(*tets.mesh_, tets.lattice_->volume().grid) {}
 
   // Where a rest point outside the mesh goes.
   FixedPoint carried(const glm::dvec3& rest) const {
     const Grid& grid = tets_.lattice_->volume().grid;
-    const glm::dvec3 world = world_from_voxel(grid) * rest;
-    const double least_spacing = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-    std::vector<int> near;
-    double least = INFINITY;
-    int face = -1;
-    glm::dvec3 shares(0);
-    const int furthest = 2 * std::max({grid.size.x, grid.size.y, grid.size.z}) + 64;
-    for (int reach = 2; least > reach * least_spacing * reach * least_spacing && reach <= 2 * furthest; reach *= 2) {
-      bins_.meeting({glm::ivec3(glm::floor(rest)) - reach, glm::ivec3(glm::ceil(rest)) + reach}, near);
-      for (int f : near) {
-        const auto& c = faces_[f].corners;
-        const Eigen::MatrixX3d& V = tets_.mesh_->V;
-        const glm::dvec3 s = nearest_in_triangle(world, in_mm(V, c[0]), in_mm(V, c[1]), in_mm(V, c[2]));
-        const glm::dvec3 off = s.x * in_mm(V, c[0]) + s.y * in_mm(V, c[1]) + s.z * in_mm(V, c[2]) - world;
-        if (const double squared = glm::dot(off, off); squared < least) {
-          least = squared;
-          face = f;
-          shares = s;
-        }
-      }
-    }
+    const auto place = border_.nearest(rest);  // a mesh has a border
     glm::dvec3 from(0), moved(0);  // of the nearest point
     for (int i = 0; i < 3; ++i) {
-      from += shares[i] * in_mm(tets_.mesh_->V, faces_[face].corners[i]);
-      moved += shares[i] * in_mm(tets_.moved_, faces_[face].corners[i]);
+      from += place->shares[i] * in_mm(tets_.mesh_->V, place->corners[i]);
+      moved += place->shares[i] * in_mm(tets_.moved_, place->corners[i]);
     }
-    const glm::dvec3 off = world - from;
-    const Eigen::Vector3d turned = turn(faces_[face].tet) * Eigen::Vector3d(off.x, off.y, off.z);
+    const glm::dvec3 off = world_from_voxel(grid) * rest - from;
+    const Eigen::Vector3d turned = rotation_of(*tets_.mesh_, tets_.moved_, place->tet) * Eigen::Vector3d(off.x, off.y, off.z);
     const glm::dvec3 shift = moved + glm::dvec3(turned.x(), turned.y(), turned.z()) - off;
     return tets_.fixed(tets_.lattice_->output().from_rest(rest + voxel_from_world(grid).linear * shift));
   }
 
  private:
-  struct Face {
-    std::array<int, 3> corners;
-    int tet;
-  };
-
-  // The rotation of a tet's motion; exactly none where it does not move.
-  Eigen::Matrix3d turn(int tet) const {
-    Eigen::Matrix3d rest, moved;
-    const auto corners = tets_.mesh_->T.row(tet);
-    for (int i = 0; i < 3; ++i) {
-      rest.col(i) = (tets_.mesh_->V.row(corners[i + 1]) - tets_.mesh_->V.row(corners[0])).transpose();
-      moved.col(i) = (tets_.moved_.row(corners[i + 1]) - tets_.moved_.row(corners[0])).transpose();
-    }
-    if (moved.isZero(0)) return Eigen::Matrix3d::Identity();
-    const Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity() + moved * rest.inverse();
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d u = svd.matrixU();
-    if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
-    return u * svd.matrixV().transpose();
-  }
-
   const PosedTets& tets_;
-  std::vector<Face> faces_;
-  BoxBins bins_;
+  MeshBorder border_;
 };
 
 // What one brick's tissue comes to.

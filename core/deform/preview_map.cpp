@@ -23,6 +23,7 @@ constexpr int kTile = 8;             // nodes an edge of what is rasterized agai
 constexpr int kMargin = 3;           // cells around the grid that a rest point may lie in
 constexpr double kFurthest = 32000;  // cells; fixed point holds 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
+constexpr double kHeld = 2;          // cells beside a tet mesh that it carries
 constexpr double kNear = 1.0 / 32;  // cells: nodes that chords place this well are left there
 constexpr double kFar = 1.0 / 8;    // cells: nodes that chords miss by more are placed in two steps
 constexpr float kAcross = 2.5;  // steps at rest that nodes of one sheet are apart at most, for each step between them
@@ -376,8 +377,8 @@ LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const Tissue
   motion_.resize(count);
 }
 
-std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTransform>& posed_from_rest, Blend blend) {
-  if (!pose_vertices(posed_from_rest, blend)) return map_;
+std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTransform>& posed_from_rest, Blend blend, const MeshPose& mesh) {
+  if (!pose_vertices(posed_from_rest, blend, mesh)) return map_;
   bound_cells();
   rasterize();
   Made& made = spare();
@@ -386,15 +387,41 @@ std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTra
   return map_;
 }
 
+// Finds what of the mesh carries what of the lattice.
+void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
+  carried_.reset();
+  if (!mesh) return;
+  const double step = lattice_.step;
+  const auto voxel = [&](const glm::dvec3& cell) { return (cell + 0.5) * step - 0.5; };
+  std::vector<PointToCarry> points;
+  for (const glm::ivec3& vertex : lattice_.vertices) points.push_back({voxel(glm::dvec3(vertex) - 0.5), voxel(glm::dvec3(vertex) - 0.5)});
+  for (const CellPart& part : lattice_.parts) {
+    // The place of a side that is furthest from all other sides is surely its own.
+    int deepest = 0;
+    for (int place = 0; place < 64; ++place)
+      if (part.holds(place) && (!part.holds(deepest) || part.apart[place] > part.apart[deepest])) deepest = place;
+    const glm::dvec3 in_cell = (glm::dvec3(deepest % 4, deepest / 4 % 4, deepest / 16) + 0.5) / 4.0 - 0.5;
+    const glm::ivec3 middle = lattice_.cells[part.cell];
+    for (const glm::ivec3& c : kCorners) points.push_back({voxel(glm::dvec3(middle + c) - 0.5), voxel(glm::dvec3(middle) + in_cell)});
+  }
+  const double furthest = kHeld * step * std::max({lattice_.grid.spacing.x, lattice_.grid.spacing.y, lattice_.grid.spacing.z});
+  carried_.emplace(mesh, lattice_.grid, points, furthest);
+}
+
 // False when nothing moved.
-bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend) {
-  const bool all = !map_ || blend != blend_;
+bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend, const MeshPose& mesh) {
+  const bool all = !map_ || blend != blend_ || mesh.rest != mesh_.rest;
   if (all) size_ = glm::ivec3(0);
   bone_moved_.assign(posed_from_rest.size(), all);
   for (size_t b = 0; b < posed_from_rest.size() && !all; ++b)
     bone_moved_[b] = posed_from_rest[b].rotation != posed_from_rest_[b].rotation || posed_from_rest[b].translation != posed_from_rest_[b].translation;
-  if (std::find(bone_moved_.begin(), bone_moved_.end(), 1) == bone_moved_.end() && map_) return false;
+  if (std::find(bone_moved_.begin(), bone_moved_.end(), 1) == bone_moved_.end() && mesh == mesh_) return false;
   map_ = nullptr;  // until this update has ended: what throws half way leaves nothing to build upon
+
+  if (mesh.rest != mesh_.rest) hold_by(mesh.rest);
+  mesh_ = mesh;
+  const auto held = carried_ ? carried_->posed(*mesh.posed) : std::vector<std::optional<glm::dvec3>>();
+  const auto is_held = [&](std::int64_t point) { return !held.empty() && held[point]; };
 
   const std::vector<SkinTransform> bones = skin_transforms(posed_from_rest);
   const AffineTransform world_from_voxel = limber::world_from_voxel(lattice_.grid), voxel_from_world = limber::voxel_from_world(lattice_.grid);
@@ -407,6 +434,12 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
     const glm::dmat3 turn = glm::mat3_cast(bone.rotation) - glm::dmat3(1);
     moves.push_back({cell_from_world_ * turn * world_from_cell_.linear, cell_from_world_ * (turn * (world_from_cell_ * glm::dvec3(-0.5)) + bone.translation)});
   }
+  const auto fixed_at = [](const glm::dvec3& at) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(at[axis]) < kFurthest))
+        throw Error("the pose carries the tissue too far away", "while the volume follows the pose", "check the pose and the rig");
+    return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
+  };
   //   motion  where what the bones do together is kept for cells that bend; null: nowhere
   const auto posed = [&](const glm::ivec3& vertex, std::span<const BoneWeight> influences, SkinTransform* motion) {
     glm::dvec3 at = glm::dvec3(vertex) - 0.5;
@@ -420,11 +453,9 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
       at += cell_from_world_ * (blend_point(blend, {&together, 1}, {&whole, 1}, world) - world);
       if (motion) *motion = together;
     }
-    for (int axis = 0; axis < 3; ++axis)
-      if (!(std::abs(at[axis]) < kFurthest))
-        throw Error("the pose carries the tissue too far away", "while the volume follows the pose", "check the pose and the rig");
-    return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
+    return fixed_at(at);
   };
+  const auto held_at = [&](std::int64_t point) { return fixed_at((*held[point] + 0.5) / step - 0.5); };
   const auto rests = [&](std::span<const BoneWeight> influences) {
     return std::none_of(influences.begin(), influences.end(), [&](const BoneWeight& each) { return bone_moved_[each.bone]; });
   };
@@ -433,6 +464,12 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
       const std::span<const BoneWeight> influences(lattice_.influences.data() + lattice_.offsets[i], lattice_.offsets[i + 1] - lattice_.offsets[i]);
       const std::int64_t place = lattice_.place(lattice_.vertices[i]);
       moved_[place] = 0;
+      if (is_held(i)) {
+        const FixedPoint fixed = held_at(i);
+        moved_[place] = all || fixed != posed_[place];
+        posed_[place] = fixed;
+        continue;
+      }
       if (rests(influences)) continue;
       const std::int32_t motion = motion_of_[place];
       const FixedPoint fixed = posed(lattice_.vertices[i], influences, motion < 0 ? nullptr : &motion_[motion]);
@@ -445,6 +482,11 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
       part_moved_[i] = 0;
       for (int c = 0; c < 8; ++c) {
         const std::int64_t corner = 8 * i + c;
+        if (const std::int64_t point = std::ssize(lattice_.vertices) + corner; is_held(point) && !lattice_.parts[i].is_stiff) {
+          part_moved_[i] = 1;
+          posed_parts_[i][c] = held_at(point);
+          continue;
+        }
         const std::span<const BoneWeight> influences(part_influences_.data() + part_offsets_[corner], part_offsets_[corner + 1] - part_offsets_[corner]);
         if (rests(influences)) continue;
         part_moved_[i] = 1;
@@ -459,6 +501,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
 
 // The rest point whose image the node is, near `rest`, which is what the chords between the cell's corners say.
 glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, const glm::dvec3& rest) const {
+  if (mesh_.rest) return rest;
   const glm::ivec3 middle = this->middle(cell);
   std::array<BoneWeight, 8> corners;
   for (int i = 0; i < 8; ++i) corners[i].bone = motion(cell, i);

@@ -12,6 +12,9 @@
 // may lead into tissue of another side (preview_lattice.h), which has gone elsewhere; so each node knows how far that is, and
 // beyond the border, where that distance falls below zero, nothing is read.
 //
+// Where tissue is carried by a tet mesh, as while finite elements settle, vertices near the mesh go where that takes them
+// (carried_points.h) instead of with their bones; cells are then read straight, by their chords.
+//
 // Only the surroundings of cells that moved are rasterized and finished again, in the memory of the map before last where
 // nobody holds that any longer. What comes out never depends on what was posed before.
 #pragma once
@@ -21,6 +24,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/deform/carried_points.h"
 #include "core/deform/lattice.h"
 #include "core/deform/preview_lattice.h"
 #include "core/deform/rasterize.h"
@@ -73,6 +77,14 @@ struct PreviewMap {
   double apart_between(const glm::dvec3& place) const;
 };
 
+// A tet mesh and where its nodes are. Equal pointers are equal contents.
+struct MeshPose {
+  std::shared_ptr<const TetMesh> rest;
+  std::shared_ptr<const Eigen::MatrixX3d> posed;  // #V by 3, world, mm
+
+  bool operator==(const MeshPose&) const = default;
+};
+
 class LivePreview {
  public:
   // `weights` are only read here.
@@ -82,8 +94,9 @@ class LivePreview {
 
   // The map of a pose. Another pointer than before only where it differs.
   //   posed_from_rest  #bones of the weights
+  //   mesh             what carries the tissue near it; empty: nothing does
   // throws Error where the pose carries tissue too far
-  std::shared_ptr<const PreviewMap> update(const std::vector<RigidTransform>& posed_from_rest, Blend blend);
+  std::shared_ptr<const PreviewMap> update(const std::vector<RigidTransform>& posed_from_rest, Blend blend, const MeshPose& mesh = {});
 
   const PreviewLattice& lattice() const { return lattice_; }
   std::int64_t cells_rasterized() const { return cells_rasterized_; }  // by the last update
@@ -114,7 +127,8 @@ class LivePreview {
   PosedCell posed_cell(std::int64_t cell) const;
   glm::dvec3 in_bent_cell(std::int64_t cell, const glm::ivec3& node, const glm::dvec3& rest) const;
 
-  bool pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend);
+  bool pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend, const MeshPose& mesh);
+  void hold_by(const std::shared_ptr<const TetMesh>& mesh);
   void bound_cells();
   void rasterize();
   void rasterize_tile(const glm::ivec3& tile, const std::int32_t* cells, std::int64_t count);
@@ -136,6 +150,8 @@ class LivePreview {
   // The last pose.
   std::vector<RigidTransform> posed_from_rest_;
   Blend blend_ = Blend::Linear;
+  MeshPose mesh_;
+  std::optional<CarriedPoints> carried_;  // by mesh_: the vertices, then eight for each part
   std::vector<FixedPoint> posed_;         // by place of the lattice
   std::vector<SkinTransform> motion_;     // blended from those of bones
   std::vector<std::array<FixedPoint, 8>> posed_parts_;

@@ -69,6 +69,7 @@ class ByteReader {
     bytes_.remove_prefix(size);
     return part;
   }
+  bool at_end() const { return bytes_.empty(); }
   std::string_view rest() { return raw(bytes_.size()); }
   void require(bool holds) const {
     if (!holds) damaged_();

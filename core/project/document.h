@@ -25,6 +25,7 @@
 namespace limber {
 
 struct WeightLayers;
+struct SolvedMesh;
 
 // How one tissue is shown. A label without an entry is shown as it is.
 struct TissueLook {
@@ -62,7 +63,7 @@ struct Visibility {
 // A posed volume that a resampling made, with what it was made from, to tell when it has become stale.
 struct Result {
   std::string name;    // unique among the results
-  std::string method;  // "lbs", "dqs"
+  std::string method;  // "lbs", "dqs", "fem", "fem-contact"
   std::shared_ptr<const LabelVolume> volume;
   std::string report;  // limber-report/1, JSON
   std::shared_ptr<const LabelVolume> from_volume;
@@ -70,6 +71,7 @@ struct Result {
   std::shared_ptr<const Armature> from_armature;
   std::shared_ptr<const SkinWeights> from_weights;
   std::shared_ptr<const Pose> from_pose;
+  std::shared_ptr<const SolvedMesh> solved;  // by finite elements, where anything bends; else null
 };
 
 // Any part may be absent (null); weights, their layers, pose and results need what they belong to.

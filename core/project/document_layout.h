@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/project/document.h"
+#include "core/resample/fem_steps.h"
 #include "core/skin/weight_layers.h"
 
 namespace limber {
@@ -14,7 +15,7 @@ namespace limber {
 constexpr std::uint32_t kDocumentLayout = 7;
 
 // A part's first byte.
-enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors, WeightLocks, WeightLayer, WeightLayers };
+enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors, WeightLocks, WeightLayer, WeightLayers, SolvedMesh };
 
 template <class T>
 struct PartKindOf;
@@ -34,6 +35,7 @@ template <> struct PartKindOf<Anchors>     { static constexpr PartKind kKind = P
 template <> struct PartKindOf<WeightLocks> { static constexpr PartKind kKind = PartKind::WeightLocks; static constexpr const char* kName = "locks of weights"; };
 template <> struct PartKindOf<WeightLayer> { static constexpr PartKind kKind = PartKind::WeightLayer; static constexpr const char* kName = "layer of weights"; };
 template <> struct PartKindOf<WeightLayers> { static constexpr PartKind kKind = PartKind::WeightLayers; static constexpr const char* kName = "layers of weights"; };
+template <> struct PartKindOf<SolvedMesh>  { static constexpr PartKind kKind = PartKind::SolvedMesh; static constexpr const char* kName = "mesh of a result"; };
 // clang-format on
 
 // The reference, and above it what source and rig rest in.

@@ -156,6 +156,17 @@ void get(ByteReader& in, WeightLocks& locks) {
   for (const std::string& bone : get_texts(in)) locks.bones.insert(bone);
 }
 
+void get(ByteReader& in, SolvedMesh& solved) {
+  const std::string mesh = in.text(), step = in.text();
+  try {
+    solved.mesh = decode_fem_mesh(mesh, "");
+    solved.V = decode_fem_step(step, "").V;
+  } catch (const Error&) {
+    in.require(false);
+  }
+  in.require(solved.V.rows() == solved.mesh.tets.V.rows());
+}
+
 void get(ByteReader& in, RetargetMap& map) {
   for (std::size_t count = in.count(41); count > 0; --count) {
     RetargetMap::Source& source = map.sources[in.text()];
@@ -525,12 +536,21 @@ class Reading {
     part(result.from_armature);
     part(result.from_weights);
     part(result.from_pose);
-    in.require(next == node.nodes.size());
     result.name = in.text();
     result.method = in.text();
     result.report = in.text();
+    if (!in.at_end()) part(result.solved);
+    in.require(next == node.nodes.size());
     in.end();
     return result;
+  }
+
+  SolvedMesh read_part(const Node& node, ByteReader& in, const SolvedMesh*) {
+    if (!node.leaves.empty()) return from_leaves<SolvedMesh>(node, in);
+    SolvedMesh solved;
+    get(in, solved);
+    in.end();
+    return solved;
   }
 
   Clip read_part(const Node& node, ByteReader& in, const Clip*) {

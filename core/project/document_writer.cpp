@@ -342,6 +342,12 @@ class DocumentWriter::Writing {
     out.text(result.name);
     out.text(result.method);
     out.text(result.report);
+    if (result.solved) part(result.solved);  // at the end: results without one are as they always were
+  }
+
+  void fill(Node&, ByteWriter& out, const SolvedMesh& solved) {
+    out.text(encode(solved.mesh));
+    out.text(encode(FemStep{.V = solved.V}));
   }
 
   void fill(Node& node, ByteWriter& out, const Clip& clip) {

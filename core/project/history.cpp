@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/resample/fem_steps.h"
 #include "core/skin/weight_layers.h"
 
 namespace limber {
@@ -79,6 +80,11 @@ std::int64_t own_bytes(const WeightLayers& layers) { return heap_bytes(layers.la
 std::int64_t own_bytes(const Visibility& visibility) {
   return static_cast<std::int64_t>(visibility.looks.size()) * (kBlock + std::int64_t{sizeof(std::pair<Label, TissueLook>)} + 32);
 }
+std::int64_t own_bytes(const SolvedMesh& solved) {
+  const FemMesh& mesh = solved.mesh;
+  return heap_bytes(mesh.material) + heap_bytes(mesh.joint) + heap_bytes(mesh.tets.region) +
+         static_cast<std::int64_t>((mesh.tets.V.size() + solved.V.size()) * sizeof(double) + mesh.tets.T.size() * sizeof(int)) + 3 * kBlock;
+}
 std::int64_t own_bytes(const Result& result) {
   return heap_bytes(result.name) + heap_bytes(result.method) + heap_bytes(result.report);
 }
@@ -130,6 +136,7 @@ class History::Ledger {
     count(result->from_armature, step);
     visit(result->from_weights, step);
     count(result->from_pose, step);
+    count(result->solved, step);
   }
 
   void visit(const Document& document, int step) {

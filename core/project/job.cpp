@@ -2,6 +2,7 @@
 #include "core/project/job.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -20,6 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kChangeInterval = std::chrono::milliseconds(50);
+constexpr int kLongAtOnce = 1;           // each takes all cores by itself
 constexpr double kFirstEstimate = 0.5;   // seconds; earlier ones jump about
 constexpr double kLeastFraction = 0.02;  // likewise
 constexpr double kPatience = 0.1;        // seconds that a cancelled job holds up the queue
@@ -47,7 +49,7 @@ struct Jobs::Board {
 };
 
 struct Jobs::Job final : Progress {
-  Job(std::shared_ptr<Board> the_board, int id, std::string label, Work the_work) : board(std::move(the_board)), work(std::move(the_work)) {
+  Job(std::shared_ptr<Board> the_board, int id, std::string label, Work the_work, Lane the_lane) : board(std::move(the_board)), lane(the_lane), work(std::move(the_work)) {
     status.id = id;
     status.label = std::move(label);
   }
@@ -66,6 +68,7 @@ struct Jobs::Job final : Progress {
   }
 
   const std::shared_ptr<Board> board;
+  const Lane lane;
   Work work;
   std::jthread thread;  // the owner's
 
@@ -91,11 +94,11 @@ Jobs::~Jobs() {
     if (job->thread.joinable()) job->thread.join();
 }
 
-int Jobs::start(std::string label, Work work) {
+int Jobs::start(std::string label, Work work, Lane lane) {
   const int id = next_id_++;
   {
     const std::lock_guard lock(board_->mutex);
-    jobs_.push_back(std::make_shared<Job>(board_, id, std::move(label), std::move(work)));
+    jobs_.push_back(std::make_shared<Job>(board_, id, std::move(label), std::move(work), lane));
     board_->changed = true;
   }
   start_waiting();
@@ -146,18 +149,18 @@ void Jobs::work_on(const std::shared_ptr<Job>& job, const std::shared_ptr<Board>
 
 void Jobs::start_waiting() {
   const std::lock_guard lock(board_->mutex);
-  int running = 0;
+  std::array<int, 2> running{};  // by lane
+  const auto running_beside = [&](const auto& job) -> int& { return running[static_cast<std::size_t>(job->lane)]; };
   for (const auto& job : jobs_)
-    running += job->status.state == JobState::Running ||
-               (job->status.state == JobState::Stopping && seconds_since(job->cancelled_at) < kPatience);
+    running_beside(job) += job->status.state == JobState::Running ||
+                           (job->status.state == JobState::Stopping && seconds_since(job->cancelled_at) < kPatience);
   for (const auto& job : jobs_) {
-    if (running >= at_once_) return;
-    if (job->status.state != JobState::Queued) continue;
+    if (job->status.state != JobState::Queued || running_beside(job) >= (job->lane == Lane::Long ? kLongAtOnce : at_once_)) continue;
     job->started = job->stage_started = Clock::now();
     try {
       job->thread = std::jthread([job, board = board_] { work_on(job, board); });
       job->status.state = JobState::Running;
-      ++running;
+      ++running_beside(job);
     } catch (const std::system_error&) {
       job->status.state = JobState::Failed;
       job->status.message = Error("no thread can be started", job->status.label, "close other programs and try again").what();

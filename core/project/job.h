@@ -25,6 +25,9 @@ namespace limber {
 using Edit = std::function<Document(const Document& now)>;
 using Work = std::function<Edit(Progress& progress)>;
 
+// Who waits for whom. Long jobs, of minutes, run one at a time beside all others, so that nobody waits for them.
+enum class Lane { Common, Long };
+
 enum class JobState { Queued, Running, Stopping, Done, Failed, Cancelled };
 
 struct JobStatus {
@@ -42,7 +45,7 @@ struct JobStatus {
 
 class Jobs {
  public:
-  // at_once   that many run together, the others wait in order
+  // at_once   that many common ones run together, the others wait in order
   // on_change called from any thread when a poll() is worth it, at most 20 times a second per job (as glfwPostEmptyEvent);
   //           it must not call Jobs itself, and is never called after Jobs has gone
   explicit Jobs(int at_once = 2, std::function<void()> on_change = {});
@@ -52,7 +55,7 @@ class Jobs {
   Jobs& operator=(const Jobs&) = delete;
 
   void set_at_once(int count) { at_once_ = count; }  // for those that start from now on
-  int start(std::string label, Work work);  // returns its id
+  int start(std::string label, Work work, Lane lane = Lane::Common);  // returns its id
   void cancel(int id);
   void cancel_all();
 

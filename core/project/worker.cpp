@@ -13,6 +13,7 @@
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <poll.h>
+#include <sched.h>
 #include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -131,7 +132,7 @@ class Process {
 // What the worker says on its error stream, line by line.
 class Listener {
  public:
-  explicit Listener(Progress& progress) : progress_(progress) {}
+  Listener(Progress& progress, const std::function<void(const WorkerProgress&)>& on_progress) : progress_(progress), on_progress_(on_progress) {}
   void take(const char* bytes, std::size_t size) {
     for (const char* end = bytes + size; bytes < end;) {
       const char* line_end = std::find(bytes, end, '\n');
@@ -152,14 +153,22 @@ class Listener {
       const auto json = nlohmann::json::parse(line_, nullptr, false);
       if (!json.is_object() || !json.contains("stage") || !json["stage"].is_string()) return;
       if (!json.contains("fraction") || !json["fraction"].is_number()) return;
-      if (!progress_.cancelled()) progress_.update(json["stage"].get<std::string>(), json["fraction"].get<double>());
+      WorkerProgress now{json["stage"].get<std::string>(), json["fraction"].get<double>(), number(json, "angle_degrees"), number(json, "residual_mm"), number(json, "seconds_left"), {}};
+      if (const auto iteration = number(json, "iteration")) now.iteration = static_cast<int>(*iteration);
+      if (progress_.cancelled()) return;
+      progress_.update(now.stage, now.fraction);
+      if (on_progress_) on_progress_(now);
     } else if (line_.starts_with(kWarning)) {
       if (warnings.size() < kMostWarnings) warnings.push_back(line_.substr(kWarning.size()));
     } else if (!line_.empty()) {
       complaint = line_.starts_with(kName) ? line_.substr(kName.size()) : line_;
     }
   }
+  static std::optional<double> number(const nlohmann::json& json, const char* key) {
+    return json.contains(key) && json[key].is_number() ? std::optional(json[key].get<double>()) : std::nullopt;
+  }
   Progress& progress_;
+  const std::function<void(const WorkerProgress&)>& on_progress_;
   std::string line_;
 };
 
@@ -183,13 +192,15 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
   std::vector<std::string> arguments{"job", job_file.string(), "--progress", "json", "--parent", std::to_string(::getpid())};
   if (settings.memory_limit_mb > 0) arguments.insert(arguments.end(), {"--memory-limit", std::to_string(settings.memory_limit_mb)});
 
+  if (settings.yields) arguments.push_back("--yield");
+
   Pipe out, err;
   Process process(settings.program, arguments, out, err);
   out.close_write();
   err.close_write();
 
   WorkerOutput output;
-  Listener listener(progress);
+  Listener listener(progress, settings.on_progress);
   const auto take_out = [&](const char* bytes, std::size_t size) {
     output.text.append(bytes, std::min(size, kMostOutput - std::min(kMostOutput, output.text.size())));
   };
@@ -230,10 +241,14 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
   return output;
 }
 
-void become_worker(std::int64_t memory_limit_mb, int parent) {
+void become_worker(std::int64_t memory_limit_mb, bool yields, int parent) {
   if (parent > 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) std::_Exit(3);  // it died before
+  }
+  if (yields) {
+    const sched_param none{};
+    if (::sched_setscheduler(0, SCHED_IDLE, &none) != 0) ::setpriority(PRIO_PROCESS, 0, 19);
   }
   if (memory_limit_mb > 0) {
     const rlim_t bytes = static_cast<rlim_t>(memory_limit_mb) << 20;

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +16,21 @@
 
 namespace limber {
 
+// What the worker tells of itself: stage and fraction always, the rest while it solves.
+struct WorkerProgress {
+  std::string stage;
+  double fraction = 0;  // of the stage, [0, 1]
+  std::optional<double> angle_degrees, residual_mm, seconds_left;
+  std::optional<int> iteration;
+};
+
 struct WorkerSettings {
   std::int64_t memory_limit_mb = 0;  // of address space; 0: none
   double time_limit = 0;             // seconds; 0: none
   double patience = 0.05;            // seconds between asking it to end and ending it
+  bool yields = false;               // takes of the machine what all others leave
   Path program = "/proc/self/exe";
+  std::function<void(const WorkerProgress&)> on_progress;  // in the thread that runs it; each line that has come
 };
 
 struct WorkerOutput {
@@ -30,7 +42,8 @@ struct WorkerOutput {
 // Runs the job to its end; blocks, so it belongs into a Job. throws Error with what went wrong, Cancelled after a cancel.
 WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSettings& settings = {});
 
-// In the worker, before it starts: limits its memory, and lets it die with `parent`, the process that started it (0: none).
-void become_worker(std::int64_t memory_limit_mb, int parent);
+// In the worker, before it starts any thread: limits its memory, lets it yield to all others, and lets it die with `parent`,
+// the process that started it (0: none).
+void become_worker(std::int64_t memory_limit_mb, bool yields, int parent);
 
 }  // namespace limber

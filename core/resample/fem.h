@@ -19,6 +19,7 @@ namespace limber {
 
 struct SolveStep;
 struct FemShape;
+struct TissueModel;
 
 enum class FemQuality { Draft, Normal, Fine };
 
@@ -26,6 +27,7 @@ struct Fem {
   bool contact = false;                    // skin touches skin instead of passing through
   FemQuality quality = FemQuality::Normal;  // tets of 12 mm, 8 mm, or 8 mm and 4 mm around joints that bend
   std::optional<double> spacing_mm;        // another size of tets everywhere
+  std::function<void(const TissueModel&)> on_mesh;  // before the first iteration
   std::function<void(const SolveStep&)> on_step;  // after every iteration
 };
 

@@ -88,6 +88,7 @@ std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const Tis
   shape->mesh.fallback = meshed.warning;
   shape->model = tissue_model(volume, tissue, tissues, weights, shape->moving, std::move(meshed.mesh), {.joint_mm = kJoint * spacing});
   shape->seconds_mesh = seconds_since(meshing);
+  if (fem.on_mesh) fem.on_mesh(shape->model);
 
   const auto solving = std::chrono::steady_clock::now();
   const SolvedPose solved = solve_pose(shape->model.fem, path, largest_angle_degrees(pose), {.contact = fem.contact, .bone_drift_mm = std::max(kDrift, spacing / 2)}, progress, fem.on_step);

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "editor/dispatch.h"
+#include "editor/fem_view.h"
 #include "editor/icons.h"
 #include "editor/operators/polls.h"
 #include "editor/project.h"
@@ -19,6 +20,14 @@ Operator method_operator(const char* id, const char* label, const char* sentence
 
 std::string needs_result(const Editor& editor) { return editor.document().results.empty() ? "Nothing was resampled yet" : ""; }
 
+std::string needs_solve(const Editor& editor) { return editor.fem->solves.empty() ? "No finite elements are being solved" : ""; }
+
+void toggle_watching(Editor& editor) {
+  if (editor.fem->watched != 0) return stop_watching(editor);
+  editor.workspace = Workspace::Resample;
+  watch(editor);
+}
+
 void toggle_posed(Editor& editor) { show_result(editor, shown_result(editor) ? "" : chosen_result(editor)->name); }
 
 // Where nothing was chosen to compare: the volume at rest with the last result.
@@ -29,6 +38,7 @@ void choose_sides(Editor& editor) {
 
 // The side alone, over the whole view.
 void show_side(Editor& editor, bool a) {
+  stop_watching(editor);
   choose_sides(editor);
   editor.comparison.wipe = false;
   editor.comparison.shows_a = a;
@@ -36,6 +46,7 @@ void show_side(Editor& editor, bool a) {
 
 void toggle_wipe(Editor& editor) {
   const bool on = !wiping(editor);
+  stop_watching(editor);
   choose_sides(editor);
   editor.comparison.wipe = on;
   editor.comparison.shows_a = false;
@@ -102,6 +113,8 @@ std::vector<Operator> resample_operators() {
       method_operator("resample.lbs", "LBS", "Linear blending: quick, loses volume at bent and twisted joints.", "lbs"),
       method_operator("resample.dqs", "DQ", "Dual quaternions: keeps the thickness of twisted limbs.", "dqs"),
       method_operator("resample.fem", "FEM", "Finite elements: tissue keeps its volume and skin touches skin. Takes minutes, in the background.", "fem"),
+      {"result.watch", "Watch it settle", icon::kRunning, "Result", "The views show the tissue on its way to the pose, while finite elements are solved.", toggle_watching, needs_solve,
+       [](const Editor& e) { return e.fem->watched != 0; }},
       {"result.toggle", "Posed volume", icon::kPose, "Result", "The views show the chosen result, or the volume at rest again.", toggle_posed, needs_result,
        [](const Editor& e) { return shown_result(e) != nullptr; }},
       {"result.show_last", "Show", icon::kVisible, "Result", "The views show the last result.", [](Editor& e) { show_result(e, e.document().results.back()->name); }, needs_result},

@@ -6,6 +6,7 @@
 
 #include "editor/adjust.h"
 #include "editor/clip_handles.h"
+#include "editor/fem_view.h"
 #include "editor/live_pose.h"
 #include "editor/onion_skin.h"
 #include "editor/painting.h"
@@ -78,7 +79,8 @@ std::string state_of(const Editor& editor) {
   if (editor.views->scene.weights) return std::string(name_of(editor.skin->display)) + " \u00b7 " + grouped(editor.views->scene.weights->weights->size()) + " tissue voxels" + (painted_region(editor) ? " \u00b7 region of " + grouped(painted_region_voxels(editor)) : "");
   std::string state = editor.views->display == render::Display::Solid ? "Solid" : editor.views->display == render::Display::XRay ? "X-ray" : "Tissue";
   if (const auto posed = shown_result(editor); posed && !wiping(editor)) state += " \u00b7 " + posed->name;
-  if (const PreviewMap* map = editor.views->scene.pose.get())
+  if (const Solve* solve = watched_solve(editor)) state += " \u00b7 settling, " + progress_text(*solve);
+  else if (const PreviewMap* map = editor.views->scene.pose.get())
     state += std::string(preview_blend(editor) == Blend::Linear ? " \u00b7 LBS" : " \u00b7 DQ") + " preview, " + std::to_string(map->step) + "-voxel lattice";
   if (editor.document().armature) state += " \u00b7 " + std::to_string(editor.document().armature->bones.size()) + " bones";
   if (!editor.views->renderer.note().empty()) state += " \u00b7 " + editor.views->renderer.note();

@@ -4,6 +4,7 @@
 
 #include "editor/fields.h"
 #include "editor/icons.h"
+#include "editor/panels/operator_box.h"
 #include "editor/panels/panels.h"
 #include "editor/results.h"
 
@@ -22,6 +23,7 @@ void draw_fem(Editor& editor, Column& column) {
   const Rect contact = column.property("Contact");
   checkbox(editor, "Contact", contact, "Skin touches skin", settings.contact);
   if (ImGui::IsItemHovered()) tooltip(editor, contact, "Skin touches skin", "Folds press against each other instead of passing through.");
+  operator_box(editor, "result.watch", column.property("While solved"), "Watch it settle");
 }
 
 }  // namespace

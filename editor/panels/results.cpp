@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "editor/fem_view.h"
 #include "editor/fields.h"
 #include "editor/icons.h"
 #include "editor/panels/change.h"
@@ -46,6 +47,7 @@ std::string side_of(const Editor& editor, const std::shared_ptr<const Result>& r
 
 // A click makes it side B, Shift and a click side A.
 void choose_side(Editor& editor, const std::string& name) {
+  stop_watching(editor);
   Comparison& comparison = editor.comparison;
   if (editor.input.modifiers().shift) {
     comparison.a = name;
@@ -202,7 +204,7 @@ void draw_results(Editor& editor, const Rect& rect) {
     const ListKey key = list_key(editor, kList, static_cast<int>(results.size()) + 1);
     const auto row = static_cast<std::size_t>(editor.list_focus.row);
     const std::string name = row == 0 || row > results.size() ? "" : results[results.size() - row]->name;
-    if (key == ListKey::Moved) editor.comparison.b = name, editor.comparison.shows_a = false;
+    if (key == ListKey::Moved) show_result(editor, name);
     if (key == ListKey::Activate) choose_side(editor, name);
     if (key == ListKey::Rename && !name.empty()) editor.renaming_result = {name, name};
     int index = 0;

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "editor/fem_view.h"
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
 
@@ -16,12 +17,22 @@ namespace {
 constexpr double kFirstEstimate = 3;    // s that a job runs before its time left is shown
 constexpr double kQuickEnd = 0.1;       // s: a cancelled job that ends within them is not said to be stopping
 constexpr double kSpin = 1.0 / 12;      // s between the spinner's steps
-constexpr float kRowHeight = 62;
+constexpr float kRowHeight = 62, kSolveRowHeight = 80;  // finite elements have more to tell
 
 std::vector<JobStatus> at_work(const Editor& editor) {
   std::vector<JobStatus> jobs = editor.jobs.statuses();
   std::erase_if(jobs, [](const JobStatus& job) { return !job.active() || job.label.empty(); });
   return jobs;
+}
+
+float row_height(const Editor& editor, const JobStatus& job) { return editor.fem->solves.contains(job.id) ? kSolveRowHeight : kRowHeight; }
+
+// Of the solve itself where it tells; else of the stage.
+std::optional<double> seconds_left(const Editor& editor, const JobStatus& job) {
+  const auto solve = editor.fem->solves.find(job.id);
+  if (solve != editor.fem->solves.end())
+    if (const auto left = solve->second.feed->seen().progress.seconds_left) return left;
+  return job.seconds_left;
 }
 
 std::string state_of(Editor& editor, const JobStatus& job) {
@@ -58,6 +69,8 @@ void draw_job_row(Editor& editor, const JobStatus& job, const Rect& row) {
   const float left = row.low.x + look.px(10), right = row.high.x - look.px(10);
   const Rect cancel{{right - look.px(84), row.high.y - look.px(30)}, {right, row.high.y - look.px(6)}};
   const float line = row.low.y + look.px(20);
+  if (const auto solve = editor.fem->solves.find(job.id); solve != editor.fem->solves.end())
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, line + look.px(10)}, {right, line + look.px(28)}}, progress_text(solve->second));
   char percent[16];
   std::snprintf(percent, sizeof percent, "%.0f %%", 100 * job.fraction);
   put_text(editor, look.fonts.semibold, look.theme.text, Rect{{left, row.low.y + look.px(2)}, {right - look.px(50), line}}, job.label);
@@ -65,8 +78,8 @@ void draw_job_row(Editor& editor, const JobStatus& job, const Rect& row) {
   draw_track(editor, {{left, line + look.px(3)}, {right, line + look.px(8)}}, job.fraction);
   const std::string state = state_of(editor, job);
   put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, cancel.low.y}, {cancel.low.x - look.px(116), cancel.high.y}}, state);
-  if (job.seconds_left && job.seconds >= kFirstEstimate)
-    put_text(editor, look.fonts.small, look.theme.text2, Rect{{cancel.low.x - look.px(116), cancel.low.y}, {cancel.low.x - look.px(8), cancel.high.y}}, time_left_text(*job.seconds_left) + " left",
+  if (const auto time = seconds_left(editor, job); time && job.seconds >= kFirstEstimate)
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{cancel.low.x - look.px(116), cancel.low.y}, {cancel.low.x - look.px(8), cancel.high.y}}, time_left_text(*time) + " left",
              Align::Right);
   const bool stopping = job.state == JobState::Stopping;
   if (button(editor, "Cancel", cancel, {icon::kClose, "Cancel", ButtonStyle::Plain, !stopping})) editor.jobs.cancel(job.id);
@@ -94,7 +107,7 @@ void draw_running(Editor& editor, Column& column) {
       const Rect row = column.row(30);
       put_text(editor, editor.look.fonts.regular, editor.look.theme.text2, Rect{{row.low.x + editor.look.px(14), row.low.y}, row.high}, "Nothing is running");
     }
-    for (const JobStatus& job : jobs) draw_job_row(editor, job, column.row(kRowHeight));
+    for (const JobStatus& job : jobs) draw_job_row(editor, job, column.row(row_height(editor, job)));
   }
   column.end_section();
 }
@@ -119,7 +132,9 @@ float draw_job_slot(Editor& editor, const Rect& bar, float right) {
     draw_track(editor, track, job.fraction);
     if (pressed.clicked) ImGui::OpenPopup("running jobs");
   }
-  const float width = look.px(320), height = look.px(kRowHeight) * static_cast<float>(std::max<std::size_t>(1, jobs.size())) + look.px(8);
+  float rows = jobs.empty() ? kRowHeight : 0;
+  for (const JobStatus& job : jobs) rows += row_height(editor, job);
+  const float width = look.px(320), height = look.px(rows + 8);
   ImGui::SetNextWindowPos({slot.high.x - width, bar.low.y - height - look.px(4)});
   ImGui::SetNextWindowSize({width, height});
   if (ImGui::BeginPopup("running jobs", ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoScrollbar)) {
@@ -129,8 +144,9 @@ float draw_job_slot(Editor& editor, const Rect& bar, float right) {
     const float left = slot.high.x - width;
     if (jobs.empty()) ImGui::CloseCurrentPopup();
     for (const JobStatus& job : jobs) {
-      draw_job_row(editor, job, {{left, y}, {left + width, y + look.px(kRowHeight)}});
-      y += look.px(kRowHeight);
+      const float row = look.px(row_height(editor, job));
+      draw_job_row(editor, job, {{left, y}, {left + width, y + row}});
+      y += row;
     }
     pop_path(editor);
     editor.place.region = Region::Status;

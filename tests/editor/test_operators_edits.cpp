@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Choosing, hiding and clipping; volume preparation, weights, pose and results: edits, which are undone.
+#include <fstream>
+
 #include "core/volume/prepare.h"
+#include "editor/fem_view.h"
 #include "editor/results.h"
 #include "tests/editor/operator_proofs.h"
 
@@ -93,8 +96,15 @@ std::vector<Proof> proofs_of_work() {
       {"resample.run", "key Ctrl+Return\n wait-job", [](Stage& s, const Seen&) { return results(s) == 1 && s.document().results[0]->name == "Fore 30\u00b0, LBS"; }},
       {"resample.dqs", "click Edit/Resample/DQ", [](Stage& s, const Seen&) { return s.editor().resampling.method == "dqs"; }},
       {"resample.fem", "click Edit/Resample/FEM", [](Stage& s, const Seen&) { return s.editor().resampling.method == "fem"; }},
+      // The worker takes its time, so that there is something to watch.
+      {"result.watch", "click \"Edit/Resample/Watch it settle\"", [](Stage& s, const Seen&) { return s.editor().fem->watched == 0 && !s.editor().fem->solves.empty(); }, Shows::Nothing, "key Ctrl+Return",
+       [](Stage& s) {
+         std::ofstream(s.home / "worker") << "#!/bin/sh\nsleep 100\n";
+         std::filesystem::permissions(s.home / "worker", std::filesystem::perms::owner_all);
+         s.editor().worker_program = s.home / "worker";
+       }},
       {"result.show_last", "key F3\n type \"show\"\n key Return", [](Stage& s, const Seen&) { return shown_result(s.editor()) && s.editor().views->scene.volume == s.document().results.back()->volume; }, Shows::Nothing,
-       "click \"Edit/Resample/Posed volume\"\n click \"Edit/Resample/Posed volume\""},
+       "click status/Running\n click Cancel\n wait-job\n click \"Edit/Resample/Posed volume\"\n click \"Edit/Resample/Posed volume\""},
       {"result.toggle", "click \"Edit/Resample/Posed volume\"", [](Stage& s, const Seen&) { return !shown_result(s.editor()) && s.editor().views->scene.volume == s.document().volume; }, Shows::InBody},
       {"result.copy_report", "click \"Edit/Resample/Copy report\"", [](Stage& s, const Seen&) { return s.sitting.test.host->clipboard() == s.document().results.back()->report; }},
       {"result.delete", "click \"Edit/Resample/Delete result\"", [](Stage& s, const Seen& b) { return b.document.results.size() == 1 && results(s) == 0; }},

@@ -490,3 +490,25 @@ TEST_CASE("weights: a posed body shows the weights of the voxels that its map le
   CHECK(seen > 300);
   CHECK(right > 0.9 * seen);
 }
+
+TEST_CASE("weights: a field shows each voxel in its own colour, and another field takes its place") {
+  Studio studio;
+  SliceView slice(studio.renderer);
+  const Block block({16, 14, 12}, [](const glm::ivec3&) { return 0; });
+  Scene scene = block.scene();
+  const auto field = [&](int shift) {
+    std::vector<glm::u8vec3> colours;
+    block.tissue->for_each([&](std::int64_t, const glm::ivec3& v) { colours.push_back(glm::u8vec3(v.x / 4 * 60 + shift, 40, v.y / 4 * 60)); });
+    return std::make_shared<const std::vector<glm::u8vec3>>(std::move(colours));
+  };
+  for (const int shift : {10, 60}) {
+    scene.weights = ShownWeights{.tissue = block.tissue, .display = WeightDisplay::Field, .field = field(shift), .contours = false};
+    slice.draw(scene, slice_through(block, 6), SliceDisplay::Labels, kSize);
+    const Image picture = slice.read();
+    // Four voxels share a colour, so the two in the middle of each are not filtered with others.
+    for (const glm::ivec2 v : {glm::ivec2(5, 5), glm::ivec2(9, 6), glm::ivec2(10, 9)})
+      CHECK(apart(pixel_of(picture, pixel_of(block, v.x, v.y)), {v.x / 4 * 60 + shift, 40, v.y / 4 * 60}) <= 1);
+  }
+  scene.weights->field = std::make_shared<const std::vector<glm::u8vec3>>(3);
+  CHECK_THROWS_AS(slice.draw(scene, slice_through(block, 6), SliceDisplay::Labels, kSize), std::logic_error);
+}

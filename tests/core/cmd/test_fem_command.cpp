@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "core/base/file.h"
+#include "core/resample/fem_steps.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -63,6 +64,35 @@ TEST_CASE("fem command: options of finite elements are refused with other method
   CHECK(twice.exit_code == 1);
   CHECK(twice.err.find("two outputs would be the same file") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(out));
+}
+
+TEST_CASE("fem command: the steps that it leaves for a watcher end where the mesh does") {
+  const Arm arm;
+  const auto run = arm.resample({"--method", "fem", "--quality", "draft", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--mesh-out", arm.folder / "posed", "--steps", arm.folder / "solve"});
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const auto mesh = read_fem_mesh(arm.folder / "solve");
+  const auto step = read_fem_step(arm.folder / "solve");
+  REQUIRE(mesh);
+  REQUIRE(step);
+  CHECK(step->reached == 1);
+  CHECK(step->iteration > 0);
+  CHECK_FALSE(step->motions.empty());
+  std::ifstream nodes(arm.folder / "posed.node");
+  std::size_t count = 0, skipped = 0;
+  nodes >> count >> skipped >> skipped >> skipped;
+  REQUIRE(count == static_cast<std::size_t>(step->V.rows()));
+  REQUIRE(mesh->tets.V.rows() == step->V.rows());
+  double worst = 0;
+  for (std::size_t v = 0; v < count; ++v) {
+    double index, x, y, z;
+    nodes >> index >> x >> y >> z;
+    worst = std::max(worst, (step->V.row(v) - Eigen::RowVector3d(x, y, z)).norm());
+  }
+  CHECK(nodes);
+  CHECK(worst < 1e-3);
+  CHECK((step->V - mesh->tets.V).rowwise().norm().maxCoeff() > 10);  // the forearm has moved
+  CHECK(arm.resample({"--method", "dqs", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--steps", arm.folder / "solve"}).err.starts_with("limber: --steps"));
 }
 
 TEST_CASE("fem command: writes volume, report and mesh; tells angle, iteration, residual and time left; a job does the same bit for bit") {

@@ -13,6 +13,7 @@
 #include "core/skin/heat_diffusion.h"
 #include "core/volume/phantom.h"
 #include "tests/support/bent_tube.h"
+#include "tests/support/kuhn_mesh.h"
 
 using namespace limber;
 
@@ -282,4 +283,36 @@ TEST_CASE("preview: what lies on both sides of a narrow gap moves apart, and not
       CHECK(near * 10 > bars * 9);
       CHECK(astray * 50 < drawn);
     }
+}
+
+TEST_CASE("preview: tissue goes where a tet mesh carries it, and what the bones alone say comes back after it") {
+  const Sitter tube = tube_sitter(test::oblique_grid());
+  const auto rest_motions = tube.motions(rest_pose(tube.rig));
+  LivePreview preview = tube.preview();
+  const glm::dvec3 size(tube.volume->grid.size);
+  const auto mesh = std::make_shared<const TetMesh>(test::kuhn_mesh(tube.volume->grid, glm::dvec3(-4), size + 4.0, {10, 10, 20}));
+  const auto still = std::make_shared<const Eigen::MatrixX3d>(mesh->V);
+  const auto plain = preview.update(rest_motions, Blend::Linear);
+  const PreviewMap before = *plain;
+  CHECK(same(*preview.update(rest_motions, Blend::Linear, {mesh, still}), before));
+
+  // All swings aside along z, as no bone does.
+  const glm::dvec3 across = tube.volume->grid.direction[0];
+  const AffineTransform world = world_from_voxel(tube.volume->grid), voxel = voxel_from_world(tube.volume->grid);
+  const auto swung = [&](const glm::dvec3& p) { return p + 6 * tube.volume->grid.spacing.x * std::sin(0.08 * (voxel * p).z) * across; };
+  Eigen::MatrixX3d V = mesh->V;
+  for (Eigen::Index v = 0; v < V.rows(); ++v) {
+    const glm::dvec3 p = swung({V(v, 0), V(v, 1), V(v, 2)});
+    V.row(v) << p.x, p.y, p.z;
+  }
+  const auto map = preview.update(rest_motions, Blend::Linear, {mesh, std::make_shared<const Eigen::MatrixX3d>(V)});
+  double worst = 0;
+  tube.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
+    const glm::dvec3 rest(v);
+    if (tube.volume->at(v) == test::kBone) return;  // beside another bone it stays with its own
+    const auto back = map->rest_at(voxel * swung(world * rest));
+    worst = std::max(worst, back ? glm::distance(*back, rest) : 1e9);
+  });
+  CHECK(worst < 0.5);  // voxels; nodes lie 4 apart
+  CHECK(same(*preview.update(rest_motions, Blend::Linear), before));
 }

@@ -184,3 +184,23 @@ TEST_CASE("job: many at once, in few threads, all come to their end") {
   CHECK(history.current().results.size() == 60);
   CHECK(most <= 3);
 }
+
+TEST_CASE("job: long ones run one at a time, in order, and no other waits for them") {
+  History history(small_document());
+  Jobs jobs(1);
+  std::atomic<bool> go = false;
+  const auto until_go = [&go](Progress& progress) -> Edit {
+    for (; !go; nap()) progress.update("solving", 0.5);
+    return {};
+  };
+  const int first = jobs.start("First", until_go, Lane::Long), second = jobs.start("Second", until_go, Lane::Long);
+  const int common = jobs.start("Common", [](Progress&) { return name_result("common"); });
+  REQUIRE(wait_for(jobs, history, [&] { return jobs.status(common).state == JobState::Done; }));
+  CHECK(jobs.status(first).state == JobState::Running);
+  CHECK(jobs.status(second).state == JobState::Queued);
+  jobs.cancel(first);
+  REQUIRE(wait_for(jobs, history, [&] { return jobs.status(second).state == JobState::Running; }));
+  go = true;
+  REQUIRE(finish(jobs, history));
+  CHECK(jobs.status(second).state == JobState::Done);
+}

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include <doctest/doctest.h>
+#include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -104,6 +105,44 @@ echo '{not json' >&2)")});
   CHECK(output.warnings == std::vector<std::string>{"thin: skin: look"});
   CHECK(progress.last == "solve");
   CHECK(progress.fraction == 0.5);
+}
+
+TEST_CASE("worker: what it tells of a solve comes whole") {
+  const TemporaryFolder folder;
+  std::vector<WorkerProgress> told;
+  Progress quiet;
+  run_worker("job.json", quiet, {.program = script(folder, R"(echo '{"stage": "mesh", "fraction": 0.25}' >&2
+echo '{"stage": "solving", "fraction": 0.5, "angle_degrees": 45.5, "iteration": 7, "residual_mm": 0.125, "seconds_left": 12}' >&2)"),
+                                 .on_progress = [&](const WorkerProgress& progress) { told.push_back(progress); }});
+  REQUIRE(told.size() == 2);
+  CHECK(told[0].stage == "mesh");
+  CHECK(told[0].fraction == 0.25);
+  CHECK_FALSE(told[0].iteration);
+  CHECK_FALSE(told[0].residual_mm);
+  CHECK(told[1].stage == "solving");
+  CHECK(told[1].angle_degrees == 45.5);
+  CHECK(told[1].iteration == 7);
+  CHECK(told[1].residual_mm == 0.125);
+  CHECK(told[1].seconds_left == 12.0);
+}
+
+TEST_CASE("worker: one that yields is given only what all others leave of the machine") {
+  const TemporaryFolder folder;
+  write_job(folder, "0.8");
+  const std::string job = folder / "job.json";
+  for (const bool yields : {true, false}) {
+    const pid_t worker = ::fork();
+    REQUIRE(worker >= 0);
+    if (worker == 0) {
+      ::execl(LIMBER_PROGRAM, "limber", "job", job.c_str(), yields ? "--yield" : nullptr, nullptr);
+      ::_exit(1);
+    }
+    const auto policy_of = [&] { return ::sched_getscheduler(worker); };
+    for (int i = 0; i < (yields ? 2000 : 60) && policy_of() != SCHED_IDLE; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    CHECK((policy_of() == SCHED_IDLE) == yields);
+    ::kill(worker, SIGKILL);
+    ::waitpid(worker, nullptr, 0);
+  }
 }
 
 TEST_CASE("worker: a crash, a kill and a failure without a word become clear messages") {
