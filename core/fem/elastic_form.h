@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The elastic energy of a list of tets with its forces and its curvature, for flesh and for the air between skins alike.
+// The elastic energy of a list of tets with its forces and its curvature.
 // Adding to forces and matrix runs in parallel without a lock: neighbouring tets form chunks, chunks of one colour share no
 // node, and colours take turns, so that every sum has one order.
 #pragma once

@@ -6,12 +6,14 @@
 
 #include <sys/resource.h>
 
+#include "core/base/parallel.h"
+
 namespace limber {
 
 namespace {
 constexpr double kWeakBelow = 0.4;  // det F of flesh at which the weak barrier begins
 
-// Of this process and of those it has started and seen end (that mesh the air).
+// Of this process and of those it has started and seen end.
 double cpu_seconds() {
   double sum = 0;
   for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
@@ -21,19 +23,13 @@ double cpu_seconds() {
   }
   return sum;
 }
-
-Eigen::MatrixX4i stacked(const Eigen::MatrixX4i& a, const Eigen::MatrixX4i& b, const Eigen::MatrixX4i& c) {
-  Eigen::MatrixX4i all(a.rows() + b.rows() + c.rows(), 4);
-  all << a, b, c;
-  return all;
-}
 }  // namespace
 
 CpuTimer::CpuTimer(double& sum) : sum_(sum), start_(cpu_seconds()) {}
 CpuTimer::~CpuTimer() { sum_ += cpu_seconds() - start_; }
 
 FemEnergy::FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material, double weak_barrier_kpa, int patch_size)
-    : node_count_(int(rest.rows())), guarded_(0, 4) {
+    : node_count_(int(rest.rows())) {
   std::vector<double> bulk(T.rows()), shear(T.rows());
   for (Eigen::Index t = 0; t < T.rows(); ++t) bulk[t] = patch_bulk(material[t]), shear[t] = material[t].shear_modulus;
   const PatchOrder order = grow_patches(rest, T, bulk, shear, patch_size);
@@ -50,7 +46,6 @@ FemEnergy::FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::v
   }
   flesh_ = ElasticForm(rest, flesh_tets_, energy, {order.first.begin() + 1, order.first.end()});
   patches_ = PatchForm(flesh_, order.first, ordered_bulk, node_count_);
-  air_tets_.resize(0, 4);
   bounded_ = flesh_tets_;
 }
 
@@ -61,16 +56,18 @@ void FemEnergy::hold(PinForm pins, std::vector<int> carried, Places carried_targ
   carried_target_ = std::move(carried_target);
 }
 
-void FemEnergy::set_air(ElasticForm air, Eigen::MatrixX4i air_tets, Eigen::MatrixX4i guarded) {
-  matrix_.reset();
-  air_ = std::move(air);
-  air_tets_ = std::move(air_tets);
-  guarded_ = std::move(guarded);
-  bounded_ = stacked(flesh_tets_, guarded_, air_tets_);
+void FemEnergy::guard(const Eigen::MatrixX4i& guarded) {
+  bounded_.resize(flesh_tets_.rows() + guarded.rows(), 4);
+  bounded_ << flesh_tets_, guarded;
 }
 
-void FemEnergy::prepare() {
-  if (matrix_) return;
+void FemEnergy::set_contact(ContactForm contact) {
+  matrix_.reset();
+  contact_ = std::move(contact);
+}
+
+void FemEnergy::prepare(const Places& x) {
+  if (matrix_ && contact_.connected()) return;
   const CpuTimer timer(seconds_.analysis);
   // Nodes that nothing pulls at are no unknowns either: a matrix has no row for them.
   std::vector<char> used(node_count_, 0);
@@ -85,54 +82,64 @@ void FemEnergy::prepare() {
   BlockGraphBuilder graph(int(node_of_.size()));
   flesh_.connect(graph, unknown_);
   patches_.connect(graph, unknown_);
-  air_.connect(graph, unknown_);
+  contact_.connect(graph, unknown_, x);
   matrix_ = std::make_unique<Cholesky>(graph.build());
   flesh_.bind(*matrix_, unknown_);
   patches_.bind(flesh_, *matrix_, unknown_);
-  air_.bind(*matrix_, unknown_);
 }
 
-Cholesky& FemEnergy::matrix() {
-  prepare();
-  return *matrix_;
-}
+Cholesky& FemEnergy::matrix() { return *matrix_; }
 
-void FemEnergy::ratios(const Places& x) {
-  flesh_.volume_ratios(x, J_);
-  air_.volume_ratios(x, air_J_);
+void FemEnergy::watch(const Places& x) {
+  if (contact_.empty()) return;
+  const CpuTimer timer(seconds_.contact);
+  contact_.watch(x, Places::Zero(x.rows(), 3), 0);
 }
 
 double FemEnergy::value(const Places& x) {
-  const CpuTimer timer(seconds_.search);
-  ratios(x);
-  return flesh_.value(x, J_) + patches_.value(J_) + air_.value(x, air_J_) + pins_.value(x);
+  double sum = 0;
+  {
+    const CpuTimer timer(seconds_.search);
+    flesh_.volume_ratios(x, J_);
+    sum = flesh_.value(x, J_) + patches_.value(J_) + pins_.value(x);
+  }
+  if (contact_.empty()) return sum;
+  const CpuTimer timer(seconds_.contact);
+  return sum + contact_.value(x);
 }
 
 void FemEnergy::gradient(const Places& x, Places& gradient) {
-  ratios(x);
+  flesh_.volume_ratios(x, J_);
   gradient.setZero(node_count_, 3);
   patches_.pressures(J_, pressure_);
   flesh_.add_gradient(x, pressure_, gradient);
-  air_.add_gradient(x, {}, gradient);
+  contact_.touch(x);
+  contact_.add_gradient(gradient);
   pins_.add_gradient(x, gradient);
 }
 
 void FemEnergy::assemble(const Places& x, Curvature curvature, Places& gradient) {
   const CpuTimer timer(seconds_.assembly);
-  ratios(x);
+  flesh_.volume_ratios(x, J_);
   gradient.setZero(node_count_, 3);
   matrix_->clear();
   const auto values = matrix_->values();
   patches_.pressures(J_, pressure_);
   flesh_.add_derivatives(x, pressure_, curvature, gradient, values);
   patches_.add_curvature(flesh_, x, values);
-  air_.add_derivatives(x, {}, curvature, gradient, values);
+  contact_.bind(*matrix_, unknown_);
+  contact_.add_gradient(gradient);
+  contact_.add_curvature(values);
   pins_.add_gradient(x, gradient);
   pins_.add_curvature(*matrix_, unknown_, values);
 }
 
 bool FemEnergy::newton_step(const Places& x, Curvature curvature, Places& step, double& slope) {
-  prepare();
+  {
+    const CpuTimer timer(seconds_.contact);
+    contact_.touch(x);
+  }
+  prepare(x);
   Places gradient;
   assemble(x, curvature, gradient);
 
@@ -154,24 +161,66 @@ bool FemEnergy::newton_step(const Places& x, Curvature curvature, Places& step, 
   return true;
 }
 
-StepBound FemEnergy::largest_step(const Places& x, const Places& step, double limit) const { return limber::largest_step(bounded_, x, step, limit); }
+FemEnergy::Bound FemEnergy::largest_step(const Places& x, const Places& step, double limit) {
+  Bound bound{limit};
+  {
+    const CpuTimer timer(seconds_.search);
+    const StepBound tets = limber::largest_step(bounded_, x, step, limit);
+    bound.length = tets.length;
+    if (tets.tet >= 0) {
+      bound.obstacle = tets.tet < flesh_tets_.rows() ? Obstacle::Flesh : Obstacle::Guarded;
+      std::copy_n(bounded_.row(tets.tet).begin(), 4, bound.node.begin());
+    }
+  }
+  if (contact_.empty()) return bound;
+  const CpuTimer timer(seconds_.contact);
+  contact_.watch(x, step, bound.length);
+  if (const auto free = contact_.largest_step(x, step, bound.length); free.length < bound.length) bound = {free.length, Obstacle::Contact, free.node};
+  return bound;
+}
 
-Eigen::RowVector4i FemEnergy::bounding_tet(const StepBound& bound) const { return bounded_.row(bound.tet); }
-
-FemEnergy::Part FemEnergy::part_of(const StepBound& bound) const {
-  if (bound.tet < flesh_tets_.rows()) return Part::Flesh;
-  return bound.tet < flesh_tets_.rows() + guarded_.rows() ? Part::Guarded : Part::Air;
+Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>& fixed) {
+  constexpr double kBorne = 0.2;  // of a tet's volume
+  constexpr int kRounds = 40;
+  const CpuTimer timer(seconds_.search);
+  const auto& T = bounded_;
+  Places sum(x.rows(), 3);
+  std::vector<int> count(x.rows(), 0), nodes;
+  std::vector<char> flattened(T.rows());
+  for (int round = 0; round < kRounds; ++round) {
+    const Places there = x + step;
+    parallel_for(T.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
+      for (auto t = begin; t < end; ++t)
+        flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) < kBorne * determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3));
+    });
+    nodes.clear();
+    const auto smooth = [&](const auto& element) {
+      Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
+      for (const int v : element) mean += 0.25 * step.row(v);
+      for (const int v : element) {
+        if (!fixed.empty() && fixed[v]) continue;
+        if (count[v]++ == 0) nodes.push_back(v), sum.row(v).setZero();
+        sum.row(v) += mean;
+      }
+    };
+    for (Eigen::Index t = 0; t < T.rows(); ++t)
+      if (flattened[t]) smooth(std::array{T(t, 0), T(t, 1), T(t, 2), T(t, 3)});
+    if (!contact_.empty()) {
+      if (round % 10 == 0) contact_.watch(x, step, 1);
+      for (const ContactPair& pair : contact_.blocked(x, step)) smooth(pair.node);
+    }
+    if (nodes.empty()) break;
+    for (const int v : nodes) {
+      step.row(v) = 0.5 * step.row(v) + 0.5 / count[v] * sum.row(v);
+      count[v] = 0;
+    }
+  }
+  return step;
 }
 
 double FemEnergy::min_ratio(const Places& x) const {
   std::vector<double> J;
   flesh_.volume_ratios(x, J);
-  return J.empty() ? 1 : *std::min_element(J.begin(), J.end());
-}
-
-double FemEnergy::min_air_ratio(const Places& x) const {
-  std::vector<double> J;
-  air_.volume_ratios(x, J);
   return J.empty() ? 1 : *std::min_element(J.begin(), J.end());
 }
 

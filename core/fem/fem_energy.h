@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // All that a step's shape is the least energy of: flesh (elastic_form.h) with its patches (patch_form.h), the springs of the
-// bones (pin_form.h), and with contact the air between skins (air_form.h); and the matrix of its curvature.
+// bones (pin_form.h), and with contact what keeps skins apart (contact_form.h); and the matrix of its curvature.
 // Nodes deep in a bone, whose tets all belong to that bone alone, are no unknowns: they go where the bone goes.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/fem/contact_form.h"
 #include "core/fem/elastic_form.h"
 #include "core/fem/material.h"
 #include "core/fem/patch_form.h"
@@ -19,7 +20,7 @@ namespace limber {
 
 // Nothing of the solver but its cost, in CPU seconds of all threads.
 struct FemSeconds {
-  double air = 0, analysis = 0, assembly = 0, factorization = 0, search = 0, total = 0;
+  double contact = 0, analysis = 0, assembly = 0, factorization = 0, search = 0, total = 0;
 };
 
 // Adds the CPU time of the process, while it lives, to a sum.
@@ -43,49 +44,58 @@ class FemEnergy {
   // Springs, and what moves without being asked: `carried` nodes go to `carried_target`. Keeps the matrix when the nodes are
   // those of the last call.
   void hold(PinForm pins, std::vector<int> carried, Places carried_target);
-  // Air that resists (form, may be empty) and volume that must not invert although it costs nothing (guarded).
-  void set_air(ElasticForm air, Eigen::MatrixX4i air_tets, Eigen::MatrixX4i guarded);
+  // Volume that must not invert although it costs nothing.
+  void guard(const Eigen::MatrixX4i& guarded);
+  void set_contact(ContactForm contact);
 
   int node_count() const { return node_count_; }
 
+  // Energy and derivatives know who may touch at x, or on the way of the last largest_step(): elsewhere this comes first.
+  void watch(const Places& x);
   // Infinite where a tet is inverted.
   double value(const Places& x);
   void gradient(const Places& x, Places& gradient);
   // The Newton step at x: false when the curvature is not positive definite. Also says what the energy falls by along it, to
   // first order (above 0).
   bool newton_step(const Places& x, Curvature curvature, Places& step, double& slope);
-  StepBound largest_step(const Places& x, const Places& step, double limit) const;
+  enum class Obstacle { None, Flesh, Guarded, Contact };
+  struct Bound {
+    double length = 1;  // of the step
+    Obstacle obstacle = Obstacle::None;
+    std::array<int, 4> node{-1, -1, -1, -1};  // corners of the tet that bounds it, or the nodes of two parts of skin
+  };
+  Bound largest_step(const Places& x, const Places& step, double limit);
 
-  enum class Part { Flesh, Guarded, Air };
-  // Corners of the tet that a StepBound names.
-  Eigen::RowVector4i bounding_tet(const StepBound& bound) const;
-  Part part_of(const StepBound& bound) const;
+  // The step where it would flatten tets, or take parts of the skin too near each other, made smoother, until it does not or
+  // rounds are over: what moves all alike keeps its volume and its distances.
+  //   fixed  #nodes: 1 for those whose step stays; empty: none
+  Places yielding(const Places& x, Places step, const std::vector<char>& fixed);
 
   double min_ratio(const Places& x) const;      // smallest det F of flesh
-  double min_air_ratio(const Places& x) const;  // of air that resists; 1 without
-  const Eigen::MatrixX4i& volume_tets() const { return bounded_; }  // all that must stay positive: flesh, guarded, air
+  const Eigen::MatrixX4i& volume_tets() const { return bounded_; }  // all that must stay positive: flesh, guarded
 
   Cholesky& matrix();  // of the last newton_step()
   int factorizations() const { return factorizations_; }
   FemSeconds& seconds() { return seconds_; }
 
  private:
-  void prepare();
+  void prepare(const Places& x);
   void ratios(const Places& x);
   void assemble(const Places& x, Curvature curvature, Places& gradient);
 
   int node_count_;
-  Eigen::MatrixX4i flesh_tets_, air_tets_, guarded_, bounded_;
-  ElasticForm flesh_, air_;
+  Eigen::MatrixX4i flesh_tets_, bounded_;
+  ElasticForm flesh_;
   PatchForm patches_;
   PinForm pins_;
+  ContactForm contact_;
   std::vector<int> carried_;
   Places carried_target_;
 
   std::vector<int> unknown_;  // #nodes: row of blocks in the matrix, -1 none
   std::vector<int> node_of_;  // #rows
   std::unique_ptr<Cholesky> matrix_;
-  std::vector<double> J_, air_J_, pressure_, right_side_;
+  std::vector<double> J_, pressure_, right_side_;
   int factorizations_ = 0;
   FemSeconds seconds_;
 };

@@ -13,6 +13,7 @@ constexpr int kHalvings = 24;          // of a step, before the search is given 
 constexpr double kNearStep = 0.4;      // the exact curvature is tried after a step at least this long,
 constexpr double kNearMove = 1;        // by no more than this, mm
 constexpr int kLongestWait = 8;
+constexpr double kShort = 0.5;         // a step that something bounds below this is tried around it too
 constexpr double kJam = 0.05;          // a step this short is a jam;
 constexpr int kJams = 3;               // after so many in a row the solve is given up
 constexpr double kLeft = 0.25;         // of the tolerance, that a step shorter than the full one may leave undone and be the last
@@ -70,6 +71,7 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
   NewtonResult result;
   ExactTurns exact;
   int jams = 0;
+  energy.watch(x);
   double value = energy.value(x);
   Places step;
   while (result.iterations < settings.iterations) {
@@ -84,11 +86,17 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
     ++result.iterations;
     result.residual = longest(step);
 
-    {
-      const CpuTimer timer(energy.seconds().search);
-      result.bound = energy.largest_step(x, step, kFurthest);
+    result.bound = energy.largest_step(x, step, kFurthest);
+    double length = 0;
+    if (result.bound.length < kShort) {
+      const Places around = energy.yielding(x, step, settings.fixed);
+      const FemEnergy::Bound further = energy.largest_step(x, around, 1);
+      if (further.length > result.bound.length && (length = search(energy, x, value, around, 0, further.length)) > 0)
+        result.bound = further;
+      else
+        energy.largest_step(x, step, kFurthest);
     }
-    const double length = search(energy, x, value, step, slope, result.bound.length);
+    if (length == 0) length = search(energy, x, value, step, slope, result.bound.length);
     result.shortest_search = std::min(result.shortest_search, length);
     exact.stepped(length, result.residual);
     if (on_iteration) on_iteration(result.iterations, result.residual);

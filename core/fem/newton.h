@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Projected Newton to the shape of least energy. No iterate ever has an inverted tet: every step is bounded exactly
-// (step_bound.h) and searched along, and a search that finds nothing lower does not move.
+// Projected Newton to the shape of least energy. No iterate ever has an inverted tet or skin that crosses: every
+// step is bounded (step_bound.h, contact_surface.h) and searched along, and a search that finds nothing lower does not move.
 // The projected curvature is positive definite, but near the end slower than the exact one, which is tried there and, where it
 // is indefinite, left alone for 1, 2, 4, 8 iterations. It ends when neither the step nor what a search left of it matters, and
 // gives up when three searches in a row hardly moved. A full step that lowers the energy is tried at 2, 4, 8 times its length.
+// A step that one place bounds to less than half is made smoother there first, so that it can be taken everywhere else.
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/fem/fem_energy.h"
@@ -16,6 +18,7 @@ namespace limber {
 struct NewtonSettings {
   double tolerance_mm = 0.3;  // ends when no node would move further than this
   int iterations = 40;
+  std::vector<char> fixed;    // #nodes: 1 where a step is not made smoother (FemEnergy::yielding); empty: nowhere
 };
 
 struct NewtonResult {
@@ -23,7 +26,7 @@ struct NewtonResult {
   int iterations = 0;
   double residual = 0;              // furthest that a node wanted to move in the last iteration, mm
   double shortest_search = 1;       // of all steps taken, in shares of the full step
-  StepBound bound{1, -1};           // of the last step
+  FemEnergy::Bound bound;           // of the last step
 };
 
 // x  in: positive tets; out: the least energy found, never higher than where it began

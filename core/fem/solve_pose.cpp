@@ -2,17 +2,15 @@
 #include "core/fem/solve_pose.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <tuple>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/fem/air_form.h"
 #include "core/fem/newton.h"
 #include "core/mesh/crossings.h"
-#include "core/mesh/tetrahedralize.h"
 
 namespace limber {
 
@@ -105,25 +103,19 @@ class PoseSolve {
             const std::function<void(const SolveStep&)>& on_step, const Eigen::MatrixX3d* start)
       : model_(model), path_(path), settings_(settings), progress_(progress), on_step_(on_step), parts_(model), rest_(model.mesh.V),
         x_(start ? Places(*start) : rest_), energy_(rest_, parts_.elastic, parts_.material, kWeakBarrier) {
-    energy_.set_air({}, Eigen::MatrixX4i(0, 4), parts_.rigid);
+    energy_.guard(parts_.rigid);
+    for (std::size_t v = 0; v < model.held_by.size(); ++v) held_.push_back(model.held_by[v] >= 0 && !parts_.in_joint[v]);
   }
 
   SolvedPose run(double largest_angle_degrees) {
-    if (settings_.contact) skin_ = boundary_of(model_.mesh.T);
+    const Eigen::MatrixX3i skin = settings_.contact ? boundary_of(model_.mesh.T) : Eigen::MatrixX3i(0, 3);
+    if (settings_.contact) energy_.set_contact(ContactForm(skin, rest_, rigid_nodes(), {.thickness_mm = settings_.contact_mm}));
     const double whole = settings_.step_degrees / std::max(largest_angle_degrees, 1e-9);
     const double regular = 1 / std::max(1.0, std::ceil(1 / whole - 1e-9));
     shortest_ = std::min(regular, settings_.shortest_step_degrees / std::max(largest_angle_degrees, 1e-9));
     if (at_rest()) result_.reached = 1;
     advance(regular);
-    if (settings_.contact && result_.steps > 0 && crossings() > 0) {
-      // Air that could not be meshed, or was left out, let something through: the last two steps again, in smaller ones.
-      std::tie(result_.reached, x_) = former_.front();
-      air_is_of_now_ = false;
-      missed_.resize(0, 3);
-      ++result_.crossings_mended;
-      advance(0.5 * regular);
-    }
-    if (settings_.contact) result_.crossings = crossings();
+    result_.crossings = std::ssize(crossing_pairs(x_, skin));
     result_.converged = result_.reached == 1;
     if (result_.converged) result_.blocked_by.clear();
     result_.V = x_;
@@ -141,22 +133,20 @@ class PoseSolve {
       if (!step(result_.reached + length > 1 - 1e-9 ? 1 : result_.reached + length)) break;
     }
   }
-  std::int64_t crossings() const { return std::ssize(crossing_pairs(x_, skin_)); }
+  std::vector<int> rigid_nodes() const;
   bool at_rest() const;
   bool step(double to);
   bool part(double from, double to, Places& x);
   void hold_at(const std::vector<RigidTransform>& pose);
   Places blend_increment(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& of, bool points) const;
   double predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x, double missed_share);
-  bool mesh_air(const Places& next);
-  Places yielding(const Places& x, Places guess) const;
   struct Drift {
     double mm = 0;
     int node = -1;
   };
   Drift bone_drift(const std::vector<RigidTransform>& pose, const Places& x) const;
-  std::string at(const Eigen::RowVector4i& tet, const Places& x) const;
-  std::string obstacle(const StepBound& bound, const Places& x) const;
+  std::string at(const std::array<int, 4>& nodes, const Places& x) const;
+  std::string obstacle(const FemEnergy::Bound& bound, const Places& x) const;
 
   const FemModel& model_;
   const BonePath& path_;
@@ -165,12 +155,9 @@ class PoseSolve {
   const std::function<void(const SolveStep&)>& on_step_;
   const Parts parts_;
   const Places rest_;
+  std::vector<char> held_;  // #V: nodes that a bone holds stiffly, or carries along
   Places x_;
-  Eigen::MatrixX3i skin_;  // with contact
-  Eigen::MatrixX4i air_;   // around the skin at `reached`, without what is at the box or over one bone
-  bool air_is_of_now_ = false;
   double shortest_ = 0;    // step, of the path
-  std::vector<std::pair<double, Places>> former_;  // where the last two steps began
   Places missed_;          // how far the last guess was off, #V, or empty,
   double missed_way_ = 1;  // of so much of the path
   FemEnergy energy_;
@@ -212,60 +199,12 @@ Places PoseSolve::blend_increment(const std::vector<RigidTransform>& from, const
   return change;
 }
 
-// Air around the skin as it is. Where it cannot be meshed the former air goes on: it is as valid, if more worn.
-// False when there is none.
-bool PoseSolve::mesh_air(const Places& next) {
-  const CpuTimer timer(energy_.seconds().air);
-  if (!air_is_of_now_) {
-    const AirTets air = tetrahedralize_air(x_, skin_, AirSettings{}.margin_mm, {}, progress_);
-    if (!air.T) {
-      result_.air_meshes_kept += air_.rows() > 0;
-      if (air_.rows() == 0) result_.blocked_by = "the air around the skin cannot be meshed: " + air.failure;
-      return air_.rows() > 0;
-    }
-    // Air over one bone's own surface goes with the bone.
-    std::vector<Eigen::Index> kept;
-    for (Eigen::Index t = 0; t < air.T->rows(); ++t)
-      if (air.T->row(t).maxCoeff() < x_.rows() && !held_by_one(model_, air.T->row(t))) kept.push_back(t);
-    air_ = (*air.T)(kept, Eigen::all);
-    air_is_of_now_ = true;
-  }
-  const Eigen::MatrixX4i moving = moving_air(air_, x_, next);
-  energy_.set_air(air_form(moving, x_), moving, parts_.rigid);
-  return true;
-}
-
-// The guess where it would flatten tets made smoother, until it does not: a tet whose nodes all move alike keeps its volume.
-Places PoseSolve::yielding(const Places& x, Places guess) const {
-  constexpr double kBorne = 0.2;  // of a tet's volume
-  constexpr int kRounds = 40;
-  const auto& T = energy_.volume_tets();
-  Places sum(x.rows(), 3);
-  std::vector<int> count(x.rows(), 0), nodes;
-  std::vector<char> flattened(T.rows());
-  for (int round = 0; round < kRounds; ++round) {
-    const Places there = x + guess;
-    parallel_for(T.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
-      for (auto t = begin; t < end; ++t)
-        flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) < kBorne * determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3));
-    });
-    nodes.clear();
-    for (Eigen::Index t = 0; t < T.rows(); ++t) {
-      if (!flattened[t]) continue;
-      const Eigen::RowVector3d mean = 0.25 * (guess.row(T(t, 0)) + guess.row(T(t, 1)) + guess.row(T(t, 2)) + guess.row(T(t, 3)));
-      for (const int v : T.row(t)) {
-        if (model_.held_by[v] >= 0 && !parts_.in_joint[v]) continue;
-        if (count[v]++ == 0) nodes.push_back(v), sum.row(v).setZero();
-        sum.row(v) += mean;
-      }
-    }
-    if (nodes.empty()) break;
-    for (const int v : nodes) {
-      guess.row(v) = 0.5 * guess.row(v) + 0.5 / count[v] * sum.row(v);
-      count[v] = 0;
-    }
-  }
-  return guess;
+// By their bone, -1 the others.
+std::vector<int> PoseSolve::rigid_nodes() const {
+  std::vector<int> rigid = model_.held_by;
+  for (std::size_t v = 0; v < rigid.size(); ++v)
+    if (!held_[v]) rigid[v] = -1;
+  return rigid;
 }
 
 // The best of four guesses: what the blend of the bones does, that with what it missed the last time, and both yielding.
@@ -281,8 +220,9 @@ double PoseSolve::predict(const std::vector<RigidTransform>& from, const std::ve
       if (model_.held_by[v] >= 0) guesses.back().row(v) = blend.row(v);
   }
   Places best = x;
+  energy_.watch(x);
   double least = energy_.value(x), best_way = 0;
-  for (std::size_t k = 0, n = guesses.size(); k < n; ++k) guesses.push_back(yielding(x, guesses[k]));
+  for (std::size_t k = 0, n = guesses.size(); k < n; ++k) guesses.push_back(energy_.yielding(x, guesses[k], held_));
   for (const Places& guess : guesses) {
     const double way = energy_.largest_step(x, guess, 1).length;
     Places there = x + way * guess;
@@ -304,10 +244,10 @@ PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, 
 }
 
 // "between Humerus and Forearm near (1, 2, 3) mm": the two bones that move the corners most.
-std::string PoseSolve::at(const Eigen::RowVector4i& tet, const Places& x) const {
+std::string PoseSolve::at(const std::array<int, 4>& nodes, const Places& x) const {
   std::vector<double> share(path_(0).size(), 0);
   Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
-  for (const int v : tet) {
+  for (const int v : nodes) {
     centre += 0.25 * x.row(v);
     for (const auto& [bone, weight] : model_.influences[v]) share[bone] += weight;
   }
@@ -320,10 +260,10 @@ std::string PoseSolve::at(const Eigen::RowVector4i& tet, const Places& x) const 
   return (share[second] > 0.01 * most ? "between " + name(std::min(first, second)) + " and " + name(std::max(first, second)) : "on " + name(first)) + place;
 }
 
-std::string PoseSolve::obstacle(const StepBound& bound, const Places& x) const {
-  if (bound.tet < 0) return "the solver finds no lower energy";
-  const char* what = energy_.part_of(bound) == FemEnergy::Part::Air ? "skin presses against skin " : "tissue is squeezed flat ";
-  return what + at(energy_.bounding_tet(bound), x);
+std::string PoseSolve::obstacle(const FemEnergy::Bound& bound, const Places& x) const {
+  if (bound.obstacle == FemEnergy::Obstacle::None) return "the solver finds no lower energy";
+  const char* what = bound.obstacle == FemEnergy::Obstacle::Contact ? "skin presses against skin " : "tissue is squeezed flat ";
+  return what + at(bound.node, x);
 }
 
 // From x, good at `from`, to the shape at `to`.
@@ -337,6 +277,7 @@ bool PoseSolve::part(double from, double to, Places& x) {
   NewtonSettings newton;
   newton.tolerance_mm = to == 1 ? settings_.tolerance_mm : settings_.step_tolerance_mm;
   newton.iterations = settings_.step_iterations;
+  newton.fixed = held_;
   const int before = result_.iterations;
   const NewtonResult solved = minimise(energy_, x, newton, progress_, [&](int iteration, double residual) {
     progress_.update("solving", from);
@@ -355,7 +296,7 @@ bool PoseSolve::part(double from, double to, Places& x) {
   if (drift.mm > settings_.bone_drift_mm) {
     char by[40];
     std::snprintf(by, sizeof by, "bone would bend by %.1f mm ", drift.mm);
-    result_.blocked_by = by + at(Eigen::RowVector4i::Constant(drift.node), x);
+    result_.blocked_by = by + at({drift.node, drift.node, drift.node, drift.node}, x);
     return false;
   }
   result_.bone_drift_mm = drift.mm;
@@ -364,10 +305,8 @@ bool PoseSolve::part(double from, double to, Places& x) {
   return true;
 }
 
-// As far towards `to` as one air mesh goes, in as few parts as can be. False when not even the shortest part can be done.
+// As far towards `to` as it goes, in as few parts as can be. False when not even the shortest part can be done.
 bool PoseSolve::step(double to) {
-  if (settings_.contact && !mesh_air(x_ + blend_increment(path_(result_.reached), path_(to), x_, true))) return false;
-  const Places start = x_;
   double from = result_.reached, way = to - from;
   while (from < to) {
     const double next = way < 0.999 * (to - from) ? from + way : to;
@@ -382,10 +321,6 @@ bool PoseSolve::step(double to) {
   }
   if (from == result_.reached) return false;
 
-  if (former_.size() == 2) former_.erase(former_.begin());
-  former_.emplace_back(result_.reached, start);
-  result_.min_air_det_f = std::min(result_.min_air_det_f, energy_.min_air_ratio(x_));
-  air_is_of_now_ = false;
   result_.reached = from;
   ++result_.steps;
   result_.inverted += count_inverted(energy_.volume_tets(), x_);

@@ -2,8 +2,7 @@
 // The shape that tissue takes when its bones move: nonlinear finite elements on a tet mesh, from rest to the pose in steps.
 // Bones are held by stiff springs to where their rig bones are; everything else finds the shape of least energy. Flesh keeps
 // its volume (nearly incompressible, without the locking of plain tets, patch_form.h) and is never turned inside out at any
-// iterate. With contact the air around the skin is meshed too and must not invert either, so that no surface can pass
-// through another (air_form.h) [Mueller et al. 2015, Air Meshes; Jiang et al. 2017].
+// iterate. With contact no part of the skin passes through another, at any iterate (contact_form.h) [Li et al. 2020].
 // Every step is solved by projected Newton (newton.h). Lengths in mm, stiffness in kPa. The same for any number of threads.
 #pragma once
 
@@ -35,8 +34,9 @@ using BonePath = std::function<std::vector<RigidTransform>(double t)>;
 
 struct SolveSettings {
   bool contact = false;
-  double step_degrees = 7.5;        // of the joint that turns furthest; with contact the air is meshed anew that often
-  double step_tolerance_mm = 4;     // a step before the last ends when no node would move further than this
+  double step_degrees = 7.5;        // of the joint that turns furthest
+  double contact_mm = 2;            // from this distance on skin is pushed apart, where it was further apart at rest
+  double step_tolerance_mm = 4;     // a step before the last ends when no node would move further than this: half a tet
   double tolerance_mm = 0.3;        // the last one
   int step_iterations = 40;         // a step that needs more is done in parts: half of it, a quarter, ...
   double shortest_step_degrees = 0.9;  // much shorter parts are not tried: the pose is out of reach
@@ -60,12 +60,9 @@ struct SolvedPose {
   double residual = 0;       // furthest that a node wanted to move in the last iteration, mm
   double min_det_f = 1;      // of tets with flesh, at the end
   double min_det_f_of_path = 1;  // at the end of any step
-  double min_air_det_f = 1;  // of air tets that hold against contact, against their shape at the start of the step; of all steps
   double bone_drift_mm = 0;  // furthest that a bone's node is from where its bone is, at the end
-  std::int64_t inverted = 0;  // tets with det F <= 0 at the end of any step, flesh, bone and air
-  std::int64_t crossings = 0;  // with contact: pairs of the border's triangles that cross, at the end
-  int crossings_mended = 0;  // times that some were found and the last two steps were done again at half the angle
-  int air_meshes_kept = 0;   // times that the air could not be meshed and the former air went on
+  std::int64_t inverted = 0;  // tets with det F <= 0 at the end of any step, flesh and bone
+  std::int64_t crossings = 0;  // with contact: pairs of the border's triangles that cross, at the end; none, unless some did at the start
   FemSeconds seconds;
 };
 

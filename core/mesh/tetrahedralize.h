@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tetrahedra inside a surface, and in the air around one: the door of TetGen [Si, TetGen, a Delaunay-based quality
+// Tetrahedra inside a surface: the door of TetGen [Si, TetGen, a Delaunay-based quality
 // tetrahedral mesh generator, ACM TOMS 2015].
 //
 // TetGen ends the process, crashes or never comes back on surfaces that it does not like. It therefore runs in a child
@@ -47,19 +47,5 @@ struct Tetrahedralized {
 // edge (as far as the surface allows). The first #V nodes are the surface's.
 //   throws Cancelled
 Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const TetrahedralizeLimits& limits = {}, const Progress& progress = no_progress());
-
-struct AirTets {
-  std::optional<Eigen::MatrixX4i> T;   // #A corners: below #V rows of V, from #V on corners of the box
-  Eigen::Matrix<double, 8, 3> box;     // corner i lies high in x if i & 1, in y if i & 2, in z if i & 4
-  std::string failure;
-};
-
-// The air between a closed surface and a box `margin` mm larger than it, without nodes of its own. Enclosed pockets of air
-// are air too. Positively oriented by exact arithmetic; a flat sliver's volume may still be nothing within rounding.
-//   V  #V places, also such as lie inside; F  #F corners, counter-clockwise seen from the air
-//   fails where the surface crosses or touches itself
-//   throws Cancelled
-AirTets tetrahedralize_air(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, double margin, const TetrahedralizeLimits& limits = {},
-                           const Progress& progress = no_progress());
 
 }  // namespace limber

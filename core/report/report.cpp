@@ -98,8 +98,7 @@ Json mesh_of(const Report& report, const MeshReport& mesh) {
 Json solve_of(const SolveReport& solve) {
   Json row{{"converged", solve.converged}, {"reached", solve.reached}};
   if (!solve.blocked_by.empty()) row["blocked_by"] = solve.blocked_by;
-  row.update({{"steps", solve.steps}, {"iterations", solve.iterations}, {"factorizations", solve.factorizations}, {"residual", solve.residual_mm}, {"bone_drift_mm", solve.bone_drift_mm},
-              {"crossings_mended", solve.crossings_mended}, {"air_meshes_kept", solve.air_meshes_kept}});
+  row.update({{"steps", solve.steps}, {"iterations", solve.iterations}, {"factorizations", solve.factorizations}, {"residual", solve.residual_mm}, {"bone_drift_mm", solve.bone_drift_mm}});
   return row;
 }
 

@@ -51,7 +51,6 @@ struct SolveReport {
   int steps = 0, iterations = 0, factorizations = 0;
   double residual_mm = 0;                  // furthest that a node wanted to move in the last iteration
   double bone_drift_mm = 0;                // furthest that a node of the mesh is from where its bone is; voxels of bone are where it is
-  int crossings_mended = 0, air_meshes_kept = 0;
 };
 
 }  // namespace limber

@@ -17,6 +17,7 @@ constexpr double kMargin = 24;  // mm around what bends by its weights: skin cre
 constexpr double kRim = 2.5;    // tets: two layers whole, whatever cells the tissue's border cuts
 constexpr double kJoint = 2;    // tets: so many layers share the sliding of two bones
 constexpr double kDrift = 2;    // mm that a bone may give way at a node, more where tets are so coarse that bones are rough
+constexpr double kContact = 2;  // mm from which skin is pushed apart; less where tets are small
 constexpr double kBent = 0.9997;  // cosine of half an angle of 3 degrees
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -64,8 +65,7 @@ void measure(const SolvedPose& solved, double spacing, FemShape& shape) {
 
 SolveReport report_of(const SolvedPose& solved) {
   return {.converged = solved.converged, .reached = solved.reached, .blocked_by = solved.blocked_by, .steps = solved.steps,
-          .iterations = solved.iterations, .factorizations = solved.factorizations, .residual_mm = solved.residual, .bone_drift_mm = solved.bone_drift_mm,
-          .crossings_mended = solved.crossings_mended, .air_meshes_kept = solved.air_meshes_kept};
+          .iterations = solved.iterations, .factorizations = solved.factorizations, .residual_mm = solved.residual, .bone_drift_mm = solved.bone_drift_mm};
 }
 
 }  // namespace
@@ -91,7 +91,8 @@ std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const Tis
   if (fem.on_mesh) fem.on_mesh(shape->model);
 
   const auto solving = std::chrono::steady_clock::now();
-  const SolvedPose solved = solve_pose(shape->model.fem, path, largest_angle_degrees(pose), {.contact = fem.contact, .bone_drift_mm = std::max(kDrift, spacing / 2)}, progress, fem.on_step);
+  const SolveSettings solve{.contact = fem.contact, .contact_mm = std::min(kContact, spacing / 4), .step_tolerance_mm = spacing / 2, .bone_drift_mm = std::max(kDrift, spacing / 2)};
+  const SolvedPose solved = solve_pose(shape->model.fem, path, largest_angle_degrees(pose), solve, progress, fem.on_step);
   shape->V = solved.V;
   shape->reached = solved.reached;
   shape->solve = report_of(solved);

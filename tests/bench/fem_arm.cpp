@@ -52,12 +52,11 @@ void print(const SolvedPose& solved, const TissueModel& model) {
   const FemSeconds& s = solved.seconds;
   const double factorization = s.factorization / solved.factorizations;
   const auto crossings = crossing_pairs(solved.V, boundary_of(model.fem.mesh.T)).size();
-  std::printf("  %s at %.0f %%: %.1f CPU s (air %.1f, analysis %.1f, assembly %.1f, factorization %.1f, search %.1f), %d steps, %d iterations of %.2f factorizations\n",
-              solved.converged ? "converged" : solved.blocked_by.c_str(), 100 * solved.reached, s.total, s.air, s.analysis, s.assembly, s.factorization,
+  std::printf("  %s at %.0f %%: %.1f CPU s (contact %.1f, analysis %.1f, assembly %.1f, factorization %.1f, search %.1f), %d steps, %d iterations of %.2f factorizations\n",
+              solved.converged ? "converged" : solved.blocked_by.c_str(), 100 * solved.reached, s.total, s.contact, s.analysis, s.assembly, s.factorization,
               s.search, solved.steps, solved.iterations, s.total / solved.iterations / factorization);
-  std::printf("  smallest det F %.3f (on the way %.3f, of air %.4f), inverted %lld, crossing pairs %zu, air kept %d times, mended %d times\n", solved.min_det_f,
-              solved.min_det_f_of_path, solved.min_air_det_f, static_cast<long long>(solved.inverted), crossings, solved.air_meshes_kept,
-              solved.crossings_mended);
+  std::printf("  smallest det F %.3f (on the way %.3f), inverted %lld, crossing pairs %zu\n", solved.min_det_f, solved.min_det_f_of_path,
+              static_cast<long long>(solved.inverted), crossings);
   for (const auto& [label, change] : volume_change_percent(model, solved.V)) std::printf("  label %d %+.3f %%", int(label), change);
   std::printf("\n");
 }

@@ -4,7 +4,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <map>
-#include <set>
 #include <thread>
 
 #include <doctest/doctest.h>
@@ -110,58 +109,11 @@ TEST_CASE("tetrahedralize: a ball is filled with good tetrahedra, the same ones 
   CHECK(again.mesh->T == result.mesh->T);
 }
 
-TEST_CASE("tetrahedralize: the air around two balls fills the box without them, from their own nodes and the box's corners") {
-  RegionSurface surface = ball(8, {0, 0, 0});
-  const RegionSurface other = ball(5, {15, 3, 0});
-  // Nodes that no triangle has stay out of it.
-  const int unused = 3, first = static_cast<int>(surface.V.rows()) + unused;
-  Eigen::MatrixX3d V(first + other.V.rows(), 3);
-  V << surface.V, Eigen::MatrixX3d::Zero(unused, 3), other.V;
-  Eigen::MatrixX3i F(surface.F.rows() + other.F.rows(), 3);
-  F << surface.F, other.F.array() + first;
-
-  const AirTets air = tetrahedralize_air(V, F, 60);
-  INFO(air.failure);
-  REQUIRE(air.T);
-  CHECK((air.box.row(0).transpose() - (V.colwise().minCoeff().array() - 60).matrix().transpose()).norm() == 0);
-  CHECK((air.box.row(7).transpose() - (V.colwise().maxCoeff().array() + 60).matrix().transpose()).norm() == 0);
-  Eigen::MatrixX3d all(V.rows() + 8, 3);
-  all << V, air.box;
-  double volume = 0;
-  std::set<int> used;
-  for (const auto& tet : air.T->rowwise()) {
-    volume += signed_volume(all, tet);
-    CHECK(signed_volume(all, tet) > -1e-9);
-    used.insert(tet.begin(), tet.end());
-  }
-  const double box_volume = (air.box.row(7) - air.box.row(0)).prod();
-  CHECK(volume == doctest::Approx(box_volume - volume_inside(V, F)).epsilon(1e-12));
-  CHECK(used.size() == all.rows() - unused);
-  for (int i = 0; i < unused; ++i) CHECK(used.count(first - 1 - i) == 0);
-}
-
-TEST_CASE("tetrahedralize: a pocket inside is air as well") {
-  RegionSurface surface = box(10);
-  add_box(surface, {2, 2, 2}, {5, 5, 5}, TetMesh::kSoft, kAir);
-  surface.F.bottomRows(12).col(1).swap(surface.F.bottomRows(12).col(2));
-  const AirTets air = tetrahedralize_air(surface.V, surface.F, 5);
-  INFO(air.failure);
-  REQUIRE(air.T);
-  Eigen::MatrixX3d all(surface.V.rows() + 8, 3);
-  all << surface.V, air.box;
-  double volume = 0;
-  for (const auto& tet : air.T->rowwise()) volume += signed_volume(all, tet);
-  CHECK(volume == doctest::Approx(20 * 20 * 20 - 1000 + 27).epsilon(1e-12));
-}
-
 TEST_CASE("tetrahedralize: a crash, a hang, an exit, a failure or too much memory in TetGen is an answer with a reason") {
   const RegionSurface surface = box(10);
   const auto why = [&](TetrahedralizeLimits limits) {
     const Tetrahedralized inside = tetrahedralize_inside(surface, limits);
     CHECK_FALSE(inside.mesh);
-    const AirTets air = tetrahedralize_air(surface.V, surface.F, 10, limits);
-    CHECK_FALSE(air.T);
-    CHECK(air.failure == inside.failure);
     return inside.failure;
   };
   CHECK(why({.at_start = [] { ::raise(SIGSEGV); }}) == "it crashed (signal 11)");
@@ -181,26 +133,23 @@ TEST_CASE("tetrahedralize: a crash, a hang, an exit, a failure or too much memor
 }
 
 TEST_CASE("tetrahedralize: no surface, one that crosses itself, is open or has no numbers is refused with a reason") {
-  const auto both = [](const RegionSurface& surface) {
+  const auto refused = [](const RegionSurface& surface) {
     const Tetrahedralized inside = tetrahedralize_inside(surface);
-    const AirTets air = tetrahedralize_air(surface.V, surface.F, 10);
     CHECK_FALSE(inside.mesh);
-    CHECK_FALSE(air.T);
     CHECK(inside.failure != "");
-    CHECK(air.failure != "");
     return inside.failure;
   };
-  CHECK(both(RegionSurface{}) == "the surface is empty");
+  CHECK(refused(RegionSurface{}) == "the surface is empty");
   RegionSurface crossing = box(10);
   add_box(crossing, {5, 5, 5}, {15, 15, 15}, TetMesh::kSoft, kAir);
-  both(crossing);
+  refused(crossing);
   RegionSurface open = box(10);
   open.F.conservativeResize(11, 3);
   open.sides.pop_back();
-  both(open);
+  refused(open);
   RegionSurface nowhere = box(10);
   nowhere.V(3, 1) = std::nan("");
-  CHECK(both(nowhere) == "the surface has places that are no numbers");
+  CHECK(refused(nowhere) == "the surface has places that are no numbers");
 }
 
 TEST_CASE("tetrahedralize: a cancel while TetGen works is heard") {

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/fem/contact_form.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+constexpr double kSoon = 2;          // thicknesses: pairs this near are in the matrix before they touch
+constexpr double kParallel = 1e-3;   // of the squared product of two edges at rest, below which they count as parallel
+constexpr std::int64_t kGrain = 2048;
+
+std::uint64_t key_of(int a, int b) { return std::uint64_t(std::min(a, b)) << 32 | std::uint32_t(std::max(a, b)); }
+
+// b(d / h) and its derivatives by d.
+struct Barrier {
+  double value, slope, curvature;
+};
+Barrier barrier(double d, double h) {
+  const double t = d / h, off = t - 1, ln = std::log(t);
+  return {-off * off * ln, -off * (2 * ln + off / t) / h, (-2 * ln - 4 * off / t + off * off / (t * t)) / (h * h)};
+}
+
+// Of the triangles around a node, a third of each.
+double mean_area(const Eigen::MatrixX3i& F, const Places& V) {
+  double sum = 0;
+  std::vector<char> used(V.rows(), 0);
+  for (const auto& f : F.rowwise()) {
+    sum += 0.5 * Eigen::Vector3d(V.row(f[1]) - V.row(f[0])).cross(Eigen::Vector3d(V.row(f[2]) - V.row(f[0]))).norm();
+    for (const int node : f) used[node] = 1;
+  }
+  return sum / double(std::max<std::ptrdiff_t>(std::count(used.begin(), used.end(), 1), 1));
+}
+
+double share_of(ContactPair::Kind kind) { return kind == ContactPair::Kind::EdgeEdge ? 0.5 : 1; }
+}  // namespace
+
+ContactForm::ContactForm(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid, const ContactSettings& settings)
+    : surface_(F, rest, rigid), rest_(rest), settings_(settings), scale_(settings.barrier_kpa * settings.thickness_mm * mean_area(F, rest)) {}
+
+double ContactForm::thickness(const ContactPair& pair) const {
+  return std::min(settings_.thickness_mm, 0.5 * nearest_points(pair, rest_).distance);
+}
+
+ContactForm::Fade ContactForm::fade(const ContactPair& pair, const Places& x) const {
+  Fade fade{1, Eigen::Matrix<double, 3, 4>::Zero()};
+  if (pair.kind == ContactPair::Kind::PointTriangle) return fade;
+  const auto edge = [&](const Places& p, int k) { return Eigen::Vector3d((p.row(pair.node[k + 1]) - p.row(pair.node[k])).transpose()); };
+  const Eigen::Vector3d u = edge(x, 0), v = edge(x, 2);
+  const double c = u.cross(v).squaredNorm(), full = kParallel * edge(rest_, 0).squaredNorm() * edge(rest_, 2).squaredNorm();
+  if (c >= full) return fade;
+  const double t = c / full, slope = (2 - 2 * t) / full;
+  fade.value = (2 - t) * t;
+  fade.slope.col(1) = slope * 2 * (v.squaredNorm() * u - u.dot(v) * v);
+  fade.slope.col(3) = slope * 2 * (u.squaredNorm() * v - u.dot(v) * u);
+  fade.slope.col(0) = -fade.slope.col(1);
+  fade.slope.col(2) = -fade.slope.col(3);
+  return fade;
+}
+
+void ContactForm::watch(const Places& x, const Places& step, double limit) {
+  watched_ = surface_.near(x, step, limit, kSoon * settings_.thickness_mm);
+}
+
+ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step, double limit) const {
+  std::vector<Bound> of_block((watched_.size() + kGrain - 1) / kGrain, {limit, {-1, -1, -1, -1}});
+  parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Bound& bound = of_block[begin / kGrain];
+    for (auto k = begin; k < end; ++k)
+      if (const double length = limber::largest_step(watched_[k], x, step, bound.length); length < bound.length) bound = {length, watched_[k].node};
+  });
+  Bound bound{limit, {-1, -1, -1, -1}};
+  for (const Bound& block : of_block)
+    if (block.length < bound.length) bound = block;
+  return bound;
+}
+
+std::vector<ContactPair> ContactForm::blocked(const Places& x, const Places& step) const {
+  std::vector<std::vector<ContactPair>> of_block((watched_.size() + kGrain - 1) / kGrain);
+  parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto k = begin; k < end; ++k)
+      if (limber::largest_step(watched_[k], x, step, 1) < 1) of_block[begin / kGrain].push_back(watched_[k]);
+  });
+  std::vector<ContactPair> pairs;
+  for (const auto& block : of_block) pairs.insert(pairs.end(), block.begin(), block.end());
+  return pairs;
+}
+
+double ContactForm::value(const Places& x) const {
+  return parallel_sum(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    double sum = 0;
+    for (auto k = begin; k < end; ++k) {
+      const ContactPair& pair = watched_[k];
+      const double d = nearest_points(pair, x).distance;
+      if (d >= settings_.thickness_mm) continue;
+      const double h = thickness(pair);
+      if (d >= h) continue;
+      if (!(d > 0)) return double(INFINITY);
+      sum += scale_ * share_of(pair.kind) * barrier(d, h).value * fade(pair, x).value;
+    }
+    return sum;
+  });
+}
+
+void ContactForm::touch(const Places& x) {
+  touching_.clear();
+  for (const ContactPair& pair : watched_) {
+    const NearestPoints nearest = nearest_points(pair, x);
+    if (nearest.distance >= settings_.thickness_mm) continue;
+    const double h = thickness(pair);
+    if (nearest.distance >= h) continue;
+    const Barrier b = barrier(nearest.distance, h);
+    const Fade faded = fade(pair, x);
+    const double scale = scale_ * share_of(pair.kind);
+    Touch touch{pair, scale * b.slope * faded.value, scale * b.curvature * faded.value, {}, faded.slope, scale * b.value, {}, {0, 1, 2, 3}};
+    for (int a = 0; a < 4; ++a) touch.way.col(a) = nearest.weight[a] * nearest.direction;
+    touching_.push_back(touch);
+  }
+}
+
+void ContactForm::add_gradient(Places& gradient) const {
+  for (const Touch& touch : touching_)
+    for (int a = 0; a < 4; ++a) gradient.row(touch.pair.node[a]) += (touch.slope * touch.way.col(a) + touch.faded * touch.fading.col(a)).transpose();
+}
+
+// What grows as parts come nearer; what turns the way between them only takes away, or is left out.
+void ContactForm::add_curvature(std::span<double> values) const {
+  for (const Touch& touch : touching_)
+    for (int a = 0, k = 0; a < 4; ++a)
+      for (int b = 0; b <= a; ++b, ++k) {
+        const Cholesky::Place& place = touch.place[k];
+        if (place.at < 0) continue;
+        const Eigen::Vector3d row = touch.way.col(touch.order[a]), column = touch.curvature * touch.way.col(touch.order[b]);
+        double* at = values.data() + place.at;
+        for (int c = 0; c < 3; ++c, at += place.stride)
+          for (int r = 0; r < 3; ++r) at[r] += row[r] * column[c];
+      }
+}
+
+void ContactForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x) {
+  connected_.clear();
+  for (const ContactPair& pair : watched_) {
+    const double d = nearest_points(pair, x).distance;
+    if (d >= kSoon * settings_.thickness_mm || d >= kSoon * thickness(pair)) continue;
+    std::array<int, 4> element;
+    for (int a = 0; a < 4; ++a) {
+      element[a] = unknown[pair.node[a]];
+      for (int b = 0; b < a; ++b) connected_.insert(key_of(pair.node[a], pair.node[b]));
+    }
+    graph.add(element);
+  }
+}
+
+bool ContactForm::connected() const {
+  for (const Touch& touch : touching_)
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < a; ++b)
+        if (!connected_.contains(key_of(touch.pair.node[a], touch.pair.node[b]))) return false;
+  return true;
+}
+
+void ContactForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
+  const auto rank = [&](int node) { return unknown[node] < 0 ? -1 : matrix.rank(unknown[node]); };
+  for (Touch& touch : touching_) {
+    std::sort(touch.order.begin(), touch.order.end(), [&](int a, int b) {
+      const int rank_a = rank(touch.pair.node[a]), rank_b = rank(touch.pair.node[b]);
+      return rank_a != rank_b ? rank_a < rank_b : a < b;
+    });
+    for (int a = 0, k = 0; a < 4; ++a)
+      for (int b = 0; b <= a; ++b, ++k) {
+        const int row = unknown[touch.pair.node[touch.order[a]]], column = unknown[touch.pair.node[touch.order[b]]];
+        touch.place[k] = row < 0 || column < 0 ? Cholesky::Place{-1, 0} : matrix.place(row, column);
+      }
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Contact: where parts of the skin come nearer than a few millimetres, a barrier pushes them apart, and no step takes them
+// through each other [Li, Ferguson, Schneider, Langlois, Zorin, Panozzo, Jiang & Kaufman, Incremental Potential Contact,
+// SIGGRAPH 2020]. As long as the skin did not cross itself at the start, it never does.
+// Over each pair of a point and a triangle, or of two edges (contact_surface.h), d apart:
+//   c A H b(d / h),   b(t) = -(t - 1)^2 ln t below 1, else 0
+// with c in kPa and A the mean area of skin around a node (half of it for edges). h is the thickness H, but at most half of
+// what the pair is apart at rest: so nothing pushes at rest, however close the skin's triangles are; and small triangles, whose
+// folds would close soonest, push as hard as large ones. Between two edges the energy fades out as they become parallel, where
+// the way between them jumps.
+//
+// Air is not meshed for it (as in Mueller et al. 2015, Air Meshes): such a mesh cannot tell skin that unfolds from skin
+// that meets skin, and slivers of air between neighbouring triangles push where nothing touches.
+#pragma once
+
+#include <span>
+#include <unordered_set>
+#include <vector>
+
+#include "core/base/cholesky.h"
+#include "core/fem/contact_surface.h"
+
+namespace limber {
+
+struct ContactSettings {
+  double barrier_kpa = 20;  // c
+  double thickness_mm = 2;  // H
+};
+
+class ContactForm {
+ public:
+  ContactForm() = default;
+  // F, rigid  as for ContactSurface
+  ContactForm(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid, const ContactSettings& settings = {});
+
+  bool empty() const { return surface_.empty(); }
+  // What follows is true for places on the way from x to x + limit step.
+  void watch(const Places& x, const Places& step, double limit);
+
+  struct Bound {
+    double length;
+    std::array<int, 4> node;  // of the pair that bounds it, -1 none
+  };
+  // Of the way that is watched.
+  Bound largest_step(const Places& x, const Places& step, double limit) const;
+
+  // Pairs of those watched that a whole step would take too near.
+  std::vector<ContactPair> blocked(const Places& x, const Places& step) const;
+
+  double value(const Places& x) const;
+  // Also chooses whom add_gradient() and add_curvature() are about: what touches at x.
+  void touch(const Places& x);
+  void add_gradient(Places& gradient) const;
+  void add_curvature(std::span<double> values) const;
+
+  // The matrix must know who may touch: who does at x, and who soon may.
+  void connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x);
+  bool connected() const;  // after touch()
+  void bind(const Cholesky& matrix, std::span<const int> unknown);  // after touch(), when connected()
+
+  std::int64_t touching() const { return std::ssize(touching_); }
+
+ private:
+  struct Touch {
+    ContactPair pair;
+    double slope, curvature;                  // of the energy by the distance
+    Eigen::Matrix<double, 3, 4> way, fading;  // of the distance and of the fading by the nodes' places
+    double faded;                             // energy without the fading
+    std::array<Cholesky::Place, 10> place;    // as in ElasticForm
+    std::array<int, 4> order;
+  };
+  struct Fade {
+    double value;
+    Eigen::Matrix<double, 3, 4> slope;
+  };
+  double thickness(const ContactPair& pair) const;
+  Fade fade(const ContactPair& pair, const Places& x) const;
+
+  ContactSurface surface_;
+  Places rest_;
+  ContactSettings settings_;
+  double scale_ = 0;  // c A H
+  std::vector<ContactPair> watched_;
+  std::vector<Touch> touching_;
+  std::unordered_set<std::uint64_t> connected_;  // pairs of nodes
+};
+
+}  // namespace limber

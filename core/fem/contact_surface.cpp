@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/fem/contact_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+constexpr int kLeaf = 4;          // faces
+constexpr double kKept = 0.5;     // of a pair's distance, by one step
+constexpr double kSafe = 0.5;     // of the way that is surely free, by one advance
+constexpr int kAdvances = 400;    // more only serve to graze
+
+std::uint64_t key_of(int a, int b) { return std::uint64_t(std::min(a, b)) << 32 | std::uint32_t(std::max(a, b)); }
+
+using Corners = std::array<Eigen::Vector3d, 4>;
+
+Corners at(const ContactPair& pair, const Places& x) {
+  Corners p;
+  for (int a = 0; a < 4; ++a) p[a] = x.row(pair.node[a]);
+  return p;
+}
+
+// Shares of the corners b, c, d of the triangle's point nearest to a [Ericson, Real-Time Collision Detection, 2005, 5.1.5].
+Eigen::Vector3d nearest_in_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+  const Eigen::Vector3d bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
+  const Eigen::Vector3d cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double w = (d4 - d3) / (d4 - d3 + d5 - d6);
+    return {0, 1 - w, w};
+  }
+  const double sum = va + vb + vc;
+  return {va / sum, vb / sum, vc / sum};
+}
+
+// Shares of the second ends of the edges a b and c d at their nearest points [Ericson 2005, 5.1.9].
+std::pair<double, double> nearest_of_edges(const Corners& p) {
+  const Eigen::Vector3d u = p[1] - p[0], v = p[3] - p[2], w = p[0] - p[2];
+  const double a = u.squaredNorm(), e = v.squaredNorm(), f = v.dot(w), b = u.dot(v), c = u.dot(w);
+  const double denominator = a * e - b * b;
+  double s = denominator > 0 ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0;
+  double t = e > 0 ? (b * s + f) / e : 0;
+  if (t < 0 || t > 1) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = a > 0 ? std::clamp((b * t - c) / a, 0.0, 1.0) : 0;
+  }
+  return {s, t};
+}
+
+Eigen::Vector4d weights(ContactPair::Kind kind, const Corners& p) {
+  if (kind == ContactPair::Kind::PointTriangle) {
+    const Eigen::Vector3d s = nearest_in_triangle(p[0], p[1], p[2], p[3]);
+    return {1, -s[0], -s[1], -s[2]};
+  }
+  const auto [s, t] = nearest_of_edges(p);
+  return {1 - s, s, t - 1, -t};
+}
+
+double distance(ContactPair::Kind kind, const Corners& p) {
+  const Eigen::Vector4d w = weights(kind, p);
+  return (w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3]).norm();
+}
+
+// Furthest that the two parts can move towards each other by one step.
+double relative_motion(ContactPair::Kind kind, Corners& step) {
+  const Eigen::Vector3d mean = 0.25 * (step[0] + step[1] + step[2] + step[3]);
+  double length[4];
+  for (int a = 0; a < 4; ++a) length[a] = (step[a] -= mean).norm();
+  if (kind == ContactPair::Kind::PointTriangle) return length[0] + std::max({length[1], length[2], length[3]});
+  return std::max(length[0], length[1]) + std::max(length[2], length[3]);
+}
+
+struct Box {
+  Eigen::Array3d low = Eigen::Array3d::Constant(INFINITY), high = Eigen::Array3d::Constant(-INFINITY);
+  void add(const Eigen::Array3d& p) { low = low.min(p), high = high.max(p); }
+  void add(const Box& other) { low = low.min(other.low), high = high.max(other.high); }
+};
+}  // namespace
+
+NearestPoints nearest_points(const ContactPair& pair, const Places& x) {
+  const Corners p = at(pair, x);
+  NearestPoints result;
+  result.weight = weights(pair.kind, p);
+  const Eigen::Vector3d way = result.weight[0] * p[0] + result.weight[1] * p[1] + result.weight[2] * p[2] + result.weight[3] * p[3];
+  result.distance = way.norm();
+  result.direction = result.distance > 0 ? Eigen::Vector3d(way / result.distance) : Eigen::Vector3d::Zero();
+  return result;
+}
+
+double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit) {
+  Corners p = at(pair, x), s = at(pair, step);
+  const double motion = relative_motion(pair.kind, s);
+  double now = distance(pair.kind, p);
+  const double kept = kKept * now;
+  if (now - limit * motion > kept) return limit;
+  double length = 0;
+  for (int k = 0; k < kAdvances; ++k) {
+    const double advance = kSafe * now / motion;
+    if (length + advance >= limit) return limit;
+    for (int a = 0; a < 4; ++a) p[a] += advance * s[a];
+    now = distance(pair.kind, p);
+    if (length > 0 && now < kept) break;  // the first advance keeps so much by itself, but for rounding
+    length += advance;
+  }
+  return length;
+}
+
+ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid) : rigid_(rigid) {
+  std::vector<Eigen::Vector3d> centre;
+  std::vector<std::uint64_t> edges;
+  for (const auto& f : F.rowwise()) {
+    centre.push_back((rest.row(f[0]) + rest.row(f[1]) + rest.row(f[2])).transpose() / 3);
+    for (int k = 0; k < 3; ++k) edges.push_back(key_of(f[k], f[(k + 1) % 3]));
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+
+  std::vector<int> order(F.rows());
+  for (int f = 0; f < int(F.rows()); ++f) order[f] = f;
+  if (F.rows() > 0) grow(order, centre, 0, int(F.rows()));
+
+  // Every node and every edge belongs to the first face that has it.
+  std::vector<char> node_taken(rest.rows(), 0), edge_taken(edges.size(), 0);
+  for (const int f : order) {
+    Face face{{F(f, 0), F(f, 1), F(f, 2)}, 0, 0};
+    for (int k = 0; k < 3; ++k) {
+      if (!std::exchange(node_taken[face.node[k]], 1)) face.own_nodes |= 1 << k;
+      const auto edge = std::lower_bound(edges.begin(), edges.end(), key_of(face.node[k], face.node[(k + 1) % 3]));
+      if (!std::exchange(edge_taken[edge - edges.begin()], 1)) face.own_edges |= 1 << k;
+    }
+    faces_.push_back(face);
+  }
+}
+
+// Halves along the longest side of the box of the centres, left first.
+void ContactSurface::grow(std::vector<int>& order, const std::vector<Eigen::Vector3d>& centre, int begin, int end) {
+  const auto here = tree_.size();
+  tree_.push_back({begin, end, 0});
+  if (end - begin <= kLeaf) return;
+  Box box;
+  for (int k = begin; k < end; ++k) box.add(centre[order[k]].array());
+  Eigen::Index axis = 0;
+  (box.high - box.low).maxCoeff(&axis);
+  const int middle = (begin + end) / 2;
+  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end,
+                   [&](int a, int b) { return centre[a][axis] != centre[b][axis] ? centre[a][axis] < centre[b][axis] : a < b; });
+  grow(order, centre, begin, middle);
+  tree_[here].right = int(tree_.size());
+  grow(order, centre, middle, end);
+}
+
+std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& step, double limit, double reach) const {
+  if (faces_.empty()) return {};
+  // Of every branch, last first, so that what is below is known: its place, and its whole step.
+  std::vector<Box> place(tree_.size()), motion(tree_.size());
+  std::vector<int> rigid_as(tree_.size());
+  const auto join = [&](std::size_t b, int rigid, bool first) { rigid_as[b] = first || rigid_as[b] == rigid ? rigid : -1; };
+  for (std::size_t b = tree_.size(); b-- > 0;) {
+    if (tree_[b].right) {
+      for (const std::size_t below : {b + 1, std::size_t(tree_[b].right)}) {
+        place[b].add(place[below]);
+        motion[b].add(motion[below]);
+        join(b, rigid_as[below], below == b + 1);
+      }
+      continue;
+    }
+    for (int f = tree_[b].begin; f < tree_[b].end; ++f)
+      for (int k = 0; k < 3; ++k) {
+        const int node = faces_[f].node[k];
+        place[b].add(x.row(node).transpose().array());
+        motion[b].add(limit * step.row(node).transpose().array());
+        join(b, rigid_[node], f == tree_[b].begin && k == 0);
+      }
+  }
+  const auto apart = [&](const Box& p, const Box& m, const Box& q, const Box& n) {
+    const Eigen::Array3d nearest = p.low - q.high + (m.low - n.high).min(0.0), furthest = p.high - q.low + (m.high - n.low).max(0.0);
+    return (nearest > reach).any() || (furthest < -reach).any();
+  };
+
+  // Pairs of leaves.
+  std::vector<std::pair<int, int>> leaves, open{{0, 0}};
+  while (!open.empty()) {
+    const auto [a, b] = open.back();
+    open.pop_back();
+    if (rigid_as[a] >= 0 && rigid_as[a] == rigid_as[b]) continue;
+    if (a == b) {
+      if (tree_[a].right) open.insert(open.end(), {{tree_[a].right, tree_[a].right}, {a + 1, tree_[a].right}, {a + 1, a + 1}});
+      else leaves.emplace_back(a, a);
+      continue;
+    }
+    if (apart(place[a], motion[a], place[b], motion[b])) continue;
+    const bool split_a = tree_[a].right && (!tree_[b].right || tree_[a].end - tree_[a].begin >= tree_[b].end - tree_[b].begin);
+    if (split_a) open.insert(open.end(), {{tree_[a].right, b}, {a + 1, b}});
+    else if (tree_[b].right) open.insert(open.end(), {{a, tree_[b].right}, {a, b + 1}});
+    else leaves.emplace_back(a, b);
+  }
+
+  constexpr std::int64_t kGrain = 256;
+  std::vector<std::vector<ContactPair>> found((leaves.size() + kGrain - 1) / kGrain);
+  const auto one_rigid = [&](const std::array<int, 4>& node) {
+    return rigid_[node[0]] >= 0 && rigid_[node[0]] == rigid_[node[1]] && rigid_[node[0]] == rigid_[node[2]] && rigid_[node[0]] == rigid_[node[3]];
+  };
+  parallel_for(std::ssize(leaves), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    auto& mine = found[begin / kGrain];
+    const auto consider = [&](ContactPair::Kind kind, const std::array<int, 4>& node) {
+      if (one_rigid(node)) return;
+      const ContactPair pair{node, kind};
+      Corners s = at(pair, step);
+      const double motion = limit * relative_motion(kind, s);
+      if (distance(kind, at(pair, x)) - motion < reach) mine.push_back(pair);
+    };
+    const auto points = [&](const Face& a, const Face& b) {
+      for (int k = 0; k < 3; ++k)
+        if (a.own_nodes >> k & 1 && a.node[k] != b.node[0] && a.node[k] != b.node[1] && a.node[k] != b.node[2])
+          consider(ContactPair::Kind::PointTriangle, {a.node[k], b.node[0], b.node[1], b.node[2]});
+    };
+    const auto edges = [&](const Face& a, const Face& b) {
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < 3; ++l) {
+          if (!(a.own_edges >> k & 1) || !(b.own_edges >> l & 1)) continue;
+          const std::array<int, 4> node{a.node[k], a.node[(k + 1) % 3], b.node[l], b.node[(l + 1) % 3]};
+          if (node[0] == node[2] || node[0] == node[3] || node[1] == node[2] || node[1] == node[3]) continue;
+          consider(ContactPair::Kind::EdgeEdge, node);
+        }
+    };
+    std::array<Box, kLeaf> place_a, motion_a, place_b, motion_b;
+    const auto boxes = [&](const Branch& leaf, std::array<Box, kLeaf>& where, std::array<Box, kLeaf>& how) {
+      for (int f = leaf.begin; f < leaf.end; ++f) {
+        where[f - leaf.begin] = how[f - leaf.begin] = {};
+        for (const int node : faces_[f].node) {
+          where[f - leaf.begin].add(x.row(node).transpose().array());
+          how[f - leaf.begin].add(limit * step.row(node).transpose().array());
+        }
+      }
+    };
+    for (auto l = begin; l < end; ++l) {
+      const Branch &a = tree_[leaves[l].first], &b = tree_[leaves[l].second];
+      boxes(a, place_a, motion_a);
+      boxes(b, place_b, motion_b);
+      for (int i = a.begin; i < a.end; ++i)
+        for (int j = leaves[l].first == leaves[l].second ? i + 1 : b.begin; j < b.end; ++j) {
+          if (apart(place_a[i - a.begin], motion_a[i - a.begin], place_b[j - b.begin], motion_b[j - b.begin])) continue;
+          points(faces_[i], faces_[j]);
+          points(faces_[j], faces_[i]);
+          edges(faces_[i], faces_[j]);
+        }
+    }
+  });
+  std::vector<ContactPair> pairs;
+  for (const auto& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
+  return pairs;
+}
+
+}  // namespace limber

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Which parts of a surface come near each other while its nodes move, and how far they may move before they touch.
+//
+// Two triangles meet first in a corner of one and the inside of the other, or in an edge of each. So a surface is watched by
+// such pairs, found in a tree of boxes [Gottschalk, Lin & Manocha, OBBTree, SIGGRAPH 1996, with boxes along the axes] that
+// holds places and steps: what moves together stays apart and is left out early, however far it moves. How far a pair may go
+// is found by steps that cannot pass a contact [Li, Kaufman & Jiang, Codimensional Incremental Potential Contact,
+// SIGGRAPH 2021: additive continuous collision detection]. mm.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/fem/places.h"
+
+namespace limber {
+
+struct ContactPair {
+  enum class Kind : std::uint8_t { PointTriangle, EdgeEdge };
+  std::array<int, 4> node;  // the point, then the triangle; or two of one edge, then two of the other
+  Kind kind;
+};
+
+// The shortest way between the two parts: `distance` long, along n = sum of weight_a x_a / distance. Its change with the nodes
+// is weight_a n.
+struct NearestPoints {
+  double distance;
+  Eigen::Vector4d weight;
+  Eigen::Vector3d direction;  // n; zero where the parts touch
+};
+NearestPoints nearest_points(const ContactPair& pair, const Places& x);
+
+// How much of `step`, at most `limit`, a pair may take and keep half of its distance; never more, maybe a little less. (With a tenth, folds close
+// faster than what pushes them open can tell, and Newton's method has then no room left to move in.)
+double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit);
+
+class ContactSurface {
+ public:
+  ContactSurface() = default;
+  // F     #F corners of a surface        rest  #V places
+  // rigid #V: nodes of the same number, 0 or more, never move against each other; -1 free
+  ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid);
+
+  bool empty() const { return faces_.empty(); }
+  // Pairs without a common node that may come nearer than `reach` on the way from x to x + limit step. Each once, the same for
+  // any number of threads.
+  std::vector<ContactPair> near(const Places& x, const Places& step, double limit, double reach) const;
+
+ private:
+  struct Face {
+    std::array<int, 3> node;
+    std::uint8_t own_nodes, own_edges;  // bits: corner k, edge from corner k to k + 1
+  };
+  struct Branch {
+    std::int32_t begin, end;   // faces
+    std::int32_t right;        // of the two below, the left one follows at once; 0: none below
+  };
+  void grow(std::vector<int>& order, const std::vector<Eigen::Vector3d>& centre, int begin, int end);
+
+  std::vector<Face> faces_;    // in the order of the tree
+  std::vector<Branch> tree_;
+  std::vector<int> rigid_;
+};
+
+}  // namespace limber

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/fem/contact_form.h"
+
+#include <algorithm>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "core/base/parallel.h"
+#include "core/fem/fem_energy.h"
+#include "tests/support/tet_shapes.h"
+
+using namespace limber;
+
+namespace {
+using Kind = ContactPair::Kind;
+
+Places random_places(int count, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(-size, size);
+  Places places(count, 3);
+  for (double& each : places.reshaped()) each = share(random);
+  return places;
+}
+
+// Two boxes' skins, `gap` apart along z.
+struct TwoBoxes {
+  TetMesh mesh = kuhn_box(3, 3, 2, {0, 0, 0}, {9, 9, 4});
+  Places rest;
+  Eigen::MatrixX4i T;
+  Eigen::MatrixX3i F;
+
+  explicit TwoBoxes(double gap) {
+    const int n = int(mesh.V.rows());
+    rest.resize(2 * n, 3);
+    rest << mesh.V, mesh.V.rowwise() + Eigen::RowVector3d(1.1, 0.7, 4 + gap);
+    T.resize(2 * mesh.T.rows(), 4);
+    T << mesh.T, mesh.T.array() + n;
+    F = boundary_of(T);
+  }
+  std::vector<int> free() const { return std::vector<int>(rest.rows(), -1); }
+  Places upper_by(const Eigen::RowVector3d& by) const {
+    Places step = Places::Zero(rest.rows(), 3);
+    step.bottomRows(rest.rows() / 2).rowwise() = by;
+    return step;
+  }
+};
+
+using Key = std::pair<int, std::array<int, 4>>;
+Key key(ContactPair pair) {
+  std::sort(pair.node.begin() + 2, pair.node.end());
+  if (pair.kind == Kind::PointTriangle) std::sort(pair.node.begin() + 1, pair.node.end());
+  else {
+    if (pair.node[0] > pair.node[1]) std::swap(pair.node[0], pair.node[1]);
+    if (pair.node[0] > pair.node[2]) pair.node = {pair.node[2], pair.node[3], pair.node[0], pair.node[1]};
+  }
+  return {int(pair.kind), pair.node};
+}
+}  // namespace
+
+TEST_CASE("contact: the nearest points are the nearest of all, for points and triangles and for edges") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    const Places x = random_places(4, 1, seed);
+    for (const Kind kind : {Kind::PointTriangle, Kind::EdgeEdge}) {
+      const NearestPoints nearest = nearest_points({{0, 1, 2, 3}, kind}, x);
+      CHECK(std::abs(nearest.weight.sum()) < 1e-12);
+      CHECK((x.transpose() * nearest.weight - nearest.distance * nearest.direction).norm() < 1e-12);
+      for (int k = 0; k < 50; ++k) {
+        double s = share(random), t = share(random);
+        if (kind == Kind::PointTriangle && s + t > 1) s = 1 - s, t = 1 - t;
+        const Eigen::Vector4d w = kind == Kind::PointTriangle ? Eigen::Vector4d(1, s + t - 1, -s, -t) : Eigen::Vector4d(1 - s, s, t - 1, -t);
+        CHECK(nearest.distance <= (x.transpose() * w).norm() + 1e-12);
+      }
+    }
+  }
+}
+
+TEST_CASE("contact: a step ends before two parts touch, and not long before") {
+  Places x(4, 3), step = Places::Zero(4, 3);
+  x << 0.2, 0.2, 3, 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  step(0, 2) = -1;
+  const double point = largest_step({{0, 1, 2, 3}, Kind::PointTriangle}, x, step, 8);
+  CHECK(point == doctest::Approx(1.5));
+  CHECK(largest_step({{0, 1, 2, 3}, Kind::PointTriangle}, x, step, 1.4) == 1.4);
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    const Places from = random_places(4, 1, seed), by = random_places(4, 2, seed + 1000);
+    for (const Kind kind : {Kind::PointTriangle, Kind::EdgeEdge}) {
+      const ContactPair pair{{0, 1, 2, 3}, kind};
+      const double length = largest_step(pair, from, by, 1), before = nearest_points(pair, from).distance;
+      CHECK(length > 0);
+      for (int k = 0; k <= 200; ++k) CHECK(nearest_points(pair, from + k / 200.0 * length * by).distance > 0.24 * before);
+    }
+  }
+}
+
+TEST_CASE("contact: the pairs that may come near are those that asking every pair finds, with one thread and two") {
+  const TwoBoxes boxes(3);
+  const Places step = boxes.upper_by({0, 0, -5}) + random_places(int(boxes.rest.rows()), 0.2, 5);
+  std::vector<Key> expected;
+  const auto consider = [&](Kind kind, const std::array<int, 4>& node) {
+    const ContactPair pair{node, kind};
+    double least = 1e9;  // sampled: what comes nearer than the reach must be found
+    for (int k = 0; k <= 20; ++k) least = std::min(least, nearest_points(pair, boxes.rest + k / 20.0 * step).distance);
+    if (least < 1) expected.push_back(key(pair));
+  };
+  const auto& F = boxes.F;
+  std::vector<std::array<int, 2>> edges;
+  for (const auto& f : F.rowwise())
+    for (int k = 0; k < 3; ++k)
+      if (f[k] < f[(k + 1) % 3]) edges.push_back({f[k], f[(k + 1) % 3]});
+  for (const auto& f : F.rowwise())
+    for (int v = 0; v < boxes.rest.rows(); ++v)
+      if ((F.array() == v).any() && (f.array() != v).all()) consider(Kind::PointTriangle, {v, f[0], f[1], f[2]});
+  for (std::size_t a = 0; a < edges.size(); ++a)
+    for (std::size_t b = a + 1; b < edges.size(); ++b)
+      if (edges[a][0] != edges[b][0] && edges[a][0] != edges[b][1] && edges[a][1] != edges[b][0] && edges[a][1] != edges[b][1])
+        consider(Kind::EdgeEdge, {edges[a][0], edges[a][1], edges[b][0], edges[b][1]});
+  REQUIRE(expected.size() > 50);
+
+  std::vector<Key> first;
+  for (const int threads : {1, 2}) {
+    const ThreadCount count(threads);
+    std::vector<Key> found;
+    for (const ContactPair& pair : ContactSurface(F, boxes.rest, boxes.free()).near(boxes.rest, step, 1, 1)) found.push_back(key(pair));
+    if (threads == 1) first = found;
+    CHECK(found == first);
+    std::sort(found.begin(), found.end());
+    CHECK(std::adjacent_find(found.begin(), found.end()) == found.end());
+    for (const Key& each : expected) CHECK(std::binary_search(found.begin(), found.end(), each));
+  }
+}
+
+TEST_CASE("contact: what one bone carries is not watched against itself") {
+  const TwoBoxes boxes(0.5);
+  std::vector<int> rigid(boxes.rest.rows(), 0);
+  const Places still = Places::Zero(boxes.rest.rows(), 3);
+  CHECK(ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, 1).empty());
+  std::fill(rigid.begin() + std::ssize(rigid) / 2, rigid.end(), 1);
+  CHECK(!ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, 1).empty());
+}
+
+TEST_CASE("contact: nothing pushes at rest, however close skin is; nearer it does, by a force that is the slope of its energy") {
+  const TwoBoxes boxes(0.3);
+  ContactForm form(boxes.F, boxes.rest, boxes.free());
+  const Places still = Places::Zero(boxes.rest.rows(), 3);
+  form.watch(boxes.rest, still, 0);
+  form.touch(boxes.rest);
+  CHECK(form.touching() == 0);
+  CHECK(form.value(boxes.rest) == 0);
+
+  // Nearly parallel edges too: the boxes' sides are, up to what `jitter` moves them.
+  for (const double jitter : {0.02, 1e-4}) {
+    const Places x = boxes.rest + boxes.upper_by({0, 0, -0.22}) + random_places(int(boxes.rest.rows()), jitter, 11);
+    form.watch(x, still, 0);
+    form.touch(x);
+    REQUIRE(form.touching() > 20);
+    Places slope = still;
+    form.add_gradient(slope);
+    CHECK(slope.bottomRows(boxes.rest.rows() / 2).col(2).sum() < 0);  // upwards is less
+    const Places way = random_places(int(boxes.rest.rows()), 1, 13);
+    const double e = 1e-7, difference = (form.value(x + e * way) - form.value(x - e * way)) / (2 * e);
+    CHECK(slope.cwiseProduct(way).sum() == doctest::Approx(difference).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("contact: a step that would press one fold shut yields there, and is taken whole") {
+  const TwoBoxes boxes(1);
+  FemEnergy energy(boxes.rest, boxes.T, std::vector<TetMaterial>(boxes.T.rows(), {4, 0.3}), 0);
+  energy.set_contact(ContactForm(boxes.F, boxes.rest, boxes.free()));
+  // One corner of the upper box goes through the lower box, and all goes far aside.
+  Places step = boxes.upper_by({0, 0, 0});
+  step.col(0).setConstant(20);
+  Eigen::Index low = 0;
+  (boxes.rest.bottomRows(boxes.rest.rows() / 2) * Eigen::Vector3d(1, 1, 1)).minCoeff(&low);
+  step(boxes.rest.rows() / 2 + low, 2) = -1.5;
+  const auto bound = energy.largest_step(boxes.rest, step, 1);
+  CHECK(bound.length < 0.7);
+  CHECK(bound.obstacle == FemEnergy::Obstacle::Contact);
+  const Places yielded = energy.yielding(boxes.rest, step, {});
+  CHECK(energy.largest_step(boxes.rest, yielded, 1).length == 1);
+  CHECK((yielded.col(0).array() - 20).abs().maxCoeff() < 1e-9);
+  // The fixed stay.
+  std::vector<char> fixed(boxes.rest.rows(), 1);
+  CHECK(energy.yielding(boxes.rest, step, fixed) == step);
+}
