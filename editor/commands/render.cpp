@@ -155,7 +155,7 @@ std::array<glm::dvec3, 2> box_of_posed(const Grid& rest_grid, const Grid& grid, 
     for (auto brick = begin; brick < end; ++brick) {
       auto influence = weights.chunk(brick).begin();
       tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
-        std::array<BoneWeight, 4> influences;
+        std::array<limber::BoneWeight, 4> influences;
         int count = 0;
         const Influence follows = *influence++;
         for (; count < 4 && follows.weight[count]; ++count) influences[count] = {follows.bone[count], double(follows.weight[count])};
