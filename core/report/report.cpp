@@ -91,6 +91,7 @@ Json mesh_of(const Report& report, const MeshReport& mesh) {
   Json change = Json::object();
   for (const auto& [label, percent] : mesh.volume_change_percent) change[key_of(report, label)] = percent;
   row["volume_change_percent_by_label"] = change;
+  for (const auto& [label, stretch] : mesh.stretch) row["stretch_by_label"][key_of(report, label)] = {{"least", stretch.least}, {"most", stretch.most}};
   if (!mesh.fallback.empty()) row["fallback"] = mesh.fallback;
   return row;
 }
@@ -136,6 +137,16 @@ std::string components_of(const TissueChange& tissue) {
   const std::string before = std::to_string(tissue.components_before);
   if (tissue.components_before == tissue.components_after) return before;
   return before + " -> " + std::to_string(tissue.components_after);
+}
+
+void print_stretch(std::ostream& out, const VolumeMetrics& metrics, const MeshReport& mesh) {
+  out << line("%8s  %-28s %36s", "label", "stretch of what bends", "least, most: median (5 % to 95 %)");
+  for (const TissueChange& tissue : metrics.tissues)
+    if (const auto found = mesh.stretch.find(tissue.label); found != mesh.stretch.end()) {
+      const auto& [least, most] = found->second;
+      out << line("%8.0f  %-28.28s   %5.2f (%.2f to %.2f), %5.2f (%.2f to %.2f)", tissue.file_value, tissue.name.c_str(), least[1], least[0], least[2],
+                  most[1], most[0], most[2]);
+    }
 }
 
 void print_tissues(std::ostream& out, const VolumeMetrics& metrics) {
@@ -208,6 +219,7 @@ void print_report(std::ostream& out, const Report& report) {
     const MeshReport& mesh = *report.deform->mesh;
     out << line("mesh of %lld tets, %lld inverted, least det F %.3f, %.2f %% of soft tets below 0.2", static_cast<long long>(mesh.tets),
                 static_cast<long long>(mesh.inverted), mesh.min_det_f, 100 * mesh.share_below_fifth);
+    if (report.metrics && !mesh.stretch.empty()) print_stretch(out, *report.metrics, mesh);
   }
   if (report.deform && report.deform->solve) {
     const SolveReport& solve = *report.deform->solve;

@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "core/fem/stretch.h"
 #include "core/volume/label_volume.h"
 
 namespace limber {
@@ -41,6 +42,7 @@ struct MeshReport {
   std::optional<std::int64_t> self_intersections;  // pairs of triangles of the posed border
   std::optional<double> min_gap_mm, median_gap_mm;  // of air between parts of the border that came nearer than a tet
   std::map<Label, double> volume_change_percent;   // of the tets that hold the label's voxels
+  std::map<Label, Stretch> stretch;        // of soft tissue that bends
   std::string fallback;                    // what the mesher had to do instead of its best, empty where nothing
 };
 

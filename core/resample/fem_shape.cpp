@@ -61,6 +61,7 @@ void measure(const SolvedPose& solved, double spacing, FemShape& shape) {
     report.median_gap_mm = gap->median_mm;
   }
   report.volume_change_percent = volume_change_percent(shape.model, solved.V);
+  report.stretch = stretches(shape.model, solved.V);
 }
 
 SolveReport report_of(const SolvedPose& solved) {
@@ -97,6 +98,7 @@ std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const Tis
   shape->reached = solved.reached;
   shape->solve = report_of(solved);
   measure(solved, spacing, *shape);
+  std::erase_if(shape->mesh.stretch, [&](const auto& tissue) { return is_bone[tissue.first] != 0; });  // painted rigidly, whatever tets it lies in
   shape->seconds_solve = seconds_since(solving);
   return shape;
 }

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/fem/stretch.h"
 #include "core/resample/pose_path.h"
 #include "tests/support/bent_tube.h"
 #include "tests/support/kuhn_mesh.h"
@@ -219,4 +220,30 @@ TEST_CASE("tissue model: no soft tissue counts as stiffer than a solid of its wi
   for (int t = 0; t < model.fem.mesh.T.rows(); ++t)
     if (model.fem.mesh.region[t] == TetMesh::kSoft) stiffest = std::max(stiffest, model.fem.material[t].shear_modulus);
   CHECK(stiffest == doctest::Approx(TissueModelSettings{}.stiffest));
+}
+
+TEST_CASE("stretch: a turn stretches nothing, a pull and a press show as they are, and percentiles count voxels") {
+  const Body body;
+  const TissueModel model = model_of(body, body.moving(50), 4);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  for (const auto& [label, stretch] : stretches(model, model.fem.mesh.V * turn.transpose()))
+    for (int i = 0; i < 3; ++i) {
+      CHECK(stretch.least[i] == doctest::Approx(1));
+      CHECK(stretch.most[i] == doctest::Approx(1));
+    }
+  const Eigen::MatrixX3d pulled = model.fem.mesh.V * Eigen::Vector3d(1.5, 0.7, 1).asDiagonal() * turn.transpose();
+  const auto seen = stretches(model, pulled);
+  REQUIRE(seen.count(test::kSkin) == 1);
+  for (const Label label : {test::kSkin, test::kFat}) {
+    CHECK(seen.at(label).least[0] == doctest::Approx(0.7));
+    CHECK(seen.at(label).most[2] == doctest::Approx(1.5));
+  }
+
+  // A quarter of the length twice as long: that many of the fat's voxels, and no more.
+  Eigen::MatrixX3d part = model.fem.mesh.V;
+  const double low = part.col(2).minCoeff(), high = part.col(2).maxCoeff(), from = high - 0.25 * (high - low);
+  for (auto z : part.col(2)) z += std::max(0.0, z - from);
+  const Stretch fat = stretches(model, part).at(test::kFat);
+  CHECK(fat.most[1] == doctest::Approx(1));
+  CHECK(fat.least[1] == doctest::Approx(1));
 }

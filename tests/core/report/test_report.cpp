@@ -134,7 +134,7 @@ TEST_CASE("report: finite elements add mesh and solve under the schema's keys, l
   report.seconds.mesh = 1.25;
   report.seconds.solve = 20.5;
   DeformReport deform;
-  deform.mesh = MeshReport{.tets = 1000, .nodes = 300, .inverted = 0, .min_det_f = 0.125, .volume_change_percent = {{3, 0.02}}};
+  deform.mesh = MeshReport{.tets = 1000, .nodes = 300, .inverted = 0, .min_det_f = 0.125, .volume_change_percent = {{3, 0.02}}, .stretch = {{3, {{0.5, 0.75, 1}, {1, 1.25, 2}}}}};
   deform.solve = SolveReport{.converged = false, .reached = 0.75, .blocked_by = "bone Forearm", .steps = 6, .iterations = 30, .residual_mm = 0.25};
   report.deform = deform;
   json written = json::parse(to_json(report));
@@ -146,6 +146,8 @@ TEST_CASE("report: finite elements add mesh and solve under the schema's keys, l
   CHECK(mesh["inverted"] == 0);
   CHECK(mesh["min_det_f"] == 0.125);
   CHECK(mesh["volume_change_percent_by_label"]["143"] == 0.02);
+  CHECK(mesh["stretch_by_label"]["143"]["least"] == std::vector{0.5, 0.75, 1.0});
+  CHECK(mesh["stretch_by_label"]["143"]["most"] == std::vector{1.0, 1.25, 2.0});
   for (const char* unmeasured : {"self_intersections", "min_gap_mm", "fallback"}) CHECK_FALSE(mesh.contains(unmeasured));
   const json& solve = written["solve"];
   CHECK(solve["converged"] == false);
