@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/base/error.h"
 #include "core/fem/contact_gap.h"
 #include "core/mesh/crossings.h"
 #include "core/mesh/mesh_tissue.h"
@@ -94,6 +95,8 @@ std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const Tis
   const auto solving = std::chrono::steady_clock::now();
   const SolveSettings solve{.contact = fem.contact, .contact_mm = std::min(kContact, spacing / 4), .step_tolerance_mm = spacing / 2, .bone_drift_mm = std::max(kDrift, spacing / 2)};
   const SolvedPose solved = solve_pose(shape->model.fem, path, largest_angle_degrees(pose), solve, progress, fem.on_step);
+  if (solved.steps == 0 && solved.converged)  // something should have moved
+    throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements", "choose a finer quality, or blend instead");
   shape->V = solved.V;
   shape->reached = solved.reached;
   shape->solve = report_of(solved);
