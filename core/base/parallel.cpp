@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <new>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +24,17 @@ std::atomic<tbb::task_arena*> current_arena = nullptr;
 
 // What the loops of this thread's present command or job listen to.
 thread_local const Progress* current_progress = nullptr;
+
+// Threads that cannot begin lack memory, most often for their stacks; TBB says so in words alone.
+template <class Run>
+void without_thread_failures(const Run& run) {
+  try {
+    run();
+  } catch (const std::runtime_error& error) {
+    if (std::string_view(error.what()).starts_with("pthread_create")) throw std::bad_alloc();
+    throw;
+  }
+}
 
 template <class Body>
 void for_blocks(std::int64_t count, std::int64_t grain, const Body& each) {
@@ -43,10 +56,13 @@ void for_blocks(std::int64_t count, std::int64_t grain, const Body& each) {
   };
   if (blocks == 1)
     body(std::int64_t{0}, std::int64_t{0}, count);
-  else if (auto* arena = current_arena.load())
-    arena->execute(run);
   else
-    run();
+    without_thread_failures([&] {
+      if (auto* arena = current_arena.load())
+        arena->execute(run);
+      else
+        run();
+    });
 }
 }  // namespace
 

@@ -257,7 +257,7 @@ TEST_CASE("settling: a solve that may not take the memory it needs ends with a l
   test.editor->worker_program = LIMBER_PROGRAM;
   const Document before = test.editor->document();
   int failures = 0;
-  for (const int megabytes : {16, 60, 90, 120, 160}) {  // too little to start, to read, to mesh, to solve; enough
+  for (const int megabytes : {16, 60, 75, 90, 105, 120, 160}) {  // too little to start, to read, to mesh, to solve; enough
     test.editor->preferences.worker_memory_mb = megabytes;
     test.editor->messages.last_failure.clear();
     test.play("key Ctrl+Return\nwait-job");
