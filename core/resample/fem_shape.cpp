@@ -99,6 +99,7 @@ std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const Tis
     throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements", "choose a finer quality, or blend instead");
   shape->V = solved.V;
   shape->reached = solved.reached;
+  shape->cpu = solved.seconds;
   shape->solve = report_of(solved);
   measure(solved, spacing, *shape);
   std::erase_if(shape->mesh.stretch, [&](const auto& tissue) { return is_bone[tissue.first] != 0; });  // painted rigidly, whatever tets it lies in

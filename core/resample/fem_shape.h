@@ -16,6 +16,7 @@ struct FemShape {
   MeshReport mesh;
   SolveReport solve;
   double seconds_mesh = 0, seconds_solve = 0;
+  FemSeconds cpu;        // of the solve
 };
 
 // The tissue that the pose bends, solved. None where the pose bends nothing.

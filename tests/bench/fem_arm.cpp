@@ -1,91 +1,77 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What finite elements cost on a real arm, as text. Called as
-//   limber_fem_arm VOLUME RIG [BONE [DEGREES [SPACING_MM...]]]
-// meshes the tissue that flexing BONE by DEGREES bends, and solves it with and without contact. CPU seconds of one thread;
-// what the machine's other work does to them is told by the one factorization that stands beside.
+// What finite elements cost on a real arm, beside one factorization of the same matrix and a resampling by dual quaternions. Called as
+//   limber_fem_arm VOLUME RIG [SPACING_MM:DEGREES[:free]...]     free: without contact
+// CPU seconds of one thread, of this process and of TetGen's; what other work on the machine does to them is told by the factorization.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <string>
 #include <vector>
 
+#include <sys/resource.h>
+
 #include "core/base/parallel.h"
-#include "core/fem/solve_pose.h"
-#include "core/fem/tissue_model.h"
-#include "core/mesh/crossings.h"
-#include "core/mesh/mesh_tissue.h"
-#include "core/resample/pose_path.h"
-#include "core/rig/armature_io.h"
-#include "core/rig/bone_tissue.h"
-#include "core/rig/fit_joint.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/volume_io.h"
+#include "core/report/report.h"
+#include "tests/support/bent_arm.h"
 
 namespace {
 using namespace limber;
 
-struct Arm {
-  VolumeFile file;
-  TissueTable tissues;
-  Armature rig;
-  TissueVoxels tissue;
-  SkinWeights weights;
-  Pose pose;
-  LabelSet is_bone = LabelSet(65536, 0);
-
-  Arm(const std::string& volume, const std::string& rig_file, const std::string& bone, double degrees)
-      : file(read_volume(volume)), tissues(merge_tissue_tables(file.tissues, nullptr)), rig(read_armature_file(rig_file).armature), tissue(file.volume) {
-    if (const auto guess = guess_bone_tissue(file.volume, tissues, rig)) tissues = with_bones(tissues, {tissues.find(guess->label)->file_value});
-    for (const Tissue& t : tissues.tissues) is_bone[t.label] = limber::is_bone(t.kind);
-    const BoneParts parts = split_bones(file.volume, tissue, tissues, rig);
-    weights = diffuse_heat(file.volume, tissue, tissues, rig, parts);
-    pose = rest_pose(rig);
-    flex(pose, rig, require_bone(rig, bone), degrees);
-    FittedPose fitted = fit_joints(file.volume, tissue, parts, rig, pose);
-    rig = std::move(fitted.armature);
-    pose = std::move(fitted.pose);
+double cpu_seconds() {
+  double sum = 0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used;
+    getrusage(who, &used);
+    for (const timeval& time : {used.ru_utime, used.ru_stime}) sum += double(time.tv_sec) + 1e-6 * double(time.tv_usec);
   }
-  std::vector<RigidTransform> at(double t) const { return bone_motions(weights.bones(), rig, part_of_pose(pose, t)); }
-};
-
-void print(const SolvedPose& solved, const TissueModel& model) {
-  const FemSeconds& s = solved.seconds;
-  const double factorization = s.factorization / solved.factorizations;
-  const auto crossings = crossing_pairs(solved.V, boundary_of(model.fem.mesh.T)).size();
-  std::printf("  %s at %.0f %%: %.1f CPU s (contact %.1f, analysis %.1f, assembly %.1f, factorization %.1f, search %.1f), %d steps, %d iterations of %.2f factorizations\n",
-              solved.converged ? "converged" : solved.blocked_by.c_str(), 100 * solved.reached, s.total, s.contact, s.analysis, s.assembly, s.factorization,
-              s.search, solved.steps, solved.iterations, s.total / solved.iterations / factorization);
-  std::printf("  smallest det F %.3f (on the way %.3f), inverted %lld, crossing pairs %zu\n", solved.min_det_f, solved.min_det_f_of_path,
-              static_cast<long long>(solved.inverted), crossings);
-  for (const auto& [label, change] : volume_change_percent(model, solved.V)) std::printf("  label %d %+.3f %%", int(label), change);
-  std::printf("\n");
+  return sum;
 }
 
-void measure(const Arm& arm, double spacing) {
-  const BonePath path = [&](double t) { return arm.at(t); };
-  const MovingTissue moving = moving_tissue(arm.file.volume, arm.tissue, arm.weights, path, {.contact = true});
-  const LabelVolume regions = regions_to_mesh(arm.file.volume, arm.tissue, arm.is_bone, arm.weights, moving);
-  const TissueMesh mesh = mesh_tissue(regions, {.spacing_mm = spacing});
-  const TissueModel model = tissue_model(arm.file.volume, arm.tissue, arm.tissues, arm.weights, moving, mesh.mesh);
-  std::printf("h %g mm: %ld nodes, %ld tets %s\n", spacing, long(mesh.mesh.V.rows()), long(mesh.mesh.T.rows()), mesh.warning.c_str());
-  for (const bool contact : {false, true}) {
-    std::printf(" %s contact\n", contact ? "with" : "without");
-    print(solve_pose(model.fem, path, largest_angle_degrees(arm.pose), {.contact = contact}), model);
-  }
+struct Row {
+  double spacing, degrees;
+  bool contact;
+};
+
+Row row_of(const std::string& word) {
+  Row row{std::strtod(word.c_str(), nullptr), 90, !word.ends_with(":free")};
+  if (const auto colon = word.find(':'); colon != std::string::npos) row.degrees = std::strtod(word.c_str() + colon + 1, nullptr);
+  return row;
+}
+
+void measure(test::BentArm& arm, const Row& row) {
+  arm.bend(row.degrees);
+  const double start = cpu_seconds();
+  double meshed = 0;
+  const auto shape = arm.solved({.contact = row.contact, .spacing_mm = row.spacing, .on_mesh = [&](const TissueModel&) { meshed = cpu_seconds(); }});
+  const double mesh = meshed - start, solve = cpu_seconds() - meshed;
+  const FemSeconds& s = shape->cpu;
+  const double factorization = s.factorization / shape->solve.factorizations;
+  std::printf("%4g %5g %-7s %7lld %6.2f %7.1f %6.1f%% %7.1f %5.1f %5.1f %6.2f %5.1f %5d %6.2f %6.2f %7.3f %5lld %7.0f  %s\n", row.spacing, row.degrees,
+              row.contact ? "contact" : "free", static_cast<long long>(shape->mesh.tets), mesh, solve, 100 * mesh / solve, s.factorization, s.assembly, s.contact,
+              s.analysis, s.search, shape->solve.iterations, factorization, s.total / shape->solve.iterations / factorization, shape->mesh.min_det_f,
+              static_cast<long long>(shape->mesh.self_intersections.value_or(-1)), peak_memory_mb(),
+              shape->solve.converged ? "reached" : shape->solve.blocked_by.c_str());
+  std::fflush(stdout);
 }
 }  // namespace
 
 int main(int count, char** arguments) try {
   if (count < 3) {
-    std::fprintf(stderr, "usage: limber_fem_arm VOLUME RIG [BONE [DEGREES [SPACING_MM...]]]\n");
+    std::fprintf(stderr, "usage: limber_fem_arm VOLUME RIG [SPACING_MM:DEGREES[:free]...]\n");
     return 2;
   }
-  const std::vector<std::string> words(arguments, arguments + count);
-  const double degrees = count > 4 ? std::strtod(arguments[4], nullptr) : 90;
+  std::vector<std::string> words(arguments + 3, arguments + count);
+  if (words.empty()) words = {"12:90", "12:90:free", "8:45", "8:90", "8:90:free", "6:90", "4:15"};
   const ThreadCount one(1);
-  const Arm arm(words[1], words[2], count > 3 ? words[3] : "Forearm", degrees);
-  if (count <= 5) measure(arm, 8);
-  for (int k = 5; k < count; ++k) measure(arm, std::strtod(arguments[k], nullptr));
+  test::BentArm arm(arguments[1], arguments[2]);
+  const double start = cpu_seconds();
+  arm.bend(90);
+  const double fitted = cpu_seconds();
+  arm.posed(DualQuaternion{});
+  std::printf("fitting the joint to +90: %.2f s; resampling by dual quaternions: %.2f s\n", fitted - start, cpu_seconds() - fitted);
+  std::printf("%4s %5s %-7s %7s %6s %7s %7s %7s %5s %5s %6s %5s %5s %6s %6s %7s %5s %7s\n", "h mm", "angle", "", "tets", "mesh s", "solve s", "of it", "factor.", "assem",
+              "cont.", "analys", "search", "iter", "fact.s", "it/fac", "det F", "cross", "peak MB");
+  for (const std::string& word : words) measure(arm, row_of(word));
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;

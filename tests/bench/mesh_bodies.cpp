@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Meshes of real bodies: how much of them is covered, how good the tets are, and where the time goes. Called as
+//   limber_mesh_bodies DATA_FOLDER [SPACING_MM]
+// Bodies that are not in the folder are left out, and said to be. CPU seconds of one thread, of this process and of TetGen's.
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <string>
+
+#include <sys/resource.h>
+
+#include "core/base/parallel.h"
+#include "core/mesh/improve.h"
+#include "core/mesh/mesh_tissue.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/bone_parts.h"
+#include "core/rig/bone_tissue.h"
+#include "core/volume/tissue_table_io.h"
+#include "core/volume/volume_io.h"
+
+namespace {
+using namespace limber;
+
+double cpu_seconds() {
+  double sum = 0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used;
+    getrusage(who, &used);
+    for (const timeval& time : {used.ru_utime, used.ru_stime}) sum += double(time.tv_sec) + 1e-6 * double(time.tv_usec);
+  }
+  return sum;
+}
+
+struct Case {
+  const char *name, *volume, *rig, *table;  // without a rig each label of bone is a region
+};
+constexpr Case kCases[] = {{"arm", "bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk", nullptr},
+                           {"arm and shoulder", "bp3d/arm_shoulder_1mm_tissue.mha", "bp3d/arm_shoulder.armature.json", "bp3d/tissue.labels.json"},
+                           {"knee atlas", "spl/knee_seg.nrrd", nullptr, "spl/knee.ctbl"},
+                           {"makehuman", "makehuman/body_4mm.nrrd", "makehuman/body.armature.json", "bp3d/tissue.labels.json"},
+                           {"body", "bp3d/body_2mm_tissue.mha", "bp3d/body.armature.json", "bp3d/tissue.labels.json"}};
+
+void measure(const std::filesystem::path& data, const Case& each, double spacing) {
+  if (!std::filesystem::exists(data / each.volume)) {
+    std::printf("%-17s SKIPPED: %s is not here\n", each.name, (data / each.volume).c_str());
+    return;
+  }
+  const VolumeFile file = read_volume(data / each.volume);
+  TissueTable tissues = merge_tissue_tables(file.tissues, nullptr);
+  if (each.table) {
+    const TissueTable table = read_tissue_table(data / each.table);
+    tissues = merge_tissue_tables(file.tissues, &table);
+  }
+  const TissueVoxels tissue(file.volume);
+  std::vector<std::uint16_t> region(tissue.size(), TetMesh::kSoft);
+  if (each.rig) {
+    const Armature rig = read_armature_file(data / each.rig).armature;
+    if (const auto guess = guess_bone_tissue(file.volume, tissues, rig)) tissues = with_bones(tissues, {tissues.find(guess->label)->file_value});
+    const BoneParts parts = split_bones(file.volume, tissue, tissues, rig);
+    for (std::int64_t place = 0; place < tissue.size(); ++place)
+      if (parts.part_of[place] > 0) region[place] = 1 + parts.parts[parts.part_of[place] - 1].bone;
+  } else {
+    std::vector<char> bone(65536, 0);
+    for (const Tissue& one : tissues.tissues) bone[one.label] = is_bone(one.kind);
+    tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      if (const Label label = file.volume.at(v); bone[label]) region[place] = 1 + label;
+    });
+  }
+  const VoxelRegions voxels{file.volume.grid, tissue, region};
+
+  const double start = cpu_seconds();
+  const LatticeNet net = lattice_net(voxels, {.spacing_mm = spacing});
+  const double netted = cpu_seconds();
+  Tetrahedralized filled = tetrahedralize_inside(net.surface);
+  const double made = cpu_seconds();
+  if (!filled.mesh) {
+    std::printf("%-17s TetGen failed: %s\n", each.name, filled.failure.c_str());
+    return;
+  }
+  improve(*filled.mesh, net, voxels);
+  const double improved = cpu_seconds();
+  const std::string fault = find_fault(*filled.mesh, enclosed_volumes(net.surface, filled.mesh->V));
+  const double checked = cpu_seconds();
+  const MeshQuality quality = quality_of(*filled.mesh, voxels);
+  const double end = cpu_seconds();
+  long inverted = 0;
+  for (const auto& tet : filled.mesh->T.rowwise()) inverted += signed_volume(filled.mesh->V, tet) <= 0;
+  const double tets = double(filled.mesh->T.rows());
+  std::printf("%-17s %5g %9lld %8ld %8.4f %6.2f %8.4f %5ld %7.2f %6.2f %7.2f %8.2f %6.2f %8.2f %8.1f  %s\n", each.name, net.spacing_mm, static_cast<long long>(tissue.size()), long(tets),
+              100 * quality.covered, quality.min_dihedral_degrees, 100 * quality.share_below_5_degrees, inverted, end - start, netted - start, made - netted, improved - made,
+              checked - improved, end - checked, 1e6 * (end - start) / tets, fault.empty() ? "sound" : fault.c_str());
+  std::fflush(stdout);
+}
+}  // namespace
+
+int main(int count, char** arguments) try {
+  if (count < 2) {
+    std::fprintf(stderr, "usage: limber_mesh_bodies DATA_FOLDER [SPACING_MM]\n");
+    return 2;
+  }
+  const ThreadCount one(1);
+  std::printf("%-17s %5s %9s %8s %8s %6s %8s %5s %7s %6s %7s %8s %6s %8s %8s\n", "body", "h mm", "voxels", "tets", "cover %", "angle", "<5 deg %", "inv.", "CPU s", "net", "TetGen",
+              "improve", "check", "quality", "us/tet");
+  for (const Case& each : kCases) measure(arguments[1], each, count > 2 ? std::atof(arguments[2]) : 8);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}

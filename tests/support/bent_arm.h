@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A real arm with a bent joint, made as the commands make it: what is bone is found, weights are diffused, the joint is fitted to
+// its bones.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/pose/pose.h"
+#include "core/resample/fem_shape.h"
+#include "core/resample/pose_path.h"
+#include "core/resample/resample.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/bone_tissue.h"
+#include "core/rig/fit_joint.h"
+#include "core/skin/heat_diffusion.h"
+#include "core/volume/volume_io.h"
+
+namespace limber::test {
+
+class BentArm {
+ public:
+  BentArm(const std::string& volume_file, const std::string& rig_file, const std::string& bone = "Forearm")
+      : file_(read_volume(volume_file)), tissues(merge_tissue_tables(file_.tissues, nullptr)), given_rig_(read_armature_file(rig_file).armature), bone_(bone) {
+    if (const auto guess = guess_bone_tissue(volume, tissues, given_rig_)) tissues = with_bones(tissues, {tissues.find(guess->label)->file_value});
+    for (const Tissue& each : tissues.tissues) is_bone[each.label] = limber::is_bone(each.kind);
+    parts_ = split_bones(volume, tissue, tissues, given_rig_);
+    weights = diffuse_heat(volume, tissue, tissues, given_rig_, parts_);
+    bend(0);
+  }
+
+  void bend(double degrees) {
+    rig = given_rig_;
+    pose = rest_pose(rig);
+    flex(pose, rig, require_bone(rig, bone_), degrees);
+    FittedPose fitted = fit_joints(volume, tissue, parts_, rig, pose);
+    rig = std::move(fitted.armature);
+    pose = std::move(fitted.pose);
+  }
+
+  std::vector<RigidTransform> motions(double t) const { return bone_motions(weights.bones(), rig, part_of_pose(pose, t)); }
+  std::shared_ptr<const FemShape> solved(const Fem& fem) const { return solve_shape(volume, tissue, tissues, is_bone, weights, rig, pose, fem); }
+  Posed posed(const Method& method) const { return resample(volume, tissues, rig, weights, pose, method); }
+
+ private:
+  VolumeFile file_;
+
+ public:
+  const LabelVolume& volume = file_.volume;
+  TissueTable tissues;
+  LabelSet is_bone = LabelSet(65536, 0);
+  const TissueVoxels tissue{volume};
+  SkinWeights weights;
+  Armature rig;  // fitted
+  Pose pose;
+
+ private:
+  Armature given_rig_;
+  BoneParts parts_;
+  std::string bone_;
+};
+
+}  // namespace limber::test
