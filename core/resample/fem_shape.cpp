@@ -93,7 +93,8 @@ std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const Tis
   if (fem.on_mesh) fem.on_mesh(shape->model);
 
   const auto solving = std::chrono::steady_clock::now();
-  const SolveSettings solve{.contact = fem.contact, .contact_mm = std::min(kContact, spacing / 4), .step_tolerance_mm = spacing / 2, .bone_drift_mm = std::max(kDrift, spacing / 2)};
+  const double finest = settings.fine_around.empty() ? spacing : spacing / 2;
+  const SolveSettings solve{.contact = fem.contact, .contact_mm = std::min(kContact, finest / 4), .step_tolerance_mm = finest / 2, .bone_drift_mm = std::max(kDrift, spacing / 2)};
   const SolvedPose solved = solve_pose(shape->model.fem, path, largest_angle_degrees(pose), solve, progress, fem.on_step);
   if (solved.steps == 0 && solved.converged)  // something should have moved
     throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements", "choose a finer quality, or blend instead");

@@ -151,3 +151,29 @@ TEST_CASE("fem: a pose out of reach ends at the last good place on the way, and 
   CHECK(result.shape->reached == result.report.solve->reached);
   for (const auto& bone : result.report.bones) CHECK(bone.rigid_residual_mm < 0.01);
 }
+
+TEST_CASE("fem: fingers close onto each other and the palm, and pass through neither") {
+  const Phantom phantom = make_arm_phantom(3);
+  const SkinWeights weights = diffuse_heat(phantom.volume, phantom.tissues, phantom.armature);
+  Pose pose = rest_pose(phantom.armature);
+  const auto bend = [&](const char* bone, double degrees) { flex(pose, phantom.armature, require_bone(phantom.armature, bone), degrees); };
+  for (const std::string finger : {"Ring", "Little"}) {
+    bend((finger + "Proximal").c_str(), 70);
+    bend((finger + "Middle").c_str(), 80);
+    bend((finger + "Distal").c_str(), 45);
+  }
+  const Posed posed = resample(phantom.volume, phantom.tissues, phantom.armature, weights, pose, Fem{.contact = true, .quality = FemQuality::Fine});
+  REQUIRE(posed.report.solve);
+  INFO(posed.report.solve->blocked_by);
+  CHECK(posed.report.solve->converged);
+  CHECK(posed.report.mesh->inverted == 0);
+  CHECK(posed.report.mesh->min_det_f > 0.02);
+  REQUIRE(posed.report.mesh->self_intersections);
+  CHECK(*posed.report.mesh->self_intersections == 0);
+  REQUIRE(posed.report.mesh->min_gap_mm);  // they do touch
+  CHECK(*posed.report.mesh->min_gap_mm < 2);
+  CHECK(posed.report.new_hole_voxels == 0);
+  const auto all = [](const LabelVolume& volume) { return double(std::count_if(volume.voxels.begin(), volume.voxels.end(), [](Label label) { return label != 0; })); };
+  CHECK(std::abs(all(posed.volume) / all(phantom.volume) - 1) < 0.005);
+  MESSAGE("closed in ", posed.report.solve->iterations, " iterations, ", posed.report.mesh->tets, " tets, overlap ", posed.report.overlap_voxels);
+}
