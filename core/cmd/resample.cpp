@@ -145,6 +145,7 @@ void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bo
   if (deform.mesh && contact && deform.mesh->self_intersections.value_or(0) > 0)
     note(report, {std::to_string(*deform.mesh->self_intersections) + " pairs of triangles of the skin cross each other"});
   if (!deform.solve || deform.solve->converged) return;
+  if (deform.solve->reached == 1) return note(report, {"the pose is reached, but its shape has not settled: " + deform.solve->blocked_by});
   char share[64];
   std::snprintf(share, sizeof share, "%.0f %% (%.1f of %.1f degrees)", 100 * deform.solve->reached,
                 deform.solve->reached * largest_angle_degrees(pose), largest_angle_degrees(pose));

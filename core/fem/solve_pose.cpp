@@ -20,6 +20,7 @@ constexpr double kPinStiffness = 1000;      // kPa per mm2, times the volume aro
 constexpr double kJointPinStiffness = 0.1;  // of nodes of tets between two bones: as coarse as the mesh is there, the bones' ends
                                             // would often not pass each other
 constexpr TetMaterial kBoneTet{100, 0.3};   // of a rigid tet where flesh pulls at it
+constexpr int kSettling = 3;                  // times the iterations of a step, at the end
 constexpr double kLeastWay = 0.8;           // of a guess that is worth a solve; with less, half the way is tried first
 constexpr double kWeakBarrier = 100;        // kPa, on flesh: halves the iterations of a deep bend, for no tet gets nearly flat on the way
 
@@ -115,9 +116,9 @@ class PoseSolve {
     shortest_ = std::min(regular, settings_.shortest_step_degrees / std::max(largest_angle_degrees, 1e-9));
     if (at_rest()) result_.reached = 1;
     advance(regular);
+    if (result_.steps > 0 && result_.reached == 1) settle();
     result_.crossings = std::ssize(crossing_pairs(x_, skin));
-    result_.converged = result_.reached == 1;
-    if (result_.converged) result_.blocked_by.clear();
+    result_.converged = result_.reached == 1 && result_.blocked_by.empty();
     result_.V = x_;
     result_.min_det_f = energy_.min_ratio(x_);
     result_.factorizations = energy_.factorizations();
@@ -137,6 +138,10 @@ class PoseSolve {
   bool at_rest() const;
   bool step(double to);
   bool part(double from, double to, Places& x);
+  NewtonResult relax(double at, double from, double tolerance_mm, int iterations, Places& x);
+  bool good(const std::vector<RigidTransform>& pose, const Places& x);
+  void record();
+  void settle();
   void hold_at(const std::vector<RigidTransform>& pose);
   Places blend_increment(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& of, bool points) const;
   double predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x, double missed_share);
@@ -266,33 +271,41 @@ std::string PoseSolve::obstacle(const FemEnergy::Bound& bound, const Places& x) 
   return what + at(bound.node, x);
 }
 
-// From x, good at `from`, to the shape at `to`.
-bool PoseSolve::part(double from, double to, Places& x) {
-  const auto from_pose = path_(from), to_pose = path_(to);
-  hold_at(to_pose);
-  // A guess far behind the bones' places is no start: their springs would crush what lies between.
-  if (predict(from_pose, to_pose, x, (to - from) / missed_way_) < kLeastWay && to - from > shortest_) return false;
-  const Places predicted = x;
-
-  NewtonSettings newton;
-  newton.tolerance_mm = to == 1 ? settings_.tolerance_mm : settings_.step_tolerance_mm;
-  newton.iterations = settings_.step_iterations;
-  newton.fixed = held_;
+// To the least energy, with the bones where they are held.
+NewtonResult PoseSolve::relax(double at, double from, double tolerance_mm, int iterations, Places& x) {
   const int before = result_.iterations;
-  const NewtonResult solved = minimise(energy_, x, newton, progress_, [&](int iteration, double residual) {
+  const NewtonResult solved = minimise(energy_, x, {tolerance_mm, iterations, held_}, progress_, [&](int iteration, double residual) {
     progress_.update("solving", from);
     if (on_step_) {
       const Eigen::MatrixX3d V = x;
-      on_step_({to, before + iteration, residual, V});
+      on_step_({at, before + iteration, residual, V});
     }
   });
   result_.iterations += solved.iterations;
   result_.residual = solved.residual;
-  if (!solved.converged) {
-    result_.blocked_by = obstacle(solved.bound, x);
-    return false;
-  }
-  const Drift drift = bone_drift(to_pose, x);
+  return solved;
+}
+
+// At the pose: what the last step has left, which is small to it. A shape that does not settle is as good as a step's.
+void PoseSolve::settle() {
+  result_.blocked_by.clear();
+  if (result_.residual < settings_.tolerance_mm) return;
+  const auto pose = path_(1);
+  hold_at(pose);
+  Places x = x_;
+  const NewtonResult solved = relax(1, 1, settings_.tolerance_mm, kSettling * settings_.step_iterations, x);
+  if (!good(pose, x)) return;
+  x_ = std::move(x);
+  record();
+  if (solved.converged) return;
+  char moves[60];
+  std::snprintf(moves, sizeof moves, "nodes would still move by %.1f mm: ", solved.residual);
+  result_.blocked_by = moves + obstacle(solved.bound, x_);
+}
+
+// Bones where they are held.
+bool PoseSolve::good(const std::vector<RigidTransform>& pose, const Places& x) {
+  const Drift drift = bone_drift(pose, x);
   if (drift.mm > settings_.bone_drift_mm) {
     char by[40];
     std::snprintf(by, sizeof by, "bone would bend by %.1f mm ", drift.mm);
@@ -300,6 +313,27 @@ bool PoseSolve::part(double from, double to, Places& x) {
     return false;
   }
   result_.bone_drift_mm = drift.mm;
+  return true;
+}
+
+void PoseSolve::record() {
+  result_.inverted += count_inverted(energy_.volume_tets(), x_);
+  result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_.min_ratio(x_));
+}
+
+// From x, good at `from`, to the shape at `to`.
+bool PoseSolve::part(double from, double to, Places& x) {
+  const auto from_pose = path_(from), to_pose = path_(to);
+  hold_at(to_pose);
+  // A guess far behind the bones' places is no start: their springs would crush what lies between.
+  if (predict(from_pose, to_pose, x, (to - from) / missed_way_) < kLeastWay && to - from > shortest_) return false;
+  const Places predicted = x;
+  const NewtonResult solved = relax(to, from, settings_.step_tolerance_mm, settings_.step_iterations, x);
+  if (!solved.converged) {
+    result_.blocked_by = obstacle(solved.bound, x);
+    return false;
+  }
+  if (!good(to_pose, x)) return false;
   missed_ = x - predicted;
   missed_way_ = to - from;
   return true;
@@ -323,8 +357,7 @@ bool PoseSolve::step(double to) {
 
   result_.reached = from;
   ++result_.steps;
-  result_.inverted += count_inverted(energy_.volume_tets(), x_);
-  result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_.min_ratio(x_));
+  record();
   return true;
 }
 }  // namespace

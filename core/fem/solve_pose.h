@@ -36,8 +36,8 @@ struct SolveSettings {
   bool contact = false;
   double step_degrees = 7.5;        // of the joint that turns furthest
   double contact_mm = 2;            // from this distance on skin is pushed apart, where it was further apart at rest
-  double step_tolerance_mm = 4;     // a step before the last ends when no node would move further than this: half a tet
-  double tolerance_mm = 0.3;        // the last one
+  double step_tolerance_mm = 4;     // a step ends when no node would move further than this: half a tet
+  double tolerance_mm = 0.3;        // at the pose
   int step_iterations = 40;         // a step that needs more is done in parts: half of it, a quarter, ...
   double shortest_step_degrees = 0.9;  // much shorter parts are not tried: the pose is out of reach
   double bone_drift_mm = 2;         // a step that bends a bone's nodes further than this from the bone is out of reach too
@@ -53,7 +53,7 @@ struct SolveStep {
 
 struct SolvedPose {
   Eigen::MatrixX3d V;        // #V posed nodes
-  bool converged = false;    // false: V is the last good step, `reached` of the path
+  bool converged = false;    // false: V is the last good step, `reached` of the path, or what has not settled at its end
   double reached = 0;        // [0, 1]
   std::string blocked_by;    // what stands in the way, where it did not converge; else empty
   int steps = 0, iterations = 0, factorizations = 0;

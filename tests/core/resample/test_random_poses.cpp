@@ -86,7 +86,7 @@ void check_shape(const FemShape& shape, const Fem& fem) {
   CHECK(shape.mesh.inverted == 0);
   CHECK(std::isfinite(shape.mesh.min_det_f));
   CHECK(solve.reached >= 0);
-  CHECK(solve.converged == (solve.reached == 1));
+  CHECK((!solve.converged || solve.reached == 1));
   CHECK(solve.converged == solve.blocked_by.empty());
   CHECK(solve.bone_drift_mm <= std::max(2.0, *fem.spacing_mm / 2) + 1e-9);
   if (solve.converged) CHECK(solve.residual_mm < 0.3);
