@@ -52,7 +52,10 @@ class Mending {
     auto after = large_parts(of_posed_);
     for (const auto& [label, before] : large_parts(of_rest_)) {
       const auto& parts = after[label];
-      if (!parts.empty() && parts.size() > before.size()) mend(label, parts, parts.size() - before.size());
+      if (!parts.empty() && parts.size() > before.size()) {
+        const std::int64_t too_many = mend(label, parts, parts.size() - before.size());
+        if (in_tissue_ && !soft_[label]) trim(label, parts, too_many);
+      }
       if (is_rigid(label) && parts.size() < before.size()) grow(label, parts, before.size() - parts.size());
     }
     return std::move(bridges_);
@@ -66,7 +69,8 @@ class Mending {
 
   bool is_rigid(Label label) const { return !in_tissue_ || !soft_[label]; }
 
-  void mend(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
+  // Returns how many there still are.
+  std::int64_t mend(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
     find_stretches(label);
     const std::vector<bool> is_torn = torn(label, parts);
     for (size_t i = 0; i + 1 < parts.size() && too_many > 0; ++i) {
@@ -80,6 +84,7 @@ class Mending {
         break;
       }
     }
+    return too_many;
   }
 
   // Of each part, whether another one comes from the same rest part as some of its voxels.
@@ -102,6 +107,49 @@ class Mending {
       from.insert(rest_part(label, {at.begin, at.y, at.z}));
     }
     return from;
+  }
+
+  // Rigid parts that were just too small to count gave themselves a few voxels by the grid: they give them back.
+  void trim(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
+    for (size_t i = 0; i + 1 < parts.size() && too_many > 0 && parts[i].voxels < kSmallestPart + kSmallestKept; ++i) {
+      const auto from = sources(label, parts[i].component);
+      const bool was_small = std::all_of(from.begin(), from.end(), [&](int rest_part) { return rest_part >= 0 && of_rest_.voxels[rest_part] < kSmallestPart; });
+      if (was_small && pare(label, parts[i].component)) --too_many;
+    }
+  }
+
+  // Gives what lies deepest in another rigid tissue. False when there is nothing left to give.
+  bool pare(Label label, int part) {
+    const std::vector<glm::ivec3> voxels = voxels_of(part);
+    while (of_posed_.voxels[part] >= kSmallestPart) {
+      int most = 0;
+      glm::ivec3 best(0);
+      Label taker = 0;
+      for (const glm::ivec3& v : voxels) {
+        if (posed_.at(v) != label || !can_spare(posed_, v)) continue;
+        std::map<Label, int> touches;
+        for (const glm::ivec3& step : neighbours())
+          if (const Label there = posed_.at_or_air(v + step); there != label && !soft_[there]) ++touches[there];
+        for (const auto& [there, count] : touches)
+          if (count > most && only_component(v, there) >= 0) most = count, best = v, taker = there;
+      }
+      if (most == 0) return false;
+      take(best, taker, only_component(best, taker));
+      bridges_.push_back(best);
+    }
+    return true;
+  }
+
+  // The component of the neighbours of a tissue, -1 when there are several.
+  int only_component(const glm::ivec3& v, Label tissue) const {
+    int found = -1;
+    for (const glm::ivec3& step : neighbours()) {
+      if (posed_.at_or_air(v + step) != tissue) continue;
+      const int component = joined(component_of(v + step));
+      if (found >= 0 && component != found) return -1;
+      found = component;
+    }
+    return found;
   }
 
   // Rigid parts that lost a few voxels to the grid get them back.

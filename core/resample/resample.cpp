@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/deform/inverse_map.h"
+#include "core/resample/bone_volumes.h"
 #include "core/resample/fem_shape.h"
 #include "core/resample/mend.h"
 #include "core/resample/output_grid.h"
@@ -198,8 +199,8 @@ class Resampling {
       return bones_.rest_point(posed_bones_.at(voxel) - 1, glm::dvec3(output_.range.low + voxel));
     };
     const RowSet rest_rows = lattice_.tissue().rows(), bone_rest_rows = bones_.rest_rows();
-    const auto bridges =
-        mend_bones(posed_bones_, bones_.numbered(), posed_.volume, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
+    const LabelVolume rest_bones = bones_.numbered();
+    const auto bridges = mend_bones(posed_bones_, rest_bones, posed_.volume, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
     for (const glm::ivec3& voxel : bridges) {
       map.reset({output_.range.low + voxel, output_.range.low + voxel});
       map.bone[0] = static_cast<std::uint16_t>(posed_bones_.at(voxel) - 1);
@@ -209,13 +210,15 @@ class Resampling {
       write(map, counts);
       add(counts);
     }
+    const std::int64_t kept =
+        keep_bone_volumes(posed_.volume, posed_bones_, volume_, rest_bones, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
     const auto rest_point = [&](const glm::ivec3& voxel) {
       if (posed_bones_.at(voxel)) return of_bone(voxel);
       fill(map, {output_.range.low + voxel, output_.range.low + voxel});
       return glm::dvec3(map.rest[0]);
     };
     const std::int64_t closed = close_skin();
-    posed_.report.mended_voxels = std::ssize(bridges) + closed + thin_skin(closed) +
+    posed_.report.mended_voxels = std::ssize(bridges) + kept + closed + thin_skin(closed) +
                                   mend(posed_.volume, volume_, labels_.soft, rest_point, {&rows_, &rest_rows},
                                        {&bone_rows_, &bone_rest_rows});
   }

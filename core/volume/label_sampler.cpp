@@ -43,32 +43,36 @@ struct LabelSampler::Neighbours {
     return half[0] == half[1] && half[0] == label[0] * std::uint64_t{0x0001000100010001};
   }
 
-  // Largest membership among the labels that `allowed` lets through; 0 when there is none.
+  // Of the labels that `allowed` lets through; the nearest voxel's comes first, so that it wins a tie.
   template <class Allowed>
-  Label largest_membership(const Allowed& allowed) const {
+  Memberships memberships(const Allowed& allowed) const {
     const double x[] = {1 - hermite(fraction.x), hermite(fraction.x)};
     const double y[] = {1 - hermite(fraction.y), hermite(fraction.y)};
     const double z[] = {1 - hermite(fraction.z), hermite(fraction.z)};
-    std::array<Label, 8> found;
-    std::array<double, 8> membership;
-    int count = 0;
-    // The nearest voxel's label comes first, so that it wins a tie.
+    Memberships found;
     for (int k = 0; k < 8; ++k) {
       const int corner = k ^ nearest;
       if (!allowed(label[corner])) continue;
       const double share = x[corner & 1] * y[corner >> 1 & 1] * z[corner >> 2] - kSharpening / 8;
       int place = 0;
-      while (place < count && found[place] != label[corner]) ++place;
-      if (place == count) {
-        found[count] = label[corner];
-        membership[count++] = 0;
+      while (place < found.count && found.label[place] != label[corner]) ++place;
+      if (place == found.count) {
+        found.label[place] = label[corner];
+        found.share[found.count++] = 0;
       }
-      membership[place] += share;
+      found.share[place] += share;
     }
+    return found;
+  }
+
+  // Largest membership; 0 when there is none.
+  template <class Allowed>
+  Label largest_membership(const Allowed& allowed) const {
+    const Memberships found = memberships(allowed);
     int best = 0;
-    for (int i = 1; i < count; ++i)
-      if (membership[i] > membership[best]) best = i;
-    return count ? found[best] : Label{0};
+    for (int i = 1; i < found.count; ++i)
+      if (found.share[i] > found.share[best]) best = i;
+    return found.count ? found.label[best] : Label{0};
   }
 };
 
@@ -123,6 +127,13 @@ Label LabelSampler::tissue(const glm::dvec3& point, const LabelSet& allowed) con
   if (!neighbours(point, around)) return 0;
   around.place(point);
   return around.largest_membership([&](Label label) { return label != 0 && allowed[label] != 0; });
+}
+
+LabelSampler::Memberships LabelSampler::memberships(const glm::dvec3& point, const LabelSet& allowed) const {
+  Neighbours around;
+  if (!neighbours(point, around)) return {};
+  around.place(point);
+  return around.memberships([&](Label label) { return label != 0 && allowed[label] != 0; });
 }
 
 Label LabelSampler::nearest_of(const glm::dvec3& point, const LabelSet& allowed, int reach) const {

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <cstdint>
+#include <array>
 #include <vector>
 
 #include "core/volume/label_volume.h"
@@ -35,6 +36,14 @@ class LabelSampler {
 
   // The largest membership among `allowed` tissues only; 0 when none of them is at one of the eight voxels around.
   Label tissue(const glm::dvec3& point, const LabelSet& allowed) const;
+
+  // How much each allowed tissue of the eight voxels around has of the point: its membership, in no order.
+  struct Memberships {
+    int count = 0;
+    std::array<Label, 8> label;
+    std::array<double, 8> share;
+  };
+  Memberships memberships(const glm::dvec3& point, const LabelSet& allowed) const;
 
   // The allowed tissue whose voxel is nearest (counted in voxels), at most `reach` voxels away along each axis; 0 when
   // there is none.

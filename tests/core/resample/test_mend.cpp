@@ -210,6 +210,21 @@ TEST_CASE("mend: bone tissue that came out a few voxels too small is filled up, 
   }
 }
 
+TEST_CASE("mend: bone tissue that the grid made large enough to count gives back what it gained") {
+  LabelVolume rest = bone_with_two_marrows();
+  for (int z = 13; z < 15; ++z)
+    for (int y = 5; y < 10; ++y)
+      for (int x = 5; x < 10; ++x) rest.at({x, y, z}) = kShell;
+  for (int x = 5; x < 8; ++x) rest.at({x, 5, 12}) = kShell;
+  REQUIRE(parts(rest, kMarrow) == 1);  // of 125 and 47
+  LabelVolume posed = rest;
+  for (int x = 5; x < 10; ++x) posed.at({x, 5, 12}) = kMarrow;
+  REQUIRE(parts(posed, kMarrow) == 2);
+  CHECK(mend_bone_tissue(posed, rest) == 1);
+  CHECK(parts(posed, kMarrow) == 1);
+  CHECK(parts(posed, kShell) == 1);
+}
+
 TEST_CASE("mend: a small bone that lost a few voxels takes them back from soft tissue") {
   LabelVolume tissue = block_with_strand();
   LabelVolume rest = tissue;
