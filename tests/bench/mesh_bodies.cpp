@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Meshes of real bodies: how much of them is covered, how good the tets are, and where the time goes. Called as
-//   limber_mesh_bodies DATA_FOLDER [SPACING_MM]
+//   limber_mesh_bodies DATA_FOLDER [SPACING_MM [BODY...]]
 // Bodies that are not in the folder are left out, and said to be. CPU seconds of one thread, of this process and of TetGen's.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <sys/resource.h>
 
@@ -96,13 +98,15 @@ void measure(const std::filesystem::path& data, const Case& each, double spacing
 
 int main(int count, char** arguments) try {
   if (count < 2) {
-    std::fprintf(stderr, "usage: limber_mesh_bodies DATA_FOLDER [SPACING_MM]\n");
+    std::fprintf(stderr, "usage: limber_mesh_bodies DATA_FOLDER [SPACING_MM [BODY...]]\n");
     return 2;
   }
   const ThreadCount one(1);
   std::printf("%-17s %5s %9s %8s %8s %6s %8s %5s %7s %6s %7s %8s %6s %8s %8s\n", "body", "h mm", "voxels", "tets", "cover %", "angle", "<5 deg %", "inv.", "CPU s", "net", "TetGen",
               "improve", "check", "quality", "us/tet");
-  for (const Case& each : kCases) measure(arguments[1], each, count > 2 ? std::atof(arguments[2]) : 8);
+  const std::vector<std::string> asked(arguments + std::min(count, 3), arguments + count);
+  for (const Case& each : kCases)
+    if (asked.empty() || std::find(asked.begin(), asked.end(), each.name) != asked.end()) measure(arguments[1], each, count > 2 ? std::atof(arguments[2]) : 8);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;
