@@ -21,6 +21,7 @@ constexpr double kJointPinStiffness = 0.1;  // of nodes of tets between two bone
                                             // would often not pass each other
 constexpr TetMaterial kBoneTet{100, 0.3};   // of a rigid tet where flesh pulls at it
 constexpr int kSettling = 3;                  // times the iterations of a step, at the end
+constexpr double kTight = 0.25;               // of a step's tolerance, where the next one does not succeed
 constexpr double kLeastWay = 0.8;           // of a guess that is worth a solve; with less, half the way is tried first
 constexpr double kWeakBarrier = 100;        // kPa, on flesh: halves the iterations of a deep bend, for no tet gets nearly flat on the way
 
@@ -342,6 +343,7 @@ bool PoseSolve::part(double from, double to, Places& x) {
 // As far towards `to` as it goes, in as few parts as can be. False when not even the shortest part can be done.
 bool PoseSolve::step(double to) {
   double from = result_.reached, way = to - from;
+  bool loose = from > 0;
   while (from < to) {
     const double next = way < 0.999 * (to - from) ? from + way : to;
     Places x = x_;
@@ -349,6 +351,11 @@ bool PoseSolve::step(double to) {
       x_ = std::move(x);
       from = next;
       way *= 2;
+      loose = result_.residual > kTight * settings_.step_tolerance_mm;
+    } else if (std::exchange(loose, false)) {
+      // A shape that lags behind its bones is a poor start for the next step.
+      hold_at(path_(from));
+      relax(from, from, kTight * settings_.step_tolerance_mm, settings_.step_iterations, x_);
     } else if ((way = 0.5 * (next - from)) < 0.5 * shortest_) {
       break;
     }
