@@ -11,6 +11,7 @@
 namespace limber {
 
 namespace {
+constexpr double kOfRest = 0.5;      // of what a pair is apart at rest: no thickness is more
 constexpr double kSoon = 2;          // thicknesses: pairs this near are in the matrix before they touch
 constexpr double kParallel = 1e-3;   // of the squared product of two edges at rest, below which they count as parallel
 constexpr std::int64_t kGrain = 2048;
@@ -44,7 +45,7 @@ ContactForm::ContactForm(const Eigen::MatrixX3i& F, const Places& rest, const st
     : surface_(F, rest, rigid), rest_(rest), settings_(settings), scale_(settings.barrier_kpa * settings.thickness_mm * mean_area(F, rest)) {}
 
 double ContactForm::thickness(const ContactPair& pair) const {
-  return std::min(settings_.thickness_mm, 0.5 * nearest_points(pair, rest_).distance);
+  return std::min(settings_.thickness_mm, kOfRest * nearest_points(pair, rest_).distance);
 }
 
 ContactForm::Fade ContactForm::fade(const ContactPair& pair, const Places& x) const {
@@ -64,7 +65,8 @@ ContactForm::Fade ContactForm::fade(const ContactPair& pair, const Places& x) co
 }
 
 void ContactForm::watch(const Places& x, const Places& step, double limit) {
-  watched_ = surface_.near(x, step, limit, kSoon * settings_.thickness_mm);
+  watched_ = surface_.near(x, step, limit, settings_.thickness_mm, kOfRest);
+  blocked_.assign(watched_.size(), 0);
 }
 
 ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step, double limit) const {
@@ -80,15 +82,12 @@ ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step
   return bound;
 }
 
-std::vector<ContactPair> ContactForm::blocked(const Places& x, const Places& step) const {
-  std::vector<std::vector<ContactPair>> of_block((watched_.size() + kGrain - 1) / kGrain);
+void ContactForm::block(const Places& x, const Places& step, const std::vector<char>& changed) {
   parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto k = begin; k < end; ++k)
-      if (limber::largest_step(watched_[k], x, step, 1) < 1) of_block[begin / kGrain].push_back(watched_[k]);
+      if (const auto& node = watched_[k].node; changed[node[0]] || changed[node[1]] || changed[node[2]] || changed[node[3]])
+        blocked_[k] = limber::largest_step(watched_[k], x, step, 1) < 1;
   });
-  std::vector<ContactPair> pairs;
-  for (const auto& block : of_block) pairs.insert(pairs.end(), block.begin(), block.end());
-  return pairs;
 }
 
 double ContactForm::value(const Places& x) const {
@@ -144,9 +143,7 @@ void ContactForm::add_curvature(std::span<double> values) const {
 
 void ContactForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x) {
   connected_.clear();
-  for (const ContactPair& pair : watched_) {
-    const double d = nearest_points(pair, x).distance;
-    if (d >= kSoon * settings_.thickness_mm || d >= kSoon * thickness(pair)) continue;
+  for (const ContactPair& pair : surface_.near(x, Places::Zero(x.rows(), 3), 0, kSoon * settings_.thickness_mm, kSoon * kOfRest)) {
     std::array<int, 4> element;
     for (int a = 0; a < 4; ++a) {
       element[a] = unknown[pair.node[a]];

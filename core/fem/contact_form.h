@@ -44,8 +44,15 @@ class ContactForm {
   // Of the way that is watched.
   Bound largest_step(const Places& x, const Places& step, double limit) const;
 
-  // Pairs of those watched that a whole step would take too near.
-  std::vector<ContactPair> blocked(const Places& x, const Places& step) const;
+  // Asks the pairs watched whose step has `changed` (#nodes) since they were last asked, or are new, whether all of it would take
+  // them too near.
+  void block(const Places& x, const Places& step, const std::vector<char>& changed);
+  // visit(nodes) of each that it would.
+  template <class Visit>
+  void for_blocked(const Visit& visit) const {
+    for (std::size_t k = 0; k < watched_.size(); ++k)
+      if (blocked_[k]) visit(watched_[k].node);
+  }
 
   double value(const Places& x) const;
   // Also chooses whom add_gradient() and add_curvature() are about: what touches at x.
@@ -81,6 +88,7 @@ class ContactForm {
   ContactSettings settings_;
   double scale_ = 0;  // c A H
   std::vector<ContactPair> watched_;
+  std::vector<char> blocked_;  // of those watched
   std::vector<Touch> touching_;
   std::unordered_set<std::uint64_t> connected_;  // pairs of nodes
 };

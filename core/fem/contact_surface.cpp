@@ -93,6 +93,10 @@ struct Box {
   void add(const Eigen::Array3d& p) { low = low.min(p), high = high.max(p); }
   void add(const Box& other) { low = low.min(other.low), high = high.max(other.high); }
 };
+
+struct Moving {
+  Eigen::Array3d place, motion;
+};
 }  // namespace
 
 NearestPoints nearest_points(const ContactPair& pair, const Places& x) {
@@ -123,7 +127,8 @@ double largest_step(const ContactPair& pair, const Places& x, const Places& step
   return length;
 }
 
-ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid) : rigid_(rigid) {
+ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid)
+    : rest_(rest), rigid_(rigid) {
   std::vector<Eigen::Vector3d> centre;
   std::vector<std::uint64_t> edges;
   for (const auto& f : F.rowwise()) {
@@ -167,7 +172,7 @@ void ContactSurface::grow(std::vector<int>& order, const std::vector<Eigen::Vect
   grow(order, centre, middle, end);
 }
 
-std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& step, double limit, double reach) const {
+std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& step, double limit, double reach, double of_rest) const {
   if (faces_.empty()) return {};
   // Of every branch, last first, so that what is below is known: its place, and its whole step.
   std::vector<Box> place(tree_.size()), motion(tree_.size());
@@ -192,7 +197,7 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
   }
   const auto apart = [&](const Box& p, const Box& m, const Box& q, const Box& n) {
     const Eigen::Array3d nearest = p.low - q.high + (m.low - n.high).min(0.0), furthest = p.high - q.low + (m.high - n.low).max(0.0);
-    return (nearest > reach).any() || (furthest < -reach).any();
+    return ((nearest > reach) || (furthest < -reach)).any();
   };
 
   // Pairs of leaves.
@@ -220,47 +225,65 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
   };
   parallel_for(std::ssize(leaves), kGrain, [&](std::int64_t begin, std::int64_t end) {
     auto& mine = found[begin / kGrain];
+    // What of two faces stays apart by its boxes alone is left out first: most of it.
     const auto consider = [&](ContactPair::Kind kind, const std::array<int, 4>& node) {
       if (one_rigid(node)) return;
       const ContactPair pair{node, kind};
       Corners s = at(pair, step);
-      const double motion = limit * relative_motion(kind, s);
-      if (distance(kind, at(pair, x)) - motion < reach) mine.push_back(pair);
+      const double nearest = distance(kind, at(pair, x)) - limit * relative_motion(kind, s);
+      if (nearest < reach && (of_rest == INFINITY || nearest < of_rest * distance(kind, at(pair, rest_)))) mine.push_back(pair);
     };
-    const auto points = [&](const Face& a, const Face& b) {
-      for (int k = 0; k < 3; ++k)
-        if (a.own_nodes >> k & 1 && a.node[k] != b.node[0] && a.node[k] != b.node[1] && a.node[k] != b.node[2])
+    const auto points = [&](const Face& a, const Moving* of_a, const Face& b, const Box& place, const Box& motion) {
+      for (int k = 0; k < 3; ++k) {
+        if (!(a.own_nodes >> k & 1) || a.node[k] == b.node[0] || a.node[k] == b.node[1] || a.node[k] == b.node[2]) continue;
+        if (!apart({of_a[k].place, of_a[k].place}, {of_a[k].motion, of_a[k].motion}, place, motion))
           consider(ContactPair::Kind::PointTriangle, {a.node[k], b.node[0], b.node[1], b.node[2]});
+      }
     };
-    const auto edges = [&](const Face& a, const Face& b) {
-      for (int k = 0; k < 3; ++k)
+    const auto edges = [&](const Face& a, const Moving* of_a, const Face& b, const Moving* of_b) {
+      const auto around = [](const Eigen::Array3d& p, const Eigen::Array3d& q) { return Box{p.min(q), p.max(q)}; };
+      for (int k = 0; k < 3; ++k) {
+        if (!(a.own_edges >> k & 1)) continue;
+        const int to_k = (k + 1) % 3;
+        const Box place = around(of_a[k].place, of_a[to_k].place), motion = around(of_a[k].motion, of_a[to_k].motion);
         for (int l = 0; l < 3; ++l) {
-          if (!(a.own_edges >> k & 1) || !(b.own_edges >> l & 1)) continue;
-          const std::array<int, 4> node{a.node[k], a.node[(k + 1) % 3], b.node[l], b.node[(l + 1) % 3]};
+          if (!(b.own_edges >> l & 1)) continue;
+          const int to_l = (l + 1) % 3;
+          const std::array<int, 4> node{a.node[k], a.node[to_k], b.node[l], b.node[to_l]};
           if (node[0] == node[2] || node[0] == node[3] || node[1] == node[2] || node[1] == node[3]) continue;
-          consider(ContactPair::Kind::EdgeEdge, node);
+          if (!apart(place, motion, around(of_b[l].place, of_b[to_l].place), around(of_b[l].motion, of_b[to_l].motion)))
+            consider(ContactPair::Kind::EdgeEdge, node);
         }
+      }
     };
-    std::array<Box, kLeaf> place_a, motion_a, place_b, motion_b;
-    const auto boxes = [&](const Branch& leaf, std::array<Box, kLeaf>& where, std::array<Box, kLeaf>& how) {
-      for (int f = leaf.begin; f < leaf.end; ++f) {
-        where[f - leaf.begin] = how[f - leaf.begin] = {};
-        for (const int node : faces_[f].node) {
-          where[f - leaf.begin].add(x.row(node).transpose().array());
-          how[f - leaf.begin].add(limit * step.row(node).transpose().array());
+    struct Leaf {
+      std::array<std::array<Moving, 3>, kLeaf> corner;
+      std::array<Box, kLeaf> place, motion;
+    };
+    Leaf leaf_a, leaf_b;
+    const auto load = [&](const Branch& branch, Leaf& leaf) {
+      for (int f = branch.begin, i = 0; f < branch.end; ++f, ++i) {
+        leaf.place[i] = leaf.motion[i] = {};
+        for (int k = 0; k < 3; ++k) {
+          const int node = faces_[f].node[k];
+          const Moving corner{x.row(node).transpose().array(), limit * step.row(node).transpose().array()};
+          leaf.corner[i][k] = corner;
+          leaf.place[i].add(corner.place);
+          leaf.motion[i].add(corner.motion);
         }
       }
     };
     for (auto l = begin; l < end; ++l) {
       const Branch &a = tree_[leaves[l].first], &b = tree_[leaves[l].second];
-      boxes(a, place_a, motion_a);
-      boxes(b, place_b, motion_b);
-      for (int i = a.begin; i < a.end; ++i)
-        for (int j = leaves[l].first == leaves[l].second ? i + 1 : b.begin; j < b.end; ++j) {
-          if (apart(place_a[i - a.begin], motion_a[i - a.begin], place_b[j - b.begin], motion_b[j - b.begin])) continue;
-          points(faces_[i], faces_[j]);
-          points(faces_[j], faces_[i]);
-          edges(faces_[i], faces_[j]);
+      load(a, leaf_a);
+      load(b, leaf_b);
+      for (int i = 0; i < a.end - a.begin; ++i)
+        for (int j = leaves[l].first == leaves[l].second ? i + 1 : 0; j < b.end - b.begin; ++j) {
+          if (apart(leaf_a.place[i], leaf_a.motion[i], leaf_b.place[j], leaf_b.motion[j])) continue;
+          const Face &one = faces_[a.begin + i], &other = faces_[b.begin + j];
+          points(one, leaf_a.corner[i].data(), other, leaf_b.place[j], leaf_b.motion[j]);
+          points(other, leaf_b.corner[j].data(), one, leaf_a.place[i], leaf_a.motion[i]);
+          edges(one, leaf_a.corner[i].data(), other, leaf_b.corner[j].data());
         }
     }
   });

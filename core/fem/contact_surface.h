@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -45,9 +46,9 @@ class ContactSurface {
   ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid);
 
   bool empty() const { return faces_.empty(); }
-  // Pairs without a common node that may come nearer than `reach` on the way from x to x + limit step. Each once, the same for
-  // any number of threads.
-  std::vector<ContactPair> near(const Places& x, const Places& step, double limit, double reach) const;
+  // Pairs without a common node that may come nearer than `reach`, and than the share `of_rest` of what they are apart at rest,
+  // on the way from x to x + limit step. Each once, the same for any number of threads.
+  std::vector<ContactPair> near(const Places& x, const Places& step, double limit, double reach, double of_rest = INFINITY) const;
 
  private:
   struct Face {
@@ -62,6 +63,7 @@ class ContactSurface {
 
   std::vector<Face> faces_;    // in the order of the tree
   std::vector<Branch> tree_;
+  Places rest_;
   std::vector<int> rigid_;
 };
 

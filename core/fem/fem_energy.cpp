@@ -184,16 +184,15 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
   constexpr int kRounds = 40;
   const CpuTimer timer(seconds_.search);
   const auto& T = bounded_;
-  Places sum(x.rows(), 3);
+  Places sum(x.rows(), 3), there = x + step;
   std::vector<int> count(x.rows(), 0), nodes;
-  std::vector<char> flattened(T.rows());
+  std::vector<char> flattened(T.rows()), changed(x.rows(), 1);
   for (int round = 0; round < kRounds; ++round) {
-    const Places there = x + step;
     parallel_for(T.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
       for (auto t = begin; t < end; ++t)
-        flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) < kBorne * determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3));
+        if (changed[T(t, 0)] || changed[T(t, 1)] || changed[T(t, 2)] || changed[T(t, 3)])
+          flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) < kBorne * determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3));
     });
-    nodes.clear();
     const auto smooth = [&](const auto& element) {
       Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
       for (const int v : element) mean += 0.25 * step.row(v);
@@ -206,14 +205,22 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
     for (Eigen::Index t = 0; t < T.rows(); ++t)
       if (flattened[t]) smooth(std::array{T(t, 0), T(t, 1), T(t, 2), T(t, 3)});
     if (!contact_.empty()) {
-      if (round % 10 == 0) contact_.watch(x, step, 1);
-      for (const ContactPair& pair : contact_.blocked(x, step)) smooth(pair.node);
+      if (round % 10 == 0) {
+        contact_.watch(x, step, 1);
+        std::fill(changed.begin(), changed.end(), 1);
+      }
+      contact_.block(x, step, changed);
+      contact_.for_blocked(smooth);
     }
     if (nodes.empty()) break;
+    std::fill(changed.begin(), changed.end(), 0);
     for (const int v : nodes) {
       step.row(v) = 0.5 * step.row(v) + 0.5 / count[v] * sum.row(v);
+      there.row(v) = x.row(v) + step.row(v);
       count[v] = 0;
+      changed[v] = 1;
     }
+    nodes.clear();
   }
   return step;
 }

@@ -37,9 +37,10 @@ class ExactTurns {
 };
 
 // x + length step of lower energy, in place; the length, 0 if none was found.
+//   bound  of the length, at most 1; a full step is followed further where the energy falls more than a parabola does
 double search(FemEnergy& energy, Places& x, double& value, const Places& step, double slope, double bound) {
   const double rounding = 1e-13 * std::abs(value);
-  double length = std::min(1.0, bound);
+  double length = bound;
   Places there;
   double best = value;
   for (int k = 0;; ++k, length *= 0.5) {
@@ -48,10 +49,11 @@ double search(FemEnergy& energy, Places& x, double& value, const Places& step, d
     best = energy.value(there);
     if (best <= value - kSufficient * length * slope + rounding) break;
   }
-  // Forward tracking.
-  if (length == 1) {
+  // Forward tracking, where the parabola through what is known is lower at 2 than at 1.
+  if (length == 1 && slope > 0 && 3 * (best - value + slope) < slope) {
+    const double furthest = energy.largest_step(x, step, kFurthest).length;
     Places further;
-    for (double next = 2; next <= std::min(kFurthest, bound); next *= 2) {
+    for (double next = 2; next <= furthest; next *= 2) {
       further = x + next * step;
       const double lower = energy.value(further);
       if (!(lower < best - rounding)) break;
@@ -86,7 +88,7 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
     ++result.iterations;
     result.residual = longest(step);
 
-    result.bound = energy.largest_step(x, step, kFurthest);
+    result.bound = energy.largest_step(x, step, 1);
     double length = 0;
     if (result.bound.length < kShort) {
       const Places around = energy.yielding(x, step, settings.fixed);
@@ -94,7 +96,7 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
       if (further.length > result.bound.length && (length = search(energy, x, value, around, 0, further.length)) > 0)
         result.bound = further;
       else
-        energy.largest_step(x, step, kFurthest);
+        energy.largest_step(x, step, 1);
     }
     if (length == 0) length = search(energy, x, value, step, slope, result.bound.length);
     result.shortest_search = std::min(result.shortest_search, length);

@@ -213,7 +213,8 @@ std::vector<int> PoseSolve::rigid_nodes() const {
   return rigid;
 }
 
-// The best of four guesses: what the blend of the bones does, that with what it missed the last time, and both yielding.
+// The best of three guesses: what the blend of the bones does, that with what it missed the last time, and the better of them
+// yielding, where something bounds it.
 // missed_share: of what it missed. Returns how much of the guess the tets bear.
 double PoseSolve::predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x, double missed_share) {
   Places blend = blend_increment(from, to, x, true);
@@ -228,15 +229,21 @@ double PoseSolve::predict(const std::vector<RigidTransform>& from, const std::ve
   Places best = x;
   energy_.watch(x);
   double least = energy_.value(x), best_way = 0;
-  for (std::size_t k = 0, n = guesses.size(); k < n; ++k) guesses.push_back(energy_.yielding(x, guesses[k], held_));
-  for (const Places& guess : guesses) {
-    const double way = energy_.largest_step(x, guess, 1).length;
-    Places there = x + way * guess;
+  std::size_t chosen = 0;
+  const auto consider = [&](std::size_t k) {
+    const double way = energy_.largest_step(x, guesses[k], 1).length;
+    Places there = x + way * guesses[k];
     if (const double value = energy_.value(there); value < least) {
       least = value;
       best.swap(there);
       best_way = way;
+      chosen = k;
     }
+  };
+  for (std::size_t k = 0; k < guesses.size(); ++k) consider(k);
+  if (best_way < 1) {
+    guesses.push_back(energy_.yielding(x, guesses[chosen], held_));
+    consider(guesses.size() - 1);
   }
   x = std::move(best);
   return best_way;

@@ -132,6 +132,26 @@ TEST_CASE("contact: the pairs that may come near are those that asking every pai
   }
 }
 
+TEST_CASE("contact: pairs that keep a share of what they are apart at rest may be left out, and no others") {
+  const TwoBoxes boxes(3);
+  const Places step = boxes.upper_by({0, 0, -2.8}) + random_places(int(boxes.rest.rows()), 0.5, 5);
+  const ContactSurface surface(boxes.F, boxes.rest, boxes.free());
+  std::vector<Key> some;
+  for (const ContactPair& pair : surface.near(boxes.rest, step, 1, 2, 0.5)) some.push_back(key(pair));
+  std::sort(some.begin(), some.end());
+  const std::vector<ContactPair> all = surface.near(boxes.rest, step, 1, 2);
+  CHECK(some.size() < all.size());
+  int nearer = 0;
+  for (const ContactPair& pair : all) {
+    double least = 1e9;
+    for (int k = 0; k <= 20; ++k) least = std::min(least, nearest_points(pair, boxes.rest + k / 20.0 * step).distance);
+    if (least >= std::min(2.0, 0.5 * nearest_points(pair, boxes.rest).distance)) continue;
+    ++nearer;
+    CHECK(std::binary_search(some.begin(), some.end(), key(pair)));
+  }
+  CHECK(nearer > 50);
+}
+
 TEST_CASE("contact: what one bone carries is not watched against itself") {
   const TwoBoxes boxes(0.5);
   std::vector<int> rigid(boxes.rest.rows(), 0);
