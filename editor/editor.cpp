@@ -163,6 +163,7 @@ void Editor::draw_views() {
   live->follow(*this);
   show_posed(*this);
   show_weights(*this);
+  show_fem(*this);
   move_camera(views->body, now, preferences.reduce_motion);
   ended(*this, "pose");
   const Document shown = shown_document(*this);

@@ -13,10 +13,11 @@ void SolveFeed::tell(const WorkerProgress& progress) {
   seen_.progress = progress;
 }
 
-void SolveFeed::show(const std::shared_ptr<const TetMesh>& rest, FemStep step) {
+void SolveFeed::show(const std::shared_ptr<const FemMesh>& rest, FemStep step) {
   auto posed = std::make_shared<const Eigen::MatrixX3d>(std::move(step.V));
   const std::lock_guard lock(mutex_);
-  seen_.mesh = {rest, std::move(posed)};
+  seen_.rest = rest;
+  seen_.mesh = {std::shared_ptr<const TetMesh>(rest, &rest->tets), std::move(posed)};
   seen_.motions = std::move(step.motions);
   seen_.reached = step.reached;
 }

@@ -15,6 +15,7 @@
 #include "core/project/document.h"
 #include "core/project/worker.h"
 #include "core/resample/fem_steps.h"
+#include "editor/fem_overlay.h"
 
 namespace limber::editor {
 
@@ -25,13 +26,14 @@ class SolveFeed {
  public:
   struct Seen {
     WorkerProgress progress;
-    MeshPose mesh;                        // empty: no step yet
+    std::shared_ptr<const FemMesh> rest;
+    MeshPose mesh;                        // its tets and where they are; empty: no step yet
     std::vector<RigidTransform> motions;  // of the weights' bones, in that step
     double reached = 0;                   // of the way to the pose, in that step
   };
 
   void tell(const WorkerProgress& progress);
-  void show(const std::shared_ptr<const TetMesh>& rest, FemStep step);
+  void show(const std::shared_ptr<const FemMesh>& rest, FemStep step);
   Seen seen() const;
 
  private:
@@ -49,6 +51,7 @@ struct Solve {
 struct FemView {
   std::map<int, Solve> solves;  // by job
   int watched = 0;              // the job whose tissue is seen; 0: none
+  FemOverlay overlay;
 };
 
 // The solve that the views show; null: none, as where its volume is no longer the document's.

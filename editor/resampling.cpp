@@ -103,16 +103,16 @@ class StepReader {
     if (!progress.iteration) return;
     if (!rest_) read_rest();
     auto step = read_fem_step(name_);
-    if (rest_ && step && step->V.rows() == rest_->V.rows()) feed_->show(rest_, std::move(*step));
+    if (rest_ && step && step->V.rows() == rest_->tets.V.rows()) feed_->show(rest_, std::move(*step));
   }
 
  private:
   void read_rest() {
-    if (auto mesh = read_fem_mesh(name_)) rest_ = std::make_shared<const TetMesh>(std::move(mesh->tets));
+    if (auto mesh = read_fem_mesh(name_)) rest_ = std::make_shared<const FemMesh>(std::move(*mesh));
   }
   Path name_;
   std::shared_ptr<SolveFeed> feed_;
-  std::shared_ptr<const TetMesh> rest_;
+  std::shared_ptr<const FemMesh> rest_;
 };
 
 // Null where nothing bends.

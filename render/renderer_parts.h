@@ -12,6 +12,7 @@
 
 #include "render/armature_pass.h"
 #include "render/compose_pass.h"
+#include "render/line_pass.h"
 #include "render/looks_texture.h"
 #include "render/posed_texture.h"
 #include "render/scene.h"
@@ -59,6 +60,7 @@ struct Renderer::Parts {
   SlicePass slice;
   WeightPass weigh;
   SurfacePass surface;
+  LinePass lines;
   std::string note;
   std::optional<UploadTime> upload_time;  // of this frame; nothing: there are no frames
 

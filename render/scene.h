@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
 #include <glm/glm.hpp>
 
 #include "core/base/rigid_transform.h"
@@ -86,6 +87,14 @@ struct ShownWeights {
   bool operator==(const ShownWeights&) const = default;
 };
 
+// A tet mesh that is shown by lines where the clip or a slice cuts it.
+struct CutMesh {
+  std::shared_ptr<const Eigen::MatrixX3i> faces;  // each once
+  std::shared_ptr<const Eigen::MatrixX3d> V;      // where its nodes are, world, mm
+
+  bool operator==(const CutMesh&) const = default;
+};
+
 struct Scene {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const PreviewMap> pose;  // of this volume: its body is drawn as the map leads; null: as the volume is
@@ -96,6 +105,7 @@ struct Scene {
   Clip clip;
   std::optional<ShownWeights> weights;  // nothing: tissues
   std::optional<Label> outlined;  // tissue with a selection outline
+  std::optional<CutMesh> mesh;
 
   std::shared_ptr<const Armature> armature;
   std::vector<RigidTransform> posed_from_rest;  // #bones; empty: at rest

@@ -132,7 +132,18 @@ bool same_looks(const std::vector<BoneLook>& a, const std::vector<BoneLook>& b) 
 bool same_overlay(const Scene& a, const Scene& b) {
   return a.armature == b.armature && same_pose(a.posed_from_rest, b.posed_from_rest) && same_looks(a.bones, b.bones) && a.bone_shape == b.bone_shape &&
          a.bones_in_front == b.bones_in_front && a.line_scale == b.line_scale && a.grid == b.grid && a.dark_background == b.dark_background &&
-         a.transparent_background == b.transparent_background && a.outlined == b.outlined;
+         a.transparent_background == b.transparent_background && a.outlined == b.outlined && a.mesh == b.mesh;
+}
+
+// The tets of a mesh, upon tissue or upon a slice that shows no more than outlines: the fainter the smaller they are seen, or
+// they would hide what they lie on.
+LinePass::Ink ink_of_mesh(const Scene& scene, const std::vector<Segment>& lines, bool on_tissue, double millimetres_per_pixel) {
+  constexpr double kFaint = 1.5, kClear = 12;  // pixels at scale 1, of a line's mean length
+  double length = 0;
+  for (const Segment& line : lines) length += glm::distance(line[0], line[1]);
+  const double pixels = length / std::max<double>(1, double(lines.size())) / (millimetres_per_pixel * scene.line_scale);
+  const float share = static_cast<float>(std::clamp((pixels - kFaint) / (kClear - kFaint), 0.08, 1.0));
+  return {on_tissue ? glm::vec3(0.05f, 0.055f, 0.07f) : glm::vec3(0.9f), share * (on_tissue ? 0.7f : 0.4f), scene.line_scale};
 }
 
 // The box of the volume in the world, or of the armature where there is no volume.
@@ -346,6 +357,22 @@ struct View3D::Impl {
     return intersection({{0, 0}, key.size}, {rect.low * shown_scale - margin, rect.high * shown_scale + margin});
   }
 
+  // The mesh's lines, and what they were made for.
+  struct {
+    CutMesh mesh;
+    Clip clip;
+    std::shared_ptr<const LabelVolume> volume;
+    std::vector<Segment> lines;
+  } cut;
+  void draw_mesh() {
+    if (!(cut.mesh == *scene.mesh) || cut.clip.box != scene.clip.box || cut.clip.plane != scene.clip.plane || cut.volume != scene.volume)
+      cut = {*scene.mesh, scene.clip, scene.volume, lines_on_cuts(*scene.mesh, scene.clip, scene.volume->grid)};
+    // A cut that is seen at a slant lies at several depths within a pixel of the body's picture.
+    const double pixel = 2 * key.camera.distance * std::tan(key.camera.field_of_view / 2) / key.size.y;
+    const float off = static_cast<float>(1 + 2 * pixel * shown_scale);  // mm
+    parts.lines.draw(cut.lines, key.camera, key.size, shown[0].depth, off, ink_of_mesh(scene, cut.lines, true, pixel));
+  }
+
   void compose() {
     output.bind();
     const auto background = scene.transparent_background ? Background::Transparent : scene.dark_background ? Background::Dark : Background::Light;
@@ -356,6 +383,7 @@ struct View3D::Impl {
     const bool has_body = shown_scale > 0;
     if (has_body) parts.compose.body(sample > 0 ? average.texture() : body.texture(), key.size, shown_rect());
     if (has_body && scene.outlined) parts.compose.outline(shown[0], *scene.outlined, key.size, shown_rect(), scene.line_scale);
+    if (has_body && scene.mesh) draw_mesh();
     parts.armature.draw(scene, key.camera, key.size, has_body && scene.display != Display::XRay ? &shown[0].depth : nullptr);
     gl::check_gl("drawing a picture");
   }
@@ -505,6 +533,21 @@ struct SliceView::Impl {
   Renderer::Parts& parts;
   Target output;
   bool has_all_weights = true;
+  // The mesh's lines, and what they were made for.
+  struct {
+    CutMesh mesh;
+    SliceCamera camera;
+    std::vector<Segment> lines;
+  } cut;
+
+  void draw_mesh(const Scene& scene, const SliceCamera& camera, SliceDisplay display, const glm::ivec2& size) {
+    const CutMesh& mesh = *scene.mesh;
+    if (!(cut.mesh == mesh) || cut.camera.axis != camera.axis || cut.camera.centre != camera.centre) {
+      const SliceFrame frame = frame_of(camera.axis);
+      cut = {mesh, camera, plane_cut(*mesh.V, *mesh.faces, camera.centre, frame.normal)};
+    }
+    parts.lines.draw(cut.lines, camera, size, ink_of_mesh(scene, cut.lines, display == SliceDisplay::Labels, camera.millimetres_per_pixel));
+  }
 
   const WeightTexture* weights(Renderer::Parts::Body& body, const Scene& scene, const SliceCamera& camera) {
     WeightTexture* weights = parts.weights(body, scene.weights, Renderer::Parts::Extent::InTime);
@@ -532,6 +575,7 @@ void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay
     auto& body = my.parts.body(scene.volume);
     my.parts.slice.draw(*body.volume, my.parts.pose(body, scene.pose), my.parts.looks(body, scene.looks, Display::Solid), my.weights(body, scene, camera),
                         scene.weights && scene.weights->contours, camera, display, scene.outlined, size);
+    if (scene.mesh) my.draw_mesh(scene, camera, display, size);
   }
   gl::check_gl("drawing a slice");
 }

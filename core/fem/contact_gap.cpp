@@ -30,7 +30,7 @@ std::vector<VoxelRange> boxes_of(const Eigen::MatrixX3d& V, const Eigen::MatrixX
 
 }  // namespace
 
-std::optional<ContactGap> contact_gap(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, double apart_mm, double reach_mm) {
+std::vector<double> contact_gaps(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, double apart_mm, double reach_mm) {
   const auto normal_of = [&](int f) { return glm::cross(at(V, F(f, 1)) - at(V, F(f, 0)), at(V, F(f, 2)) - at(V, F(f, 0))); };
   std::vector<glm::dvec3> normal(V.rows(), glm::dvec3(0));
   for (int f = 0; f < F.rows(); ++f)
@@ -54,7 +54,14 @@ std::optional<ContactGap> contact_gap(const Eigen::MatrixX3d& rest, const Eigen:
       }
     }
   });
-  std::erase_if(gap, [&](double mm) { return mm >= reach_mm; });
+  for (double& mm : gap)
+    if (mm >= reach_mm) mm = INFINITY;
+  return gap;
+}
+
+std::optional<ContactGap> contact_gap(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, double apart_mm, double reach_mm) {
+  std::vector<double> gap = contact_gaps(rest, V, F, apart_mm, reach_mm);
+  std::erase_if(gap, [](double mm) { return std::isinf(mm); });
   if (gap.empty()) return std::nullopt;
   std::sort(gap.begin(), gap.end());
   return ContactGap{gap.front(), gap[gap.size() / 2], std::ssize(gap)};

@@ -28,6 +28,11 @@ void toggle_watching(Editor& editor) {
   watch(editor);
 }
 
+Operator colours_operator(const char* id, const char* label, const char* sentence, std::optional<FemMeasure> measure) {
+  return {id, label, "", "Finite elements", sentence, [measure](Editor& e) { e.fem->overlay.measure = measure; }, measure ? why_no_fem_overlay : nullptr,
+          [measure](const Editor& e) { return e.fem->overlay.measure == measure; }};
+}
+
 void toggle_posed(Editor& editor) { show_result(editor, shown_result(editor) ? "" : chosen_result(editor)->name); }
 
 // Where nothing was chosen to compare: the volume at rest with the last result.
@@ -135,6 +140,14 @@ std::vector<Operator> resample_operators() {
       {"compare.wipe", "Wipe", icon::kSplitViews, "Result", "Shows A left and B right of a line that can be dragged, in every view.", toggle_wipe, needs_result, wiping},
       {"compare.flicker", "Flicker", "", "Result", "Shows the other side while the key is held.", [](Editor& e) { e.modal = std::make_unique<Flicker>(e); }, needs_result},
       {"compare.swap", "Swap A and B", icon::kMirror, "Result", "Makes A B, and B A.", [](Editor& e) { std::swap(e.comparison.a, e.comparison.b); }, needs_result},
+      colours_operator("fem.show_tissues", "Tissue colours", "Shows the tissues of a result by finite elements as elsewhere.", std::nullopt),
+      colours_operator("fem.show_volume_ratio", "Volume ratio", "Colours by det F: how far each tetrahedron is pressed, blue, or swollen, red.", FemMeasure::VolumeRatio),
+      colours_operator("fem.show_energy", "Strain energy", "Colours by the energy that deformation has stored, in kPa: where tissue resists.", FemMeasure::EnergyDensity),
+      colours_operator("fem.show_gap", "Contact gap", "Colours by the air between skin and the skin that a fold has brought near, in mm.", FemMeasure::Gap),
+      {"fem.tets", "Tetrahedra", icon::kTissues, "Finite elements", "Draws the mesh that was solved as lines, where slices, the clip box and the clip plane cut it.",
+       [](Editor& e) { e.fem->overlay.tets = !e.fem->overlay.tets; }, why_no_fem_overlay, [](const Editor& e) { return e.fem->overlay.tets; }},
+      {"fem.display_pie", "Colours by", icon::kVisible, "Finite elements", "Lists what a result by finite elements can be coloured by, at the pointer.",
+       [](Editor& e) { e.open_popup = "Finite elements"; }, why_no_fem_overlay},
       {"view.results", "Results", icon::kTable, "View", "Opens or closes the table of results below the views.",
        toggle_results, nullptr, results_seen},
   };

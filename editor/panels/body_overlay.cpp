@@ -76,7 +76,7 @@ void draw_axis_ball(Editor& editor, const Rect& rect) {
 std::string state_of(const Editor& editor) {
   if (editor.modal && !editor.modal->title().empty()) return editor.modal->title();
   if (!editor.document().volume) return "";
-  if (editor.views->scene.weights) return std::string(name_of(editor.skin->display)) + " \u00b7 " + grouped(editor.views->scene.weights->weights->size()) + " tissue voxels" + (painted_region(editor) ? " \u00b7 region of " + grouped(painted_region_voxels(editor)) : "");
+  if (editor.views->scene.weights && editor.views->scene.weights->weights) return std::string(name_of(editor.skin->display)) + " \u00b7 " + grouped(editor.views->scene.weights->weights->size()) + " tissue voxels" + (painted_region(editor) ? " \u00b7 region of " + grouped(painted_region_voxels(editor)) : "");
   std::string state = editor.views->display == render::Display::Solid ? "Solid" : editor.views->display == render::Display::XRay ? "X-ray" : "Tissue";
   if (const auto posed = shown_result(editor); posed && !wiping(editor)) state += " \u00b7 " + posed->name;
   if (const Solve* solve = watched_solve(editor)) state += " \u00b7 settling, " + progress_text(*solve);
@@ -100,7 +100,7 @@ void draw_body_overlay(Editor& editor, const Rect& rect) {
   if (!editor.document().volume) return draw_empty_view(editor, rect);
   draw_clip_handles(editor, rect);
   Rect above = rect;  // what is in the corner already
-  if (draw_weight_legend(editor, rect)) above.high.y -= editor.look.px(60);
+  if (draw_weight_legend(editor, rect) || draw_fem_legend(editor, rect)) above.high.y -= editor.look.px(60);
   draw_last_operation(editor, above);
   const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
   draw_scale_bar(editor, rect, visible_height / rect.height());

@@ -24,6 +24,7 @@ void draw_tour(Editor& editor);
 void draw_body_overlay(Editor& editor, const Rect& rect);
 void draw_slice_overlay(Editor& editor, ViewId id, const Rect& rect);
 bool draw_weight_legend(Editor& editor, const Rect& view);  // true where there is one
+bool draw_fem_legend(Editor& editor, const Rect& view);  // the same of finite elements
 void draw_weights_at_pointer(Editor& editor);
 void draw_empty_view(Editor& editor, const Rect& rect);
 void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel);

@@ -93,6 +93,7 @@ void draw_slice_overlay(Editor& editor, ViewId id, const Rect& rect) {
   draw_letters(editor, frame, rect);
   draw_slice_bar(editor, axis, rect);
   draw_scale_bar(editor, rect, camera.millimetres_per_pixel);
+  if (!editor.layout.place_of(ViewId::Body)) draw_fem_legend(editor, rect);
 }
 
 }  // namespace limber::editor

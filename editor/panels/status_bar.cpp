@@ -6,6 +6,7 @@
 #include <ctime>
 
 #include "editor/dispatch.h"
+#include "editor/fem_overlay.h"
 #include "editor/icons.h"
 #include "editor/live_pose.h"
 #include "editor/panels/change.h"
@@ -136,7 +137,9 @@ float draw_hover(Editor& editor, const Rect& bar, float right) {
       words += " \u00b7 " + hover.weights[0].bone + weight;
     }
   }
-  const float mono = *place ? look.px(170) : 0, width = std::min(text_size(look.fonts.small, words).x + 1, look.px(hover.weights.empty() ? 220 : 320));
+  const std::string measured = hover.inside ? measure_text_at(editor, hover.voxel) : "";
+  if (!measured.empty()) words += " \u00b7 " + measured;
+  const float mono = *place ? look.px(170) : 0, width = std::min(text_size(look.fonts.small, words).x + 1, look.px(hover.weights.empty() && measured.empty() ? 220 : 320));
   const float left = right - mono - width;
   if (*place) put_text(editor, look.fonts.small_mono, look.theme.text2, Rect{{right - mono, bar.low.y}, {right, bar.high.y}}, place, Align::Right);
   put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, bar.low.y}, {left + width, bar.high.y}}, words);

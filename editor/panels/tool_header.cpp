@@ -204,6 +204,12 @@ void put_options(Editor& editor, Header& header) {
     if (header.fits(200, kBodies)) header.segments(kBodies);
     header.line();
   }
+  if (editor.workspace == Workspace::Resample) {
+    const auto kColours = {"fem.show_tissues", "fem.show_volume_ratio", "fem.show_energy", "fem.show_gap"};
+    if (header.fits(150, kColours)) header.choice("Colours", kColours);
+    if (header.fits(header.toggle_width(120), {"fem.tets"})) header.toggle("fem.tets");
+    header.line();
+  }
   if (editor.workspace == Workspace::Pose) {
     if (header.fits(170, {"resample.lbs", "resample.dqs"})) {
       header.label("Preview");

@@ -89,7 +89,7 @@ std::string tissue_and_depth(const Editor& editor) {
 }  // namespace
 
 bool draw_weight_legend(Editor& editor, const Rect& view) {
-  if (!editor.views->scene.weights || view.width() < editor.look.px(kNeeded) || view.height() < editor.look.px(200)) return false;
+  if (!editor.views->scene.weights || !editor.views->scene.weights->weights || view.width() < editor.look.px(kNeeded) || view.height() < editor.look.px(200)) return false;
   const Look& look = editor.look;
   const auto weights = editor.views->scene.weights->weights;
   const glm::vec2 low{view.low.x + look.px(kMargin), view.high.y - look.px(kMargin + kHeight)};

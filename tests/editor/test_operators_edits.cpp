@@ -6,6 +6,7 @@
 #include "editor/fem_view.h"
 #include "editor/results.h"
 #include "tests/editor/operator_proofs.h"
+#include "tests/support/kuhn_mesh.h"
 
 namespace limber::test {
 
@@ -31,6 +32,37 @@ Effect makes(LabelVolume (*expected)(const LabelVolume&)) {
 }
 bool weighted(Stage& s, const Seen& b) { return s.document().weights && s.document().weights != b.document.weights; }
 std::size_t results(Stage& s) { return s.document().results.size(); }
+
+// A result whose mesh is swollen on the left side of the body.
+void solved_limb(Stage& stage) {
+  stage.open_limb();
+  Document next = stage.document();
+  const Grid& grid = next.volume->grid;
+  auto solved = std::make_shared<SolvedMesh>();
+  solved->mesh.tets = kuhn_mesh(grid, glm::dvec3(-1), glm::dvec3(grid.size), {6, 6, 8});
+  solved->mesh.material.resize(solved->mesh.tets.T.rows());
+  solved->mesh.joint.resize(solved->mesh.tets.T.rows());
+  solved->V = solved->mesh.tets.V;
+  for (Eigen::Index v = 0; v < solved->V.rows(); ++v) solved->V(v, 0) *= solved->V(v, 0) > 0 ? 1.5 : 1;
+  auto result = std::make_shared<Result>();
+  result->name = "Swollen";
+  result->method = "fem";
+  result->volume = next.volume;
+  result->from_volume = next.volume;
+  result->solved = solved;
+  next.results = {result};
+  stage.editor().history.commit("Result", next);
+  stage.play("key Ctrl+4\n wait-idle");
+  show_result(stage.editor(), "Swollen");
+  stage.play("wait-idle");
+}
+
+auto measures(const std::optional<FemMeasure>& measure) {
+  return [measure](Stage& s, const Seen&) {
+    const MeasuredMesh* shown = shown_measure(s.editor());
+    return s.editor().fem->overlay.measure == measure && (measure ? shown && shown->measure == measure && s.is("text:" + scale_of(*measure).name) : !shown);
+  };
+}
 
 }  // namespace
 
@@ -111,6 +143,13 @@ std::vector<Proof> proofs_of_work() {
       {"pose.clear", "click \"Edit/Pose/Clear pose\"", [](Stage& s, const Seen& b) { return b.document.pose && !s.document().pose; }, Shows::InBody, undone},
       {"result.delete_stale", "click \"Edit/Resample/Delete stale results\"", [](Stage& s, const Seen& b) { return b.document.results.size() == 1 && results(s) == 0; }, Shows::Nothing,
        "click Edit/Weights/Rigid\n wait-job"},
+
+      {"fem.show_volume_ratio", "click \"View/Finite elements/Volume ratio\"\n wait-idle", measures(FemMeasure::VolumeRatio), Shows::InBody, "", solved_limb},
+      {"fem.show_energy", "click \"View/Finite elements/Strain energy\"\n wait-idle", measures(FemMeasure::EnergyDensity), Shows::InBody},
+      {"fem.show_gap", "click \"View/Finite elements/Contact gap\"\n wait-idle", measures(FemMeasure::Gap), Shows::InSlice},
+      {"fem.show_tissues", "click header/Colours\n click \"header/Colours/Tissue colours\"\n wait-idle", measures(std::nullopt), Shows::InBody},
+      {"fem.tets", "click \"View/Finite elements/Tetrahedra\"\n wait-idle", [](Stage& s, const Seen&) { return s.editor().views->scene.mesh.has_value(); }, Shows::InSlice},
+      {"fem.display_pie", "click \"View/Finite elements/Volume ratio\"\n wait-idle\n click \"3D view/legend\"", [](Stage& s, const Seen&) { return s.editor().shown_popup == "Finite elements"; }},
   };
 }
 

@@ -8,6 +8,8 @@
 
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/project/project_io.h"
 #include "editor/fem_view.h"
 #include "editor/live_pose.h"
@@ -296,6 +298,66 @@ TEST_CASE("settling: several solves queue, others wait for none of them, and eac
   REQUIRE(results.size() == 4);
   CHECK(results[3]->name == "Fore 30\u00b0, FEM (3)");
   for (int i : {2, 3}) CHECK(results[i]->volume->voxels == results[1]->volume->voxels);
+}
+
+TEST_CASE("settling: measures of the mesh and its tets are shown while it settles, of the result, and on its side of a comparison") {
+  SolveEditor test;
+  test.set_worker_at({glm::angleAxis(0.6, glm::normalize(glm::dvec3(1, 2, 3))), glm::dvec3(8, -6, 12)});
+  const render::Scene& scene = test.editor->views->scene;
+  run(*test.editor, "fem.show_volume_ratio");  // says why it cannot
+  CHECK_FALSE(test.editor->fem->overlay.measure);
+  test.play("key Ctrl+Return");
+  REQUIRE(test.step_until([&] { return test.settles(); }));
+  run(*test.editor, "fem.show_volume_ratio");
+  run(*test.editor, "fem.tets");
+  REQUIRE(test.step_until([&] { return scene.weights && scene.weights->field && scene.mesh; }));
+  const MeasuredMesh* shown = shown_measure(*test.editor);
+  REQUIRE(shown);
+  CHECK(shown->least == doctest::Approx(1).epsilon(1e-3));  // the worker's mesh is turned as it is
+  CHECK(shown->most == doctest::Approx(1).epsilon(1e-3));
+  CHECK(scene.mesh->V == watched_solve(*test.editor)->feed->seen().mesh.posed);
+  CHECK(measure_text_at(*test.editor, {12, 10, 14}) == "det F 1.00");
+  CHECK(test.fact("text:Volume ratio, det F") == "shown");
+  test.editor->jobs.cancel(test.editor->fem->watched);
+  REQUIRE(test.step_until([&] { return !test.editor->jobs.busy(); }));
+  test.player.settle();
+  CHECK_FALSE(scene.weights);
+  CHECK_FALSE(scene.mesh);
+
+  test.editor->worker_program = LIMBER_PROGRAM;
+  test.play("key Ctrl+Return\nwait-job\nwait-idle");
+  REQUIRE(test.has_result());
+  const auto result = test.editor->document().results[0];
+  REQUIRE(scene.weights);
+  CHECK(scene.volume == result->volume);
+  CHECK(scene.mesh->V.get() == &result->solved->V);
+  shown = shown_measure(*test.editor);
+  REQUIRE(shown);
+  CHECK(shown->least < 0.98);
+  CHECK(shown->most > 1.01);
+  // As the report has it.
+  const auto json = nlohmann::json::parse(result->report);
+  CHECK(shown->least == doctest::Approx(json["mesh"]["min_det_f"].get<double>()).epsilon(1e-3));
+  run(*test.editor, "fem.show_energy");
+  test.play("wait-idle");
+  CHECK(shown_measure(*test.editor)->measure == FemMeasure::EnergyDensity);
+  CHECK(shown_measure(*test.editor)->most > 0);
+
+  // On the left of a wipe, with the volume at rest on the right; then the other way round.
+  test.editor->comparison.a = result->name;
+  test.editor->comparison.b = "";
+  test.editor->comparison.wipe = true;
+  test.play("wait-idle");
+  REQUIRE(test.editor->views->other_scene);
+  CHECK(test.editor->views->other_scene->weights);
+  CHECK(test.editor->views->other_scene->mesh);
+  CHECK_FALSE(scene.weights);
+  run(*test.editor, "compare.swap");
+  test.play("wait-idle");
+  CHECK(scene.weights);
+  CHECK_FALSE(test.editor->views->other_scene->weights);
+  test.play("key Ctrl+1\nwait-idle");
+  CHECK_FALSE(scene.weights);
 }
 
 TEST_CASE("settling: a result keeps its mesh in the project file, and gives it back bit for bit") {
