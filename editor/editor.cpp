@@ -10,6 +10,7 @@
 #include "editor/assets.h"
 #include "editor/dispatch.h"
 #include "editor/fem_view.h"
+#include "editor/joint_fit.h"
 #include "editor/frame_log.h"
 #include "editor/handling.h"
 #include "editor/live_pose.h"
@@ -164,6 +165,7 @@ void Editor::draw_views() {
   show_posed(*this);
   show_weights(*this);
   show_fem(*this);
+  show_proposed_joint(*this);
   move_camera(views->body, now, preferences.reduce_motion);
   ended(*this, "pose");
   const Document shown = shown_document(*this);

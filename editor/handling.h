@@ -3,6 +3,7 @@
 // Not a part of the document: changing it is no edit.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include <glm/glm.hpp>
@@ -18,6 +19,8 @@ const char* name_of(Space space);  // "Global"
 
 enum class Snap { Steps, Voxel, Joint, BoneMiddle };
 
+struct ProposedJoint;
+
 struct Handling {
   enum class Part { Whole, Head, Tail };
 
@@ -32,6 +35,7 @@ struct Handling {
     glm::dvec3 place{0};
   } shown_pole;
 
+  std::shared_ptr<ProposedJoint> proposed_joint;  // of joint_fit.h; null: nothing is proposed
   KnownRigCheck rig_check;
   bool rig_check_marks = true;  // over the views
 

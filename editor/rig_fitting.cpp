@@ -7,12 +7,9 @@
 #include <numeric>
 
 #include "core/base/error.h"
-#include "core/rig/edit_armature.h"
-#include "core/rig/fit_joint.h"
 #include "core/rig/templates.h"
 #include "core/rig/tissue_placing.h"
 #include "editor/form.h"
-#include "editor/handling.h"
 #include "editor/icons.h"
 #include "editor/panels/question.h"
 #include "editor/project.h"
@@ -88,38 +85,6 @@ void offer_fit(Editor& editor, const std::string& file, double inside) {
                          "Fitting finds its joints in the volume, as far as its bones' names tell what they are."},
                .icon = icon::kWarning,
                .answers = {{"Leave it", {}}, {"Only place and scale", place}, {"Fit it", [](Editor& e) { start_auto_fit(e, "rig"); }, true}}});
-}
-
-void start_joint_fit(Editor& editor) {
-  const Document from = editor.document();
-  const int bone = *editor.selection.bone;
-  const JointLimits& limits = from.armature->bones[bone].limits;
-  const FitJoint settings{.minimum_degrees = glm::degrees(limits.minimum), .maximum_degrees = glm::degrees(limits.maximum)};
-  const bool both_sides = editor.handling->x_mirror;
-  auto fitted = std::make_shared<FittedJoint>();
-  const std::string name = from.armature->bones[bone].name;
-  const int id = editor.jobs.start("Fit joint axis of " + name, [=](Progress& progress) -> Edit {
-    const TissueVoxels tissue(*from.volume);
-    const BoneParts parts = split_bones(*from.volume, tissue, *from.tissues, *from.armature, progress);
-    *fitted = fit_joint(*from.volume, tissue, parts, *from.armature, bone, settings, progress);
-    auto rig = std::make_shared<const Armature>(both_sides ? with_mirrored_changes(*from.armature, fitted->armature) : fitted->armature);
-    return [from, rig](const Document& now) {
-      if (now.volume != from.volume || now.armature != from.armature) throw Error("the rig or the volume was changed meanwhile", "fitting a joint's axis", "start it again");
-      Document next = now;
-      next.armature = rig;
-      return next;
-    };
-  });
-  editor.step_of_job[id] = StepOfWork::Rig;
-  editor.after_job[id] = [fitted, name](Editor& e, const JobStatus& job) {
-    if (job.state != JobState::Done) return;
-    char text[160];
-    std::snprintf(text, sizeof text, "Moved by %.1f mm, turned by %.1f\u00b0. Bone in bone at the worst angle: %lld voxels before, %lld now", fitted->moved_mm, fitted->turned_degrees,
-                  static_cast<long long>(fitted->overlap_before), static_cast<long long>(fitted->overlap_after));
-    if (fitted->overlap_after > 0) e.messages.warn("Joint axis of " + name + " fitted as far as it goes", text);
-    else e.messages.ok("Joint axis of " + name + " fitted", text);
-  };
-  editor.touch();
 }
 
 void show_fit(Editor& editor, const AutoFit& fitted) {

@@ -23,9 +23,6 @@ void start_auto_fit(Editor& editor, const std::string& which);
 // After a rig came in of whose bones only that share of the length is in tissue: asks whether it shall be fitted.
 void offer_fit(Editor& editor, const std::string& file, double inside);
 
-// Moves the axis of the active bone's hinge so that its bones do not enter each other within its range, as a job and one edit.
-void start_joint_fit(Editor& editor);
-
 // Tells how a fit came out; the console lists every joint with how it was found, the least sure last.
 void show_fit(Editor& editor, const AutoFit& fitted);
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 #include <Eigen/Dense>
 
@@ -210,13 +211,29 @@ class JointProblem {
     parallel_for(std::ssize(count), 1, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t k = begin; k < end; ++k) {
         const AffineTransform back = turned_voxel(grid_, axis, -verify_angles_[k]);
-        for (const glm::ivec3& v : exposed_) {
-          const glm::dvec3 rest = back * glm::dvec3(v);
-          count[k] += nearest_value(turning_.box, from_turning_, rest) < reach_ && painted_.by_turning(rest);
-        }
+        for (const glm::ivec3& v : exposed_) count[k] += is_entered(back * glm::dvec3(v));
       }
     });
     return {*std::max_element(count.begin(), count.end()), std::accumulate(count.begin(), count.end(), std::int64_t{0})};
+  }
+
+  // The voxels of both sides, at rest, that are painted twice at some angle; each once, x fastest.
+  std::vector<glm::ivec3> colliding(const Motion4& motion) const {
+    const Axis axis = frame_.moved(motion);
+    std::vector<glm::ivec3> all;
+    for (const double angle : verify_angles_) {
+      const AffineTransform back = turned_voxel(grid_, axis, -angle);
+      for (const glm::ivec3& v : exposed_) {
+        const glm::dvec3 rest = back * glm::dvec3(v);
+        if (!is_entered(rest)) continue;
+        all.push_back(v);
+        if (const glm::ivec3 nearest(glm::floor(rest + 0.5)); turning_.has(nearest)) all.push_back(nearest);
+      }
+    }
+    const auto order = [](const glm::ivec3& a, const glm::ivec3& b) { return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x); };
+    std::sort(all.begin(), all.end(), order);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
   }
 
   // Least motion under a weight of the collisions, from `start`.
@@ -263,6 +280,9 @@ class JointProblem {
     for (const glm::ivec3& v : fixed_.voxels)
       if (comes_near(v, back, turning_.box, from_turning_)) exposed_.push_back(v);
   }
+
+  // Of a voxel of the fixed side, by where it was before the turn: whether bone of the turning side lay there.
+  bool is_entered(const glm::dvec3& rest) const { return nearest_value(turning_.box, from_turning_, rest) < reach_ && painted_.by_turning(rest); }
 
   bool comes_near(const glm::ivec3& v, const std::vector<AffineTransform>& turns, const VoxelBox& box,
                   const std::vector<float>& distance) const {
@@ -412,6 +432,7 @@ struct AxisFit {
   Axis axis;
   double moved_mm = 0, turned_degrees = 0;
   std::int64_t overlap_before = 0, overlap_after = 0;
+  std::vector<glm::ivec3> colliding_before, colliding_after;
 };
 
 AxisFit fit_axis(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts, const Sides& sides, const Axis& axis, const FitJoint& settings,
@@ -427,6 +448,8 @@ AxisFit fit_axis(const LabelVolume& volume, const TissueVoxels& tissue, const Bo
   fitted.turned_degrees = std::atan(fit.motion.tail<2>().norm() / kLever) / kDegree;
   fitted.overlap_before = problem.overlap(Motion4::Zero()).most;
   fitted.overlap_after = fit.overlap.most;
+  fitted.colliding_before = problem.colliding(Motion4::Zero());
+  fitted.colliding_after = problem.colliding(fit.motion);
   progress.update("fit joint", 1);
   return fitted;
 }
@@ -456,7 +479,7 @@ FittedJoint fit_joint(const LabelVolume& volume, const TissueVoxels& tissue, con
                 "fit a joint between two bones, or name the bone labels with --bones");
 
   const AxisFit fit = fit_axis(volume, tissue, parts, sides, axis, settings, progress);
-  FittedJoint fitted{armature, fit.moved_mm, fit.turned_degrees, fit.overlap_before, fit.overlap_after};
+  FittedJoint fitted{armature, fit.moved_mm, fit.turned_degrees, fit.overlap_before, fit.overlap_after, fit.colliding_before, fit.colliding_after};
   move_head(fitted.armature, bone, fit.axis.place);
   fitted.armature.bones[bone].limits = {.type = JointLimits::Type::Hinge,
                                         .axis = fit.axis.direction,

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/pose/pose.h"
 #include "core/rig/bone_parts.h"
@@ -30,6 +31,7 @@ struct FittedJoint {
   double moved_mm = 0;           // of the head, across the axis
   double turned_degrees = 0;     // of the axis
   std::int64_t overlap_before = 0, overlap_after = 0;  // largest number of colliding bone voxels over the range
+  std::vector<glm::ivec3> colliding_before, colliding_after;  // voxels of both sides, at rest, that collide at some angle
 };
 
 // The hinge through the bone's head along its flex_axis(), fitted.

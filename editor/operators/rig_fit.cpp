@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Skeletons that are laid into the volume.
+#include "editor/handling.h"
 #include "editor/icons.h"
+#include "editor/joint_fit.h"
 #include "editor/operators/polls.h"
 #include "editor/rig_fitting.h"
 
@@ -17,13 +19,24 @@ std::string needs_joint_in_tissue(const Editor& editor) {
   return needs_volume(editor);
 }
 
+std::string needs_proposed_joint(const Editor& editor) { return proposed_joint(editor) ? "" : "Fit a joint's axis first"; }
+
+Operator shows_proposed(const char* id, const char* label, const char* sentence, bool after) {
+  return {id, label, "", "Rig", sentence, [after](Editor& e) { e.handling->proposed_joint->shows_after = after; }, needs_proposed_joint,
+          [after](const Editor& e) { return proposed_joint(e) && proposed_joint(e)->shows_after == after; }};
+}
+
 }  // namespace
 
 std::vector<Operator> rig_fit_operators() {
   return {
       {"rig.auto_fit", "Auto-fit skeleton...", kAutoFitIcon, "Rig", "Lays a skeleton into the volume by itself: joints are found from the bones or from the body's shape.", ask_auto_fit, needs_volume},
       {"rig.templates", "Templates...", icon::kRig, "Rig", "Places a ready skeleton, scaled to the tissue.", ask_template, needs_volume},
-      {"rig.fit_joint_axis", "Fit joint axis", kFitAxisIcon, "Rig", "Moves the axis of the chosen bone's hinge so that its bones do not enter each other when it bends.", start_joint_fit, needs_joint_in_tissue},
+      {"rig.fit_joint_axis", "Fit joint axis", kFitAxisIcon, "Rig", "Finds where the axis of the chosen bone's hinge must lie so that its bones do not enter each other when it bends, and shows which do.", start_joint_fit, needs_joint_in_tissue},
+      shows_proposed("rig.joint_fit_before", "Collisions before the fit", "Shows which bone enters which when the joint turns about its axis as it is.", false),
+      shows_proposed("rig.joint_fit_after", "Collisions after the fit", "Shows the fitted axis, and what of bone still enters other bone about it.", true),
+      {"rig.take_joint_fit", "Move the joint's axis", icon::kTick, "Rig", "Moves the axis to where it was found; one edit.", take_proposed_joint, needs_proposed_joint},
+      {"rig.leave_joint_fit", "Leave the joint's axis", icon::kClose, "Rig", "The axis stays as it is.", leave_proposed_joint, needs_proposed_joint},
   };
 }
 

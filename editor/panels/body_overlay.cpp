@@ -7,6 +7,7 @@
 #include "editor/adjust.h"
 #include "editor/clip_handles.h"
 #include "editor/fem_view.h"
+#include "editor/joint_fit.h"
 #include "editor/live_pose.h"
 #include "editor/onion_skin.h"
 #include "editor/painting.h"
@@ -77,6 +78,7 @@ std::string state_of(const Editor& editor) {
   if (editor.modal && !editor.modal->title().empty()) return editor.modal->title();
   if (!editor.document().volume) return "";
   if (editor.views->scene.weights && editor.views->scene.weights->weights) return std::string(name_of(editor.skin->display)) + " \u00b7 " + grouped(editor.views->scene.weights->weights->size()) + " tissue voxels" + (painted_region(editor) ? " \u00b7 region of " + grouped(painted_region_voxels(editor)) : "");
+  if (const ProposedJoint* proposed = proposed_joint(editor)) return std::string("X-ray \u00b7 bone in bone about the axis ") + (proposed->shows_after ? "as fitted" : "as it is");
   std::string state = editor.views->display == render::Display::Solid ? "Solid" : editor.views->display == render::Display::XRay ? "X-ray" : "Tissue";
   if (const auto posed = shown_result(editor); posed && !wiping(editor)) state += " \u00b7 " + posed->name;
   if (const Solve* solve = watched_solve(editor)) state += " \u00b7 settling, " + progress_text(*solve);
@@ -99,9 +101,10 @@ void draw_body_overlay(Editor& editor, const Rect& rect) {
   draw_axis_ball(editor, rect);
   if (!editor.document().volume) return draw_empty_view(editor, rect);
   draw_clip_handles(editor, rect);
+  draw_proposed_joint(editor, rect);
   Rect above = rect;  // what is in the corner already
   if (draw_weight_legend(editor, rect) || draw_fem_legend(editor, rect)) above.high.y -= editor.look.px(60);
-  draw_last_operation(editor, above);
+  if (!proposed_joint(editor)) draw_last_operation(editor, above);
   const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
   draw_scale_bar(editor, rect, visible_height / rect.height());
 }

@@ -4,6 +4,8 @@
 
 #include "core/rig/templates.h"
 #include "core/volume/phantom.h"
+#include "editor/joint_fit.h"
+#include "editor/prepare.h"
 #include "editor/rig_fitting.h"
 #include "tests/editor/operator_proofs.h"
 
@@ -48,17 +50,59 @@ std::vector<Proof> proofs_of_rig_fitting() {
       // A rig of names that mean nothing, so that it is over soon.
       {"rig.auto_fit", "key Ctrl+Shift+F\n click Skeleton/list\n click \"Skeleton/The rig that is here\"\n key Return\n wait-job",
        [](Stage& s, const Seen& b) { return s.is("edit", "Auto-fit skeleton") && s.document().armature != b.document.armature && s.is("toast", "Skeleton placed, but no joint is sure"); }, Shows::Nothing, rigging},
-      {"rig.fit_joint_axis", "key Shift+J\n wait-job",
+      {"rig.fit_joint_axis", "key Shift+J\n wait-job\n wait-idle",
+       [](Stage& s, const Seen& b) {
+         const ProposedJoint* proposed = proposed_joint(s.editor());
+         return proposed && proposed->fit.overlap_before > 50 && proposed->fit.overlap_after == 0 && s.document().armature == b.document.armature &&
+                s.is("text:" + grouped(proposed->fit.overlap_before) + " \u2192 0");
+       }, Shows::InBody, "", open_bars},
+      {"rig.joint_fit_after", "click \"3D view/joint axis/rig.joint_fit_after\"",
+       [](Stage& s, const Seen&) { return proposed_joint(s.editor())->shows_after && s.editor().views->scene.armature == proposed_joint(s.editor())->fitted; }, Shows::InBody},
+      {"rig.joint_fit_before", "click \"3D view/joint axis/rig.joint_fit_before\"",
+       [](Stage& s, const Seen&) { return !proposed_joint(s.editor())->shows_after && s.editor().views->scene.armature == s.document().armature; }, Shows::InBody},
+      {"rig.leave_joint_fit", "click \"3D view/joint axis/rig.leave_joint_fit\"", [](Stage& s, const Seen& b) { return !proposed_joint(s.editor()) && s.document().armature == b.document.armature; }, Shows::InBody},
+      {"rig.take_joint_fit", "click \"3D view/joint axis/rig.take_joint_fit\"",
        [](Stage& s, const Seen&) {
          const Bone& turning = s.document().armature->bones.back();
-         return s.is("edit", "Fit joint axis of Turning") && s.is("toast", "Joint axis of Turning fitted") && std::abs(turning.head.y) > 4 && turning.limits.minimum == 0 && turning.limits.maximum == 1;
-       }, Shows::Nothing, "", open_bars},
+         return s.is("edit", "Fit joint axis of Turning") && !proposed_joint(s.editor()) && std::abs(turning.head.y) > 4 && turning.limits.minimum == 0 && turning.limits.maximum == 1;
+       }, Shows::InBody, "key Shift+J\n wait-job\n wait-idle"},
   };
 }
 
 TEST_CASE("operators: skeletons are placed and fitted") {
   Stage stage;
   prove(stage, proofs_of_rig_fitting());
+}
+
+TEST_CASE("rig fitting: what collides is shown until the axis is moved, and not of a rig that was changed meanwhile") {
+  Stage stage;
+  open_bars(stage);
+  stage.play("key Shift+J\n wait-job\n wait-idle");
+  const ProposedJoint* proposed = proposed_joint(stage.editor());
+  REQUIRE(proposed);
+  const render::Scene& scene = stage.editor().views->scene;
+  CHECK(scene.display == render::Display::XRay);
+  REQUIRE(scene.weights);
+  // As many voxels are pink as collide; none once the axis is where it was found.
+  const auto pink = [&] { return std::count(scene.weights->field->begin(), scene.weights->field->end(), glm::u8vec3(0xFF, 0x3E, 0xA5)); };
+  CHECK(pink() == std::ssize(proposed->fit.colliding_before));
+  CHECK(pink() > 100);
+  run(stage.editor(), "rig.joint_fit_after");
+  stage.play("wait-idle");
+  CHECK(pink() == 0);
+  // Elsewhere the body is seen as ever, and back here the proposal waits.
+  stage.play("key Ctrl+4\n wait-idle");
+  CHECK_FALSE(scene.weights);
+  stage.play("key Ctrl+1\n wait-idle");
+  CHECK(scene.weights);
+  Document other = stage.document();
+  Armature rig = *other.armature;
+  rig.bones[1].tail.x += 1;
+  other.armature = std::make_shared<const Armature>(rig);
+  commit(stage.editor(), "Longer", other);
+  stage.play("wait-idle");
+  CHECK_FALSE(scene.weights);
+  CHECK_FALSE(why_not(stage.editor(), *find_operator(stage.editor(), "rig.take_joint_fit")).empty());
 }
 
 TEST_CASE("rig fitting: a fitted skeleton is one edit, takes the old weights and pose away, and tells the least sure joints") {

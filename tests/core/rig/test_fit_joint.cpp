@@ -65,6 +65,16 @@ TEST_CASE("fit joint: bars that bend into each other are hinged at their edge, a
   CHECK(fitted.overlap_before > 100);
   CHECK(fitted.overlap_after == 0);
   CHECK(bars.collisions(bars.armature, 60) > 100);
+  // Each voxel that collides is bone, of either side, and once there; beyond the worst angle no others need collide.
+  int sides[2] = {0, 0};
+  for (const glm::ivec3& v : fitted.colliding_before) {
+    CHECK(bars.volume.at(v) == kBone);
+    ++sides[v.x > 20];
+  }
+  CHECK(sides[0] >= fitted.overlap_before);
+  CHECK(sides[1] > 100);
+  for (std::size_t i = 1; i < fitted.colliding_before.size(); ++i) CHECK(fitted.colliding_before[i] != fitted.colliding_before[i - 1]);
+  CHECK(fitted.colliding_after.empty());
   for (int degrees = 0; degrees <= 60; degrees += 3) CHECK(bars.collisions(fitted.armature, degrees) == 0);
 
   // The edge lies 11 mm from the middle; turning positively about z bends towards +y.
