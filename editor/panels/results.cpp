@@ -33,7 +33,7 @@ void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 6>
     put_text(editor, digits, colours[i], Rect{{right - width, row.low.y}, {right, row.high.y}}, words[i], Align::Right);
     right -= width;
   }
-  const float method = look.px(56);
+  const float method = look.px(row.width() > look.px(kNarrow) ? 124 : 56);  // "FEM with contact", or its beginning
   put_text(editor, look.fonts.regular, colours[1], Rect{{right - method, row.low.y}, {right, row.high.y}}, words[1]);
   put_text(editor, first, colours[0], Rect{{row.low.x + look.px(34), row.low.y}, {right - method - look.px(8), row.high.y}}, words[0]);
 }

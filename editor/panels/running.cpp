@@ -76,11 +76,14 @@ void draw_job_row(Editor& editor, const JobStatus& job, const Rect& row) {
   put_text(editor, look.fonts.semibold, look.theme.text, Rect{{left, row.low.y + look.px(2)}, {right - look.px(50), line}}, job.label);
   if (job.state != JobState::Queued) put_text(editor, look.fonts.mono, look.theme.accent_text, Rect{{right - look.px(50), row.low.y + look.px(2)}, {right, line}}, percent, Align::Right);
   draw_track(editor, {{left, line + look.px(3)}, {right, line + look.px(8)}}, job.fraction);
-  const std::string state = state_of(editor, job);
-  put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, cancel.low.y}, {cancel.low.x - look.px(116), cancel.high.y}}, state);
-  if (const auto time = seconds_left(editor, job); time && job.seconds >= kFirstEstimate)
-    put_text(editor, look.fonts.small, look.theme.text2, Rect{{cancel.low.x - look.px(116), cancel.low.y}, {cancel.low.x - look.px(8), cancel.high.y}}, time_left_text(*time) + " left",
-             Align::Right);
+  float end = cancel.low.x - look.px(8);
+  if (const auto time = seconds_left(editor, job); time && job.seconds >= kFirstEstimate) {
+    const std::string words = time_left_text(*time) + " left";
+    const float begin = end - text_size(look.fonts.small, words).x - 1;
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{begin, cancel.low.y}, {end, cancel.high.y}}, words);
+    end = begin - look.px(8);
+  }
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, cancel.low.y}, {end, cancel.high.y}}, state_of(editor, job));
   const bool stopping = job.state == JobState::Stopping;
   if (button(editor, "Cancel", cancel, {icon::kClose, "Cancel", ButtonStyle::Plain, !stopping})) editor.jobs.cancel(job.id);
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) tooltip(editor, cancel, "Cancel", stopping ? "It has been told to stop." : "Stops it; nothing of the project changes.");
