@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// solve_frames
+// What a solve by finite elements leaves of the editor's frames, and how long a cancel takes: the real editor in a window of
+// 1280x720 that is a picture in memory, on the paper's arm where LIMBER_SHARED names it, else on the procedural one, its elbow
+// bent by 90 degrees. The mouse turns the view while the body follows the pose by blending: without a solve, while one with
+// contact is at work in a worker that yields, and without one again; then in the Resample workspace while the tissue is seen to
+// settle, and there while the result of blending is seen and nothing is solved. Frames are drawn 60 a second or as fast as they
+// can. Prints as JSON for each the frames and, in milliseconds, the median, the 95th percentile and the worst of a whole frame
+// (with the window painted and OpenGL done); then of solves that are cancelled in each of their stages the milliseconds from the
+// wish to the end of the worker.
+//
+//   solve_frames [SECONDS]    of frames for each, 10 without
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/pose/pose.h"
+#include "core/rig/armature_io.h"
+#include "core/rig/bone_parts.h"
+#include "core/skin/geodesic.h"
+#include "core/volume/phantom.h"
+#include "core/volume/volume_io.h"
+#include "editor/fem_view.h"
+#include "editor/frame_log.h"
+#include "editor/offscreen.h"
+#include "editor/project.h"
+#include "editor/recording.h"
+#include "editor/results.h"
+
+namespace {
+
+using namespace limber;
+using namespace limber::editor;
+
+constexpr double kFrame = 1.0 / 60;  // s
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+Document arm_document() {
+  LabelVolume volume;
+  TissueTable tissues;
+  Armature armature;
+  const char* shared = std::getenv("LIMBER_SHARED");
+  const Path folder = Path(shared ? shared : "") / "data/bender";
+  if (shared && std::filesystem::exists(folder / "man-arm-2mm.mha")) {
+    VolumeFile file = read_volume(folder / "man-arm-2mm.mha");
+    volume = std::move(file.volume), tissues = std::move(file.tissues);
+    armature = read_armature(folder / "man-arm-2mm-armature.vtk");
+  } else {
+    std::fprintf(stderr, "without LIMBER_SHARED: the procedural arm\n");
+    Phantom phantom = make_arm_phantom(2);
+    volume = std::move(phantom.volume), tissues = std::move(phantom.tissues), armature = std::move(phantom.armature);
+  }
+  const TissueVoxels tissue(volume);
+  Document document;
+  document.weights = std::make_shared<const SkinWeights>(bind_geodesic(volume, tissue, armature, split_bones(volume, tissue, tissues, armature)));
+  Pose pose = rest_pose(armature);
+  flex(pose, armature, require_bone(armature, "Forearm"), 90);
+  document.pose = std::make_shared<const Pose>(pose);
+  document.volume = std::make_shared<const LabelVolume>(std::move(volume));
+  document.tissues = std::make_shared<const TissueTable>(std::move(tissues));
+  document.volume_type = std::make_shared<FileType>();
+  document.armature = std::make_shared<const Armature>(std::move(armature));
+  return document;
+}
+
+class ArmSolved {
+ public:
+  explicit ArmSolved(double length) : length_(length), host_(open_offscreen({1280, 720})), editor_(*host_), player_(editor_, *host_) {
+    player_.step();
+    editor_.worker_program = LIMBER_PROGRAM;
+    editor_.history.reset(arm_document(), "Open arm");
+    editor_.name = "arm";
+    frame_all(editor_, false);
+    editor_.resampling.method = "dqs";
+    player_.play("key Ctrl+4\nkey Ctrl+Return\nwait-job\nwait-idle");
+    editor_.resampling.method = "fem";
+    editor_.resampling.quality = "normal";
+    editor_.resampling.contact = true;
+    editor_.resampling.fit_joints = true;
+  }
+
+  void run() {
+    std::printf("{\"frames\": [");
+    turn("pose", "key Ctrl+3");
+    solve();
+    turn("pose, solving", "key Ctrl+3");
+    turn("settling", "key Ctrl+4");
+    cancel();
+    turn("pose, once more", "key Ctrl+3");
+    show_result(editor_, editor_.document().results.front()->name);
+    turn("result", "key Ctrl+4");
+    std::printf("],\n \"cancel_ms\": [");
+    const char* before = "";
+    for (const char* stage : {"", "tetrahedra", "solving"})
+      for (const double later : {0.0, 0.3, 0.9}) {  // s
+        ask_for_solve();
+        wait_for([&] { return stage_of_solve() == stage || stage_of_solve() == "solving"; });
+        for (const double until = seconds() + later; seconds() < until;) frame();
+        const std::string reached = stage_of_solve();
+        std::printf("%s{\"stage\": \"%s\", \"ms\": %.0f}", before, reached.empty() ? "hand over" : reached.c_str(), cancel());
+        before = ", ";
+      }
+    std::printf("]}\n");
+  }
+
+ private:
+  void frame() {
+    editor_.frame(player_.now() + seconds() - begin_);
+    host_->picture();
+  }
+  template <class There>
+  void wait_for(const There& there) {
+    for (const double begin = seconds(); !there();) {
+      if (seconds() - begin > 300) throw Error("the solve does not come to it", stage_of_solve(), editor_.messages.last_failure);
+      frame();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  std::string stage_of_solve() const { return editor_.fem->solves.empty() ? "" : editor_.fem->solves.begin()->second.feed->seen().progress.stage; }
+  void ask_for_solve() { editor_.fem->watched = 0, limber::editor::run(editor_, "resample.run"); }
+  void solve() {
+    ask_for_solve();
+    wait_for([&] { return !editor_.fem->solves.empty() && editor_.fem->solves.begin()->second.feed->seen().mesh.posed; });
+  }
+  // ms until the worker has ended.
+  double cancel() {
+    const double asked = seconds();
+    editor_.jobs.cancel(editor_.fem->solves.begin()->first);
+    while (editor_.jobs.busy()) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    const double took = 1e3 * (seconds() - asked);
+    frame();
+    return took;
+  }
+
+  void turn(const char* name, const std::string& script) {
+    player_.play(script);
+    const Rect view = *editor_.layout.place_of(ViewId::Body);
+    const auto at = [&](double way) { return view.centre() + glm::vec2(120 * std::sin(way), 40 * std::sin(0.7 * way)); };
+    for (const double settled = seconds() + 2; seconds() < settled;) frame();
+    host_->events.push(PointerMoved{at(0)});
+    frame();
+    host_->events.push(ButtonChanged{MouseButton::Middle, true});
+    std::vector<double> took;
+    for (const double begin = seconds(); seconds() - begin < length_;) {
+      const double due = seconds() + kFrame;
+      host_->events.push(PointerMoved{at(seconds() - begin)});
+      const double from = seconds();
+      frame();
+      took.push_back(1e3 * (seconds() - from));
+      std::this_thread::sleep_for(std::chrono::duration<double>(due - seconds()));
+    }
+    host_->events.push(ButtonChanged{MouseButton::Middle, false});
+    frame();
+    std::printf("%s{\"view\": \"%s\", \"solving\": %s, \"frames\": %zu, \"scale\": %d, \"median\": %.1f, \"p95\": %.1f, \"worst\": %.1f}", first_ ? "" : ",\n  ", name,
+                editor_.jobs.busy() ? "true" : "false", took.size(), editor_.views->body.picture->scale(), percentile(took, 50), percentile(took, 95), percentile(took, 100));
+    std::fflush(stdout);
+    first_ = false;
+  }
+
+  const double length_;
+  std::unique_ptr<Offscreen> host_;
+  Editor editor_;
+  Player player_;
+  const double begin_ = seconds();
+  bool first_ = true;
+};
+
+}  // namespace
+
+int main(int count, char** words) {
+  try {
+    ArmSolved(count > 1 ? std::atof(words[1]) : 10).run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
