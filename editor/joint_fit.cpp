@@ -74,6 +74,7 @@ void show_proposed_joint(Editor& editor) {
   if (!proposed || scene.volume != proposed->volume) return;
   scene.display = render::Display::XRay;  // bones meet under the flesh
   scene.bones_in_front = true;
+  scene.bone_shape = render::BoneShape::Stick;  // or it would hide what collides
   scene.outlined.reset();
   if (scene.armature && proposed->shows_after) scene.armature = proposed->fitted;
   scene.weights = render::ShownWeights{.weights = nullptr, .tissue = proposed->tissue, .display = render::WeightDisplay::Field, .swatches = nullptr, .region = nullptr,
