@@ -35,7 +35,7 @@ void draw_splitters(Editor& editor) {
       fill(splitter.vertical ? Rect{{middle.x - half.x, grip.low.y}, {middle.x + half.x, grip.high.y}} : Rect{{grip.low.x, middle.y - half.y}, {grip.high.x, middle.y + half.y}},
            look.theme.accent);
     }
-    if (pressed.hovered && !pressed.held) editor.wake_at(editor.splitter_since + kShownAfter);
+    if (pressed.hovered && !pressed.held && editor.now < editor.splitter_since + kShownAfter) editor.wake_at(editor.splitter_since + kShownAfter);
     if (pressed.double_clicked) editor.arrangement() = restored(editor.arrangement(), splitter.id, editor.workspace);
     else if (pressed.held && !pressed.activated) editor.arrangement() = dragged(editor.arrangement(), splitter.id, editor.input.pointer, editor.layout, look.scale);
     end_region(editor);
