@@ -65,6 +65,9 @@ ContactForm::Fade ContactForm::fade(const ContactPair& pair, const Places& x) co
 }
 
 void ContactForm::watch(const Places& x, const Places& step, double limit) {
+  Places end = x + limit * step;
+  if (limit == 0 && end.rows() == watched_to_.rows() && end == watched_to_) return;
+  watched_to_ = std::move(end);
   watched_ = surface_.near(x, step, limit, settings_.thickness_mm, kOfRest);
   blocked_.assign(watched_.size(), 0);
 }

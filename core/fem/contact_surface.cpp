@@ -88,15 +88,36 @@ double relative_motion(ContactPair::Kind kind, Corners& step) {
   return std::max(length[0], length[1]) + std::max(length[2], length[3]);
 }
 
+using Lanes = Eigen::Array4d;  // x y z 0: four are added at once, three are not
+Lanes lanes(double x, double y, double z) { return {x, y, z, 0}; }
+
 struct Box {
-  Eigen::Array3d low = Eigen::Array3d::Constant(INFINITY), high = Eigen::Array3d::Constant(-INFINITY);
-  void add(const Eigen::Array3d& p) { low = low.min(p), high = high.max(p); }
+  Lanes low = lanes(INFINITY, INFINITY, INFINITY), high = lanes(-INFINITY, -INFINITY, -INFINITY);
   void add(const Box& other) { low = low.min(other.low), high = high.max(other.high); }
 };
 
+// Where something is, and what way it goes.
 struct Moving {
-  Eigen::Array3d place, motion;
+  Box place, motion;
+  void add(const Moving& other) { place.add(other.place), motion.add(other.motion); }
 };
+
+Moving moving(const Places& x, const Places& step, double limit, int node) {
+  const Lanes place = lanes(x(node, 0), x(node, 1), x(node, 2)), motion = limit * lanes(step(node, 0), step(node, 1), step(node, 2));
+  return {{place, place}, {motion, motion}};
+}
+
+Moving around(Moving a, const Moving& b) {
+  a.add(b);
+  return a;
+}
+
+// Along one axis at least, by `reach` or more, all the way.
+bool apart(const Moving& a, const Moving& b, double reach) {
+  const Lanes before = a.place.low - b.place.high + (a.motion.low - b.motion.high).min(0.0);
+  const Lanes behind = b.place.low - a.place.high + (b.motion.low - a.motion.high).min(0.0);
+  return before.max(behind).maxCoeff() > reach;
+}
 }  // namespace
 
 NearestPoints nearest_points(const ContactPair& pair, const Places& x) {
@@ -160,10 +181,10 @@ void ContactSurface::grow(std::vector<int>& order, const std::vector<Eigen::Vect
   const auto here = tree_.size();
   tree_.push_back({begin, end, 0});
   if (end - begin <= kLeaf) return;
-  Box box;
-  for (int k = begin; k < end; ++k) box.add(centre[order[k]].array());
+  Eigen::AlignedBox3d box;
+  for (int k = begin; k < end; ++k) box.extend(centre[order[k]]);
   Eigen::Index axis = 0;
-  (box.high - box.low).maxCoeff(&axis);
+  box.sizes().maxCoeff(&axis);
   const int middle = (begin + end) / 2;
   std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end,
                    [&](int a, int b) { return centre[a][axis] != centre[b][axis] ? centre[a][axis] < centre[b][axis] : a < b; });
@@ -175,14 +196,13 @@ void ContactSurface::grow(std::vector<int>& order, const std::vector<Eigen::Vect
 std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& step, double limit, double reach, double of_rest) const {
   if (faces_.empty()) return {};
   // Of every branch, last first, so that what is below is known: its place, and its whole step.
-  std::vector<Box> place(tree_.size()), motion(tree_.size());
+  std::vector<Moving> branch(tree_.size());
   std::vector<int> rigid_as(tree_.size());
   const auto join = [&](std::size_t b, int rigid, bool first) { rigid_as[b] = first || rigid_as[b] == rigid ? rigid : -1; };
   for (std::size_t b = tree_.size(); b-- > 0;) {
     if (tree_[b].right) {
       for (const std::size_t below : {b + 1, std::size_t(tree_[b].right)}) {
-        place[b].add(place[below]);
-        motion[b].add(motion[below]);
+        branch[b].add(branch[below]);
         join(b, rigid_as[below], below == b + 1);
       }
       continue;
@@ -190,15 +210,10 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
     for (int f = tree_[b].begin; f < tree_[b].end; ++f)
       for (int k = 0; k < 3; ++k) {
         const int node = faces_[f].node[k];
-        place[b].add(x.row(node).transpose().array());
-        motion[b].add(limit * step.row(node).transpose().array());
+        branch[b].add(moving(x, step, limit, node));
         join(b, rigid_[node], f == tree_[b].begin && k == 0);
       }
   }
-  const auto apart = [&](const Box& p, const Box& m, const Box& q, const Box& n) {
-    const Eigen::Array3d nearest = p.low - q.high + (m.low - n.high).min(0.0), furthest = p.high - q.low + (m.high - n.low).max(0.0);
-    return ((nearest > reach) || (furthest < -reach)).any();
-  };
 
   // Pairs of leaves.
   std::vector<std::pair<int, int>> leaves, open{{0, 0}};
@@ -211,7 +226,7 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
       else leaves.emplace_back(a, a);
       continue;
     }
-    if (apart(place[a], motion[a], place[b], motion[b])) continue;
+    if (apart(branch[a], branch[b], reach)) continue;
     const bool split_a = tree_[a].right && (!tree_[b].right || tree_[a].end - tree_[a].begin >= tree_[b].end - tree_[b].begin);
     if (split_a) open.insert(open.end(), {{tree_[a].right, b}, {a + 1, b}});
     else if (tree_[b].right) open.insert(open.end(), {{a, tree_[b].right}, {a, b + 1}});
@@ -233,57 +248,45 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
       const double nearest = distance(kind, at(pair, x)) - limit * relative_motion(kind, s);
       if (nearest < reach && (of_rest == INFINITY || nearest < of_rest * distance(kind, at(pair, rest_)))) mine.push_back(pair);
     };
-    const auto points = [&](const Face& a, const Moving* of_a, const Face& b, const Box& place, const Box& motion) {
+    struct MovingFace {
+      std::array<Moving, 3> corner, edge;
+      Moving all;
+    };
+    const auto points = [&](const Face& a, const MovingFace& moving_a, const Face& b, const MovingFace& moving_b) {
       for (int k = 0; k < 3; ++k) {
         if (!(a.own_nodes >> k & 1) || a.node[k] == b.node[0] || a.node[k] == b.node[1] || a.node[k] == b.node[2]) continue;
-        if (!apart({of_a[k].place, of_a[k].place}, {of_a[k].motion, of_a[k].motion}, place, motion))
-          consider(ContactPair::Kind::PointTriangle, {a.node[k], b.node[0], b.node[1], b.node[2]});
+        if (!apart(moving_a.corner[k], moving_b.all, reach)) consider(ContactPair::Kind::PointTriangle, {a.node[k], b.node[0], b.node[1], b.node[2]});
       }
     };
-    const auto edges = [&](const Face& a, const Moving* of_a, const Face& b, const Moving* of_b) {
-      const auto around = [](const Eigen::Array3d& p, const Eigen::Array3d& q) { return Box{p.min(q), p.max(q)}; };
-      for (int k = 0; k < 3; ++k) {
-        if (!(a.own_edges >> k & 1)) continue;
-        const int to_k = (k + 1) % 3;
-        const Box place = around(of_a[k].place, of_a[to_k].place), motion = around(of_a[k].motion, of_a[to_k].motion);
+    const auto edges = [&](const Face& a, const MovingFace& moving_a, const Face& b, const MovingFace& moving_b) {
+      for (int k = 0; k < 3; ++k)
         for (int l = 0; l < 3; ++l) {
-          if (!(b.own_edges >> l & 1)) continue;
-          const int to_l = (l + 1) % 3;
-          const std::array<int, 4> node{a.node[k], a.node[to_k], b.node[l], b.node[to_l]};
+          if (!(a.own_edges >> k & 1) || !(b.own_edges >> l & 1)) continue;
+          const std::array<int, 4> node{a.node[k], a.node[(k + 1) % 3], b.node[l], b.node[(l + 1) % 3]};
           if (node[0] == node[2] || node[0] == node[3] || node[1] == node[2] || node[1] == node[3]) continue;
-          if (!apart(place, motion, around(of_b[l].place, of_b[to_l].place), around(of_b[l].motion, of_b[to_l].motion)))
-            consider(ContactPair::Kind::EdgeEdge, node);
+          if (!apart(moving_a.edge[k], moving_b.edge[l], reach)) consider(ContactPair::Kind::EdgeEdge, node);
         }
-      }
     };
-    struct Leaf {
-      std::array<std::array<Moving, 3>, kLeaf> corner;
-      std::array<Box, kLeaf> place, motion;
-    };
-    Leaf leaf_a, leaf_b;
-    const auto load = [&](const Branch& branch, Leaf& leaf) {
-      for (int f = branch.begin, i = 0; f < branch.end; ++f, ++i) {
-        leaf.place[i] = leaf.motion[i] = {};
-        for (int k = 0; k < 3; ++k) {
-          const int node = faces_[f].node[k];
-          const Moving corner{x.row(node).transpose().array(), limit * step.row(node).transpose().array()};
-          leaf.corner[i][k] = corner;
-          leaf.place[i].add(corner.place);
-          leaf.motion[i].add(corner.motion);
-        }
+    std::array<MovingFace, kLeaf> moving_a, moving_b;
+    const auto load = [&](const Branch& leaf, std::array<MovingFace, kLeaf>& faces) {
+      for (int f = leaf.begin; f < leaf.end; ++f) {
+        MovingFace& face = faces[f - leaf.begin];
+        for (int k = 0; k < 3; ++k) face.corner[k] = moving(x, step, limit, faces_[f].node[k]);
+        for (int k = 0; k < 3; ++k) face.edge[k] = around(face.corner[k], face.corner[(k + 1) % 3]);
+        face.all = around(face.edge[0], face.edge[1]);
       }
     };
     for (auto l = begin; l < end; ++l) {
       const Branch &a = tree_[leaves[l].first], &b = tree_[leaves[l].second];
-      load(a, leaf_a);
-      load(b, leaf_b);
-      for (int i = 0; i < a.end - a.begin; ++i)
-        for (int j = leaves[l].first == leaves[l].second ? i + 1 : 0; j < b.end - b.begin; ++j) {
-          if (apart(leaf_a.place[i], leaf_a.motion[i], leaf_b.place[j], leaf_b.motion[j])) continue;
-          const Face &one = faces_[a.begin + i], &other = faces_[b.begin + j];
-          points(one, leaf_a.corner[i].data(), other, leaf_b.place[j], leaf_b.motion[j]);
-          points(other, leaf_b.corner[j].data(), one, leaf_a.place[i], leaf_a.motion[i]);
-          edges(one, leaf_a.corner[i].data(), other, leaf_b.corner[j].data());
+      load(a, moving_a);
+      load(b, moving_b);
+      for (int i = a.begin; i < a.end; ++i)
+        for (int j = leaves[l].first == leaves[l].second ? i + 1 : b.begin; j < b.end; ++j) {
+          const MovingFace &one = moving_a[i - a.begin], &other = moving_b[j - b.begin];
+          if (apart(one.all, other.all, reach)) continue;
+          points(faces_[i], one, faces_[j], other);
+          points(faces_[j], other, faces_[i], one);
+          edges(faces_[i], one, faces_[j], other);
         }
     }
   });

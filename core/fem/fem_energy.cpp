@@ -143,9 +143,16 @@ bool FemEnergy::newton_step(const Places& x, Curvature curvature, Places& step, 
   Places gradient;
   assemble(x, curvature, gradient);
 
-  const CpuTimer timer(seconds_.factorization);
+  double spent = 0;
+  bool definite;
+  {
+    const CpuTimer timer(spent);
+    definite = matrix_->factorize();
+  }
+  (definite ? seconds_.factorization : seconds_.indefinite) += spent;
+  if (!definite) return false;
   ++factorizations_;
-  if (!matrix_->factorize()) return false;
+  const CpuTimer timer(seconds_.factorization);
   right_side_.resize(3 * node_of_.size());
   for (std::size_t k = 0; k < node_of_.size(); ++k)
     for (int c = 0; c < 3; ++c) right_side_[3 * k + c] = -gradient(node_of_[k], c);

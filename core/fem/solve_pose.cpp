@@ -213,22 +213,22 @@ std::vector<int> PoseSolve::rigid_nodes() const {
   return rigid;
 }
 
-// The best of three guesses: what the blend of the bones does, that with what it missed the last time, and the better of them
-// yielding, where something bounds it.
+// What the blend of the bones does, with what it missed the last time; where something bounds that, the best of it, of the blend
+// alone, and of the better of the two yielding.
 // missed_share: of what it missed. Returns how much of the guess the tets bear.
 double PoseSolve::predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x, double missed_share) {
   Places blend = blend_increment(from, to, x, true);
   for (int v = 0; v < int(x.rows()); ++v)
     if (const int bone = model_.held_by[v]; bone >= 0) blend.row(v) = moved(to[bone] * inverse(from[bone]), x.row(v)) - x.row(v);
-  std::vector<Places> guesses{blend};
+  std::vector<Places> guesses;
   if (missed_.rows()) {
     guesses.push_back(blend + missed_share * (missed_ + blend_increment(from, to, missed_, false)));
     for (int v = 0; v < int(x.rows()); ++v)
-      if (model_.held_by[v] >= 0) guesses.back().row(v) = blend.row(v);
+      if (model_.held_by[v] >= 0) guesses[0].row(v) = blend.row(v);
   }
+  guesses.push_back(std::move(blend));
   Places best = x;
-  energy_.watch(x);
-  double least = energy_.value(x), best_way = 0;
+  double least = INFINITY, best_way = 0;
   std::size_t chosen = 0;
   const auto consider = [&](std::size_t k) {
     const double way = energy_.largest_step(x, guesses[k], 1).length;
@@ -240,7 +240,7 @@ double PoseSolve::predict(const std::vector<RigidTransform>& from, const std::ve
       chosen = k;
     }
   };
-  for (std::size_t k = 0; k < guesses.size(); ++k) consider(k);
+  for (std::size_t k = 0; k < guesses.size() && best_way < 1; ++k) consider(k);
   if (best_way < 1) {
     guesses.push_back(energy_.yielding(x, guesses[chosen], held_));
     consider(guesses.size() - 1);
