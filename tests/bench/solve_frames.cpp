@@ -101,7 +101,7 @@ class ArmSolved {
     }
     std::printf("],\n \"cancel_ms\": [");
     const char* before = "";
-    for (const char* stage : {"", "tetrahedra", "solving"})
+    for (const char* stage : {"solving", "tetrahedra", ""})
       for (const double later : {0.0, 0.3, 0.9}) {  // s
         ask_for_solve();
         wait_for([&] { return stage_of_solve() == stage || stage_of_solve() == "solving"; });
@@ -136,10 +136,11 @@ class ArmSolved {
   // ms until the worker has ended.
   double cancel() {
     const double asked = seconds();
-    editor_.jobs.cancel(editor_.fem->solves.begin()->first);
-    while (editor_.jobs.busy()) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    const int job = editor_.fem->solves.begin()->first;
+    editor_.jobs.cancel(job);
+    while (editor_.jobs.status(job).active()) std::this_thread::sleep_for(std::chrono::microseconds(200));
     const double took = 1e3 * (seconds() - asked);
-    frame();
+    while (editor_.jobs.busy()) frame();
     return took;
   }
 
