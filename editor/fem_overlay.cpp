@@ -9,10 +9,12 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/mesh_cut.h"
+#include "editor/dispatch.h"
 #include "editor/editor.h"
 #include "editor/fem_view.h"
 #include "editor/results.h"
 #include "editor/task.h"
+#include "editor/wipe.h"
 #include "render/weight_colours.h"
 
 namespace limber::editor {
@@ -87,6 +89,13 @@ std::shared_ptr<const MeasuredMesh> known(const FemOverlay& overlay, const Shown
   for (const bool behind : {false, true})
     for (auto made = overlay.made.rbegin(); made != overlay.made.rend(); ++made)
       if (fits(*made, behind)) return *made;
+  return nullptr;
+}
+
+const MeasuredMesh* measured_in(const Editor& editor, const render::Scene& scene) {
+  if (!scene.weights || !scene.weights->field) return nullptr;
+  for (const auto& made : editor.fem->overlay.made)
+    if (made->field == scene.weights->field) return made.get();
   return nullptr;
 }
 
@@ -179,15 +188,14 @@ void show_fem(Editor& editor) {
 }
 
 const MeasuredMesh* shown_measure(const Editor& editor) {
-  const auto& weights = editor.views->scene.weights;
-  if (!weights || !weights->field) return nullptr;
-  for (const auto& made : editor.fem->overlay.made)
-    if (made->field == weights->field) return made.get();
-  return nullptr;
+  const Views& views = *editor.views;
+  const MeasuredMesh* shown = measured_in(editor, views.scene);
+  return shown || !views.other_scene ? shown : measured_in(editor, *views.other_scene);
 }
 
 std::string measure_text_at(const Editor& editor, const glm::ivec3& voxel) {
-  const MeasuredMesh* shown = shown_measure(editor);
+  const ViewPlace* view = hovered_view(editor);
+  const MeasuredMesh* shown = measured_in(editor, view ? scene_at_pointer(editor, *view) : editor.views->scene);
   if (!shown || !shown->of.volume->grid.contains(voxel)) return "";
   const std::int64_t place = shown->tissue->index_of(voxel);
   if (place < 0) return "";

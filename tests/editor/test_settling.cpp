@@ -352,6 +352,7 @@ TEST_CASE("settling: measures of the mesh and its tets are shown while it settle
   CHECK(test.editor->views->other_scene->weights);
   CHECK(test.editor->views->other_scene->mesh);
   CHECK_FALSE(scene.weights);
+  CHECK(test.fact("text:Strain energy density, kPa") == "shown");
   run(*test.editor, "compare.swap");
   test.play("wait-idle");
   CHECK(scene.weights);
