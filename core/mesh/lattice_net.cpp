@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
 constexpr double kMargin = 0.1;      // of a cell, face or edge: points keep this far from its ends
-constexpr double kPushShare = 0.04;  // of a cell, outwards, for each time that voxels of it lay outside
-constexpr int kPushes = 12;           // then samples become tissue
-constexpr int kRounds = 60;
+constexpr double kPushShare = 0.04;  // of a cell, outwards, for each time that voxels next to a point lay outside
+constexpr int kPushes = 12;          // then samples become tissue
+constexpr int kRounds = 90;
 
 using Cell = SampleLattice::Cell;
 
@@ -83,9 +83,24 @@ struct Node {
   glm::dvec3 place, low, high;  // fine steps
 };
 
+// How often each point was pushed outwards.
+struct Pushes {
+  std::vector<std::uint8_t> cell, edge[3];  // the point in each cell, and that of the edge along each axis from each sample
+
+  explicit Pushes(std::size_t samples) : cell(samples, 0) {
+    for (auto& of_axis : edge) of_axis.assign(samples, 0);
+  }
+};
+
 class Net {
  public:
-  Net(const SampleLattice& lattice, const VoxelLookup& voxel_at, NetShape shape, const std::vector<std::uint8_t>& pushes, Borders& borders)
+  struct Edge {
+    glm::ivec3 from;
+    int axis, length, node;
+    std::uint16_t first, second;
+  };
+
+  Net(const SampleLattice& lattice, const VoxelLookup& voxel_at, NetShape shape, const Pushes& pushes, Borders& borders)
       : lattice_(lattice), voxel_at_(voxel_at), shape_(shape), pushes_(pushes), borders_(borders) {
     cell_node_.assign(lattice.label.size(), -1);
     touches_air_.assign(lattice.label.size(), 0);
@@ -96,7 +111,11 @@ class Net {
   }
 
   const std::vector<Node>& nodes() const { return nodes_; }
+  const std::vector<Edge>& edges() const { return edges_; }  // between two regions
   bool is_mixed(const Cell& cell) const { return cell_node_[lattice_.index(cell.corner)] >= 0; }
+
+  // Of a mixed cell.
+  const glm::dvec3& vertex(const Cell& cell) const { return nodes_[cell_node_[lattice_.index(cell.corner)]].place; }
 
   // The region of a place, and whether it is air; the latter is sooner known.
   std::uint16_t region_at(const glm::dvec3& place) const;
@@ -125,12 +144,6 @@ class Net {
     }
   }
 
-  struct Edge {
-    glm::ivec3 from;
-    int axis, length, node;
-    std::uint16_t first, second;
-  };
-
  private:
   Cell cell_of(const glm::dvec3& place) const { return lattice_.cell(glm::clamp(glm::ivec3(glm::floor(place)), glm::ivec3(0), lattice_.size - 2)); }
   void place_edge_points();
@@ -139,12 +152,11 @@ class Net {
   std::int64_t face_between(const Edge& edge, int slot) const;
   std::optional<glm::dvec3> middle_of_face(const Cell& cell, const Cell& other, const glm::ivec3& corner, int axis) const;
   std::uint16_t region_on_face(const glm::dvec3& middle, const glm::dvec3& place, const glm::ivec3& corner, int axis, int size) const;
-  const glm::dvec3& vertex(const Cell& cell) const { return nodes_[cell_node_[lattice_.index(cell.corner)]].place; }
 
   const SampleLattice& lattice_;
   const VoxelLookup& voxel_at_;
   const NetShape shape_;
-  const std::vector<std::uint8_t>& pushes_;
+  const Pushes& pushes_;
   Borders& borders_;
   std::vector<Node> nodes_;
   std::vector<Edge> edges_;
@@ -173,15 +185,12 @@ void Net::place_edge_points() {
           if (first == second) continue;
 
           double share = 0.5;
-          const auto around = lattice_.cells_around_edge(from, axis);
           if (shape_ == NetShape::fitted) {
             float& known = borders_.share[axis][at];
             if (known < 0) known = static_cast<float>(border_along(voxel_at_, from, axis, length, first, second));
             share = known;
-            int pushes = 0;
-            for (const Cell& cell : around) pushes = std::max<int>(pushes, pushes_[lattice_.index(cell.corner)]);
-            if (second == kAir) share += kPushShare * pushes;
-            if (first == kAir) share -= kPushShare * pushes;
+            if (second == kAir) share += kPushShare * pushes_.edge[axis][at];
+            if (first == kAir) share -= kPushShare * pushes_.edge[axis][at];
           }
           Node node{from, from, from};
           node.low[axis] += kMargin * length;
@@ -231,7 +240,7 @@ void Net::place_cell_points() {
     if (shape_ == NetShape::plain) continue;
     node.place = sums[i].place / double(sums[i].count);
     const double length = glm::length(sums[i].outwards);
-    if (length > 0) node.place += sums[i].outwards * (kPushShare * size * pushes_[lattice_.index(cells[i].corner)] / length);
+    if (length > 0) node.place += sums[i].outwards * (kPushShare * size * pushes_.cell[lattice_.index(cells[i].corner)] / length);
     node.place = glm::clamp(node.place, node.low, node.high);
   }
 }
@@ -365,6 +374,7 @@ struct Missed {
   Cell cell;
   glm::dvec3 sum{0};  // of the places of its voxels outside
   int count = 0;
+  glm::dvec3 place() const { return sum / double(count); }
 };
 
 // The cells with voxels outside, those with most of them first.
@@ -384,10 +394,43 @@ std::vector<Missed> cells_that_miss(const SampleLattice& lattice, const TissueVo
   return missed;
 }
 
-// Makes room for `to_gain` of the voxels outside, where most are: cells push outwards, or samples become tissue.
+// Of each cell that misses voxels, the edge between tissue and air whose point lies nearest to them; null where there is none.
+std::vector<const Net::Edge*> nearest_edges(const Net& net, const SampleLattice& lattice, const std::vector<Missed>& missed) {
+  std::unordered_map<std::int64_t, std::size_t> place_of;
+  for (std::size_t m = 0; m < missed.size(); ++m) place_of[lattice.index(missed[m].cell.corner)] = m;
+  std::vector<const Net::Edge*> nearest(missed.size(), nullptr);
+  for (const Net::Edge& edge : net.edges()) {
+    if (edge.first != kAir && edge.second != kAir) continue;
+    for (const Cell& cell : lattice.cells_around_edge(edge.from, edge.axis)) {
+      const auto found = place_of.find(lattice.index(cell.corner));
+      if (found == place_of.end()) continue;
+      const auto far = [&](const Net::Edge& from) { return glm::distance(net.nodes()[from.node].place, missed[found->second].place()); };
+      const Net::Edge*& best = nearest[found->second];
+      if (!best || far(edge) < far(*best)) best = &edge;
+    }
+  }
+  return nearest;
+}
+
+// Pushes the point next to the voxels that a cell misses, or else the other one: what is further away need not give way, so
+// that the surface stays close to the voxels. Late rounds are in a hurry and push both. False where none can be pushed any more.
+bool push(const Net& net, const SampleLattice& lattice, const Missed& miss, const Net::Edge* edge, int round, Pushes& pushes) {
+  if (!net.is_mixed(miss.cell)) return false;
+  std::uint8_t none = kPushes;
+  std::uint8_t& of_cell = pushes.cell[lattice.index(miss.cell.corner)];
+  std::uint8_t& of_edge = edge ? pushes.edge[edge->axis][lattice.index(edge->from)] : none;
+  const bool cell_first = !edge || glm::distance(miss.place(), net.vertex(miss.cell)) < glm::distance(miss.place(), net.nodes()[edge->node].place);
+  std::uint8_t &first = cell_first ? of_cell : of_edge, &second = cell_first ? of_edge : of_cell;
+  const bool first_can = first < kPushes, pushes_second = second < kPushes && (!first_can || round >= kRounds / 2);
+  first += first_can;
+  second += pushes_second;
+  return first_can || pushes_second;
+}
+
+// Makes room for `to_gain` of the voxels outside, where most are: points are pushed outwards, or samples become tissue.
 // Returns whether samples did.
 bool make_room(const Net& net, SampleLattice& lattice, const std::vector<Missed>& missed, std::int64_t to_gain, NetShape shape, int round,
-               std::vector<std::uint8_t>& pushes) {
+               Pushes& pushes) {
   bool any_became = false;
   const auto become_tissue = [&](const glm::ivec3& p) {
     std::uint16_t& label = lattice.label[lattice.index(p)];
@@ -395,16 +438,13 @@ bool make_room(const Net& net, SampleLattice& lattice, const std::vector<Missed>
     if (was_air) label = TetMesh::kSoft, any_became = true;
     return was_air;
   };
-  for (const Missed& miss : missed) {
-    if (to_gain <= 0) break;
-    to_gain -= miss.count;
+  const auto nearest = nearest_edges(net, lattice, missed);
+  for (std::size_t m = 0; m < missed.size() && to_gain > 0; ++m) {
+    const Missed& miss = missed[m];
     const Cell& cell = miss.cell;
-    std::uint8_t& pushed = pushes[lattice.index(cell.corner)];
-    if (shape == NetShape::fitted && net.is_mixed(cell) && pushed < kPushes) {
-      ++pushed;
-      continue;
-    }
-    const glm::dvec3 inside = miss.sum / double(miss.count) - glm::dvec3(cell.corner);
+    to_gain -= miss.count;
+    if (shape == NetShape::fitted && round < kRounds * 3 / 4 && push(net, lattice, miss, nearest[m], round, pushes)) continue;
+    const glm::dvec3 inside = miss.place() - glm::dvec3(cell.corner);
     const bool nearest_was_air = become_tissue(cell.corner + glm::ivec3(glm::greaterThan(inside, glm::dvec3(0.5 * cell.size))) * cell.size);
     if (nearest_was_air && round < kRounds / 2) continue;
     for (int z = 0; z <= cell.size; ++z)
@@ -447,7 +487,7 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
   progress.update("surface", 0);
   SampleLattice lattice = sample_regions(voxels, settings);
   const VoxelLookup voxel_at(voxels, lattice);
-  std::vector<std::uint8_t> pushes(lattice.label.size(), 0);
+  Pushes pushes(lattice.label.size());
   Borders borders;
   for (auto& of_axis : borders.share) of_axis.assign(lattice.label.size(), -1.0f);
   const auto allowed = static_cast<std::int64_t>((1 - settings.least_covered) * double(voxels.tissue.size()));

@@ -9,7 +9,7 @@
 // Where cells of two sizes meet (fine ones, half as large, around the joints that bend) the fan also passes a point of the
 // face between them, so that the surface has no crack.
 //
-// Points of edges lie at the true border of the voxels. Voxels that stay outside push the surface outwards, and where
+// Points of edges lie at the true border of the voxels. Voxels that stay outside push the points next to them outwards, and where
 // that is not enough the samples around them become tissue, until the surface encloses them. Two bones never share a
 // cell: between them is at least a cell of soft tissue, so no node belongs to two bones.
 #pragma once
