@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kGrain = 512;  // patches
-constexpr double kAlike = 2;          // largest ratio of shear within a patch: fat and muscle would trade their volumes
+constexpr double kAlike = 1.5;        // largest ratio of shear within a patch: fat and muscle would trade their volumes
 
 std::uint64_t spread_bits(std::uint64_t v) {
   std::uint64_t spread = 0;

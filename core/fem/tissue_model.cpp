@@ -14,7 +14,7 @@ namespace limber {
 namespace {
 
 constexpr int kReach = 16;               // voxels: as far as tissue is looked for from a node that lies in air
-constexpr double kMostPoisson = 0.49975;  // what volume terms are made for; 0.5 cannot be computed with
+constexpr double kMostPoisson = 0.4999;  // what volume terms are made for; 0.5 cannot be computed with
 
 TetMaterial material_of(const Tissue& tissue, double stiffest) {
   const double nu = std::clamp(tissue.poisson_ratio, 0.0, kMostPoisson);

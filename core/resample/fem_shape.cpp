@@ -18,7 +18,7 @@ constexpr double kMargin = 24;  // mm around what bends by its weights: skin cre
 constexpr double kRim = 2.5;    // tets: two layers whole, whatever cells the tissue's border cuts
 constexpr double kJoint = 2;    // tets: so many layers share the sliding of two bones
 constexpr double kDrift = 2;    // mm that a bone may give way at a node, more where tets are so coarse that bones are rough
-constexpr double kContact = 1.8;  // mm from which skin is pushed apart, less where tets are small; voxels lie further in than the mesh
+constexpr double kContact = 2;  // mm from which skin is pushed apart; less where tets are small
 constexpr double kBent = 0.9997;  // cosine of half an angle of 3 degrees
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
