@@ -8,24 +8,14 @@
 #include <string>
 #include <vector>
 
-#include <sys/resource.h>
-
 #include "core/base/parallel.h"
 #include "core/report/report.h"
+#include "tests/bench/cpu_seconds.h"
 #include "tests/support/bent_arm.h"
 
 namespace {
 using namespace limber;
-
-double cpu_seconds() {
-  double sum = 0;
-  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-    rusage used;
-    getrusage(who, &used);
-    for (const timeval& time : {used.ru_utime, used.ru_stime}) sum += double(time.tv_sec) + 1e-6 * double(time.tv_usec);
-  }
-  return sum;
-}
+using bench::cpu_seconds;
 
 struct Row {
   double spacing, degrees;

@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <sys/resource.h>
-
 #include "core/base/parallel.h"
 #include "core/mesh/improve.h"
 #include "core/mesh/mesh_tissue.h"
@@ -20,19 +18,11 @@
 #include "core/rig/bone_tissue.h"
 #include "core/volume/tissue_table_io.h"
 #include "core/volume/volume_io.h"
+#include "tests/bench/cpu_seconds.h"
 
 namespace {
 using namespace limber;
-
-double cpu_seconds() {
-  double sum = 0;
-  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-    rusage used;
-    getrusage(who, &used);
-    for (const timeval& time : {used.ru_utime, used.ru_stime}) sum += double(time.tv_sec) + 1e-6 * double(time.tv_usec);
-  }
-  return sum;
-}
+using bench::cpu_seconds;
 
 struct Case {
   const char *name, *volume, *rig, *table;  // without a rig each label of bone is a region

@@ -6,8 +6,6 @@
 #include <cstdlib>
 #include <ctime>
 
-#include <sys/resource.h>
-
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Labeled_mesh_domain_3.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
@@ -23,8 +21,10 @@
 #include "core/volume/phantom.h"
 #include "core/volume/tissue_table_io.h"
 #include "core/volume/volume_io.h"
+#include "tests/bench/cpu_seconds.h"
 
 using namespace limber;
+using bench::cpu_seconds;
 
 namespace {
 
@@ -35,16 +35,6 @@ using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
 // Of this process and the children it waited for: TetGen runs in one.
-double cpu_seconds() {
-  double sum = 0;
-  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-    rusage usage;
-    ::getrusage(who, &usage);
-    for (const timeval& part : {usage.ru_utime, usage.ru_stime}) sum += double(part.tv_sec) + 1e-6 * double(part.tv_usec);
-  }
-  return sum;
-}
-
 void print(const char* who, const TetMesh& mesh, const VoxelRegions& voxels, double seconds) {
   const MeshQuality quality = quality_of(mesh, voxels);
   std::printf("%-28s %8ld tets %7.2f s CPU %7.2f us/tet  smallest angle %5.2f  below 5 degrees %.4f %%  covered %.3f %%\n", who, long(mesh.T.rows()), seconds,

@@ -22,17 +22,13 @@
 
 #include "core/base/error.h"
 #include "core/pose/pose.h"
-#include "core/rig/armature_io.h"
-#include "core/rig/bone_parts.h"
-#include "core/skin/geodesic.h"
-#include "core/volume/phantom.h"
-#include "core/volume/volume_io.h"
 #include "editor/fem_view.h"
 #include "editor/frame_log.h"
 #include "editor/offscreen.h"
 #include "editor/project.h"
 #include "editor/recording.h"
 #include "editor/results.h"
+#include "tests/bench/arm_document.h"
 
 namespace {
 
@@ -43,31 +39,11 @@ constexpr double kFrame = 1.0 / 60;  // s
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-Document arm_document() {
-  LabelVolume volume;
-  TissueTable tissues;
-  Armature armature;
-  const char* shared = std::getenv("LIMBER_SHARED");
-  const Path folder = Path(shared ? shared : "") / "data/bender";
-  if (shared && std::filesystem::exists(folder / "man-arm-2mm.mha")) {
-    VolumeFile file = read_volume(folder / "man-arm-2mm.mha");
-    volume = std::move(file.volume), tissues = std::move(file.tissues);
-    armature = read_armature(folder / "man-arm-2mm-armature.vtk");
-  } else {
-    std::fprintf(stderr, "without LIMBER_SHARED: the procedural arm\n");
-    Phantom phantom = make_arm_phantom(2);
-    volume = std::move(phantom.volume), tissues = std::move(phantom.tissues), armature = std::move(phantom.armature);
-  }
-  const TissueVoxels tissue(volume);
-  Document document;
-  document.weights = std::make_shared<const SkinWeights>(bind_geodesic(volume, tissue, armature, split_bones(volume, tissue, tissues, armature)));
-  Pose pose = rest_pose(armature);
-  flex(pose, armature, require_bone(armature, "Forearm"), 90);
+Document bent_arm() {
+  Document document = bench::arm_document();
+  Pose pose = rest_pose(*document.armature);
+  flex(pose, *document.armature, require_bone(*document.armature, "Forearm"), 90);
   document.pose = std::make_shared<const Pose>(pose);
-  document.volume = std::make_shared<const LabelVolume>(std::move(volume));
-  document.tissues = std::make_shared<const TissueTable>(std::move(tissues));
-  document.volume_type = std::make_shared<FileType>();
-  document.armature = std::make_shared<const Armature>(std::move(armature));
   return document;
 }
 
@@ -76,7 +52,7 @@ class ArmSolved {
   explicit ArmSolved(double length) : length_(length), host_(open_offscreen({1280, 720})), editor_(*host_), player_(editor_, *host_) {
     player_.step();
     editor_.worker_program = LIMBER_PROGRAM;
-    editor_.history.reset(arm_document(), "Open arm");
+    editor_.history.reset(bent_arm(), "Open arm");
     editor_.name = "arm";
     frame_all(editor_, false);
     editor_.resampling.method = "dqs";

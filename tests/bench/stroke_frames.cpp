@@ -23,11 +23,6 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/rig/armature_io.h"
-#include "core/rig/bone_parts.h"
-#include "core/skin/geodesic.h"
-#include "core/volume/phantom.h"
-#include "core/volume/volume_io.h"
 #include "editor/frame_log.h"
 #include "editor/offscreen.h"
 #include "editor/painting.h"
@@ -36,6 +31,7 @@
 #include "editor/seen_from.h"
 #include "editor/skin_display.h"
 #include "editor/timeline.h"
+#include "tests/bench/arm_document.h"
 
 namespace {
 
@@ -47,36 +43,11 @@ constexpr int kDabs = 200;
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-Document arm_document() {
-  LabelVolume volume;
-  TissueTable tissues;
-  Armature armature;
-  const char* shared = std::getenv("LIMBER_SHARED");
-  const Path folder = Path(shared ? shared : "") / "data/bender";
-  if (shared && std::filesystem::exists(folder / "man-arm-2mm.mha")) {
-    VolumeFile file = read_volume(folder / "man-arm-2mm.mha");
-    volume = std::move(file.volume), tissues = std::move(file.tissues);
-    armature = read_armature(folder / "man-arm-2mm-armature.vtk");
-  } else {
-    std::fprintf(stderr, "without LIMBER_SHARED: the procedural arm\n");
-    Phantom phantom = make_arm_phantom(2);
-    volume = std::move(phantom.volume), tissues = std::move(phantom.tissues), armature = std::move(phantom.armature);
-  }
-  const TissueVoxels tissue(volume);
-  Document document;
-  document.weights = std::make_shared<const SkinWeights>(bind_geodesic(volume, tissue, armature, split_bones(volume, tissue, tissues, armature)));
-  document.volume = std::make_shared<const LabelVolume>(std::move(volume));
-  document.tissues = std::make_shared<const TissueTable>(std::move(tissues));
-  document.volume_type = std::make_shared<FileType>();
-  document.armature = std::make_shared<const Armature>(std::move(armature));
-  return document;
-}
-
 class ArmPainted {
  public:
   explicit ArmPainted(std::string log) : log_(std::move(log)), host_(open_offscreen({640, 480})), editor_(*host_), player_(editor_, *host_) {
     player_.step();
-    editor_.history.reset(arm_document(), "Open arm");
+    editor_.history.reset(bench::arm_document(), "Open arm");
     editor_.name = "arm";
     frame_all(editor_, false);
     player_.play("key Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-job\nwait-idle");
