@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] POSE-OPTIONS --method lbs|dqs|fem [--fit-joints]
-//        [--contact] [--quality draft|normal|fine] [--mesh-out NAME] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--with GREY=OUT2] [--field OUT.nrrd] [--jacobian OUT.nrrd]
+//        [--contact] [--quality draft|normal|fine] [--mesh-out NAME] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2] [--field OUT.nrrd] [--jacobian OUT.nrrd]
 //        [--threads N] [--progress json]
 #include "core/resample/resample.h"
 
@@ -34,7 +34,8 @@ struct Options {
   RunOptions run;
   std::string weights, method, output, report, grey, field, jacobian, quality, mesh_out, steps;
   std::optional<double> spacing;
-  bool nearest = false, fit_joints = false, contact = false;
+  double mass_limit = ResampleSettings{}.mass_limit_percent;
+  bool nearest = false, mass_exact = false, fit_joints = false, contact = false;
 };
 
 // GREY=OUT2
@@ -89,8 +90,10 @@ SkinWeights weights_of(const Body& body, const TissueVoxels& tissue, const BoneP
   return weights;
 }
 
-// Options of finite elements alone.
+// Options that go with others only.
 void check_method(const Options& options) {
+  if (options.mass_exact && options.nearest)
+    throw Error("masses are kept by what a voxel is nearly, which --nearest does not ask", "--mass-exact", "leave one of the two out");
   if (options.method == "fem") return;
   for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"}, {!options.quality.empty(), "--quality"}, {!options.mesh_out.empty(), "--mesh-out"}, {!options.steps.empty(), "--steps"}})
     if (is_given) throw Error(std::string(name) + " needs finite elements", "--method " + options.method, "use --method fem, or leave it out");
@@ -213,6 +216,8 @@ void describe(Report& report, const Options& options, const Armature& rig, const
   auto& settings = report.settings;
   settings["method"] = options.method;
   settings["nearest"] = options.nearest;
+  settings["mass_exact"] = options.mass_exact;
+  if (options.mass_exact) settings["mass_limit_percent"] = options.mass_limit;
   settings["fit_joints"] = options.fit_joints;
   if (options.method == "fem") {
     settings["contact"] = options.contact;
@@ -280,7 +285,7 @@ void run(const Options& options) {
   }
   report.seconds.weights = weighting.seconds();
 
-  const ResampleSettings settings{.nearest = options.nearest, .spacing = options.spacing,
+  const ResampleSettings settings{.nearest = options.nearest, .mass_exact = options.mass_exact, .mass_limit_percent = options.mass_limit, .spacing = options.spacing,
                                   .displacement = !options.field.empty(), .jacobian = !options.jacobian.empty(),
                                   .grey = grey ? &*grey : nullptr};
   SolveProgress solve(progress, options, weights.bones(), body.rig, pose);
@@ -335,6 +340,8 @@ void add_resample(CLI::App& app) {
   command->add_option("--report", options->report, "what changed: JSON there, a table on stdout");
   command->add_option("--spacing", options->spacing, "of the output, mm (default: as the input)")->check(CLI::Range(1e-9, 1e6));
   command->add_flag("--nearest", options->nearest, "labels of the nearest rest voxel");
+  auto* mass_exact = command->add_flag("--mass-exact", options->mass_exact, "soft tissues get their rest volumes: borders between them move by the fewest and least sure voxels");
+  command->add_option("--mass-limit", options->mass_limit, "percent of a tissue that mass-exact may make up; more is refused (default: 3)")->needs(mass_exact)->check(CLI::Range(0.0, 20.0));
   command->add_option("--with", options->grey, "a grey volume moved by the same map")->type_name("GREY=OUT");
   command->add_option("--field", options->field, "displacement at each posed voxel, mm");
   command->add_option("--jacobian", options->jacobian, "volume ratio at each posed voxel");

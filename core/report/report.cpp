@@ -103,6 +103,14 @@ Json solve_of(const SolveReport& solve) {
   return row;
 }
 
+// What `--mass-exact` did.
+Json mass_exact_of(const Report& report, const MassExactReport& exact) {
+  Json row{{"changed_voxels", exact.changed_voxels}};
+  for (const auto& [label, tissue] : exact.tissues)
+    row["tissues"].push_back({{"label", Json::parse(key_of(report, label))}, {"voxels_wanted", tissue.wanted}, {"voxels_before", tissue.before}, {"voxels_after", tissue.after}});
+  return row;
+}
+
 Json seconds_of(const StageSeconds& seconds) {
   Json row = Json::object();
   auto add = [&](const char* stage, const std::optional<double>& value) {
@@ -186,6 +194,7 @@ std::string to_json(const Report& report) {
   if (report.deform && !report.deform->bones.empty())
     for (const auto& bone : report.deform->bones)
       json["bones"].push_back({{"name", bone.name}, {"rigid_residual_mm", bone.rigid_residual_mm}});
+  if (report.deform && report.deform->mass_exact) json["mass_exact"] = mass_exact_of(report, *report.deform->mass_exact);
   if (report.deform && report.deform->mesh) json["mesh"] = mesh_of(report, *report.deform->mesh);
   if (report.deform && report.deform->solve) json["solve"] = solve_of(*report.deform->solve);
   if (!report.warnings.empty()) json["warnings"] = report.warnings;
@@ -210,6 +219,7 @@ void print_report(std::ostream& out, const Report& report) {
                 static_cast<long long>(deform.dropped_voxels), static_cast<long long>(deform.new_hole_voxels),
                 static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels),
                 static_cast<long long>(deform.mended_voxels));
+    if (deform.mass_exact) out << line("mass-exact: %lld voxels changed hands", static_cast<long long>(deform.mass_exact->changed_voxels));
     double worst = 0;
     for (const auto& bone : deform.bones) worst = std::max(worst, bone.rigid_residual_mm);
     if (!deform.bones.empty())

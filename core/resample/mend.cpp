@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kLongestBridge = 4;  // voxels: a longer one would invent anatomy
 constexpr int kAttempts = 32;      // bridges tried for one part, each around the voxels that earlier ones may not take
-constexpr int kSmallestKept = kSmallestPart / 2;  // voxels: a rigid part that came out smaller is not made up again
+constexpr int kSmallestKept = kSmallestPart / 2;  // voxels: a part that came out smaller is not made up again
 constexpr int kSamples = 4;        // voxels of a part that are asked where they come from
 
 struct Part {
@@ -56,7 +56,7 @@ class Mending {
         const std::int64_t too_many = mend(label, parts, parts.size() - before.size());
         if (in_tissue_ && !soft_[label]) trim(label, parts, too_many);
       }
-      if (is_rigid(label) && parts.size() < before.size()) grow(label, parts, before.size() - parts.size());
+      if (parts.size() < before.size()) grow(label, parts, before.size() - parts.size());
     }
     return std::move(bridges_);
   }
@@ -66,8 +66,6 @@ class Mending {
     std::vector<glm::ivec3> voxels;
     int other = -1;  // component
   };
-
-  bool is_rigid(Label label) const { return !in_tissue_ || !soft_[label]; }
 
   // Returns how many there still are.
   std::int64_t mend(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
@@ -152,7 +150,7 @@ class Mending {
     return found;
   }
 
-  // Rigid parts that lost a few voxels to the grid get them back.
+  // Parts that lost a few voxels to the grid get them back.
   void grow(Label label, const std::vector<Part>& parts, std::int64_t too_few) {
     find_stretches(label);
     std::set<int> found;

@@ -38,6 +38,37 @@ bool bits_hang_together(unsigned places) {
   return places && reached == places;
 }
 
+// Of every place among the 3^3 but the corners and the middle, those of them that share a face with it.
+const std::array<unsigned, 27>& at_faces() {
+  static const std::array<unsigned, 27> all = [] {
+    const auto from_middle = [](int k) { return std::abs(k % 3 - 1) + std::abs(k / 3 % 3 - 1) + std::abs(k / 9 - 1); };
+    std::array<unsigned, 27> places{};
+    for (int a = 0; a < 27; ++a)
+      for (int b = 0; b < 27; ++b) {
+        const int apart = std::abs(a % 3 - b % 3) + std::abs(a / 3 % 3 - b / 3 % 3) + std::abs(a / 9 - b / 9);
+        const bool kept = from_middle(a) % 3 != 0 && from_middle(b) % 3 != 0;
+        if (kept && apart == 1) places[a] |= 1u << b;
+      }
+    return places;
+  }();
+  return all;
+}
+
+constexpr unsigned kFaces = 1u << 4 | 1u << 10 | 1u << 12 | 1u << 14 | 1u << 16 | 1u << 22;
+
+// Whether the places at the faces, of which there is one, are joined by others at faces and edges.
+bool faces_hang_together(unsigned places) {
+  const unsigned faces = places & kFaces;
+  unsigned reached = faces & -faces;
+  for (unsigned fresh = reached; fresh;) {
+    unsigned next = 0;
+    for (; fresh; fresh &= fresh - 1) next |= at_faces()[std::countr_zero(fresh)];
+    fresh = next & places & ~reached;
+    reached |= fresh;
+  }
+  return faces && (faces & ~reached) == 0;
+}
+
 // body(place, label) for the 3^3 voxels around a voxel, air outside the grid.
 template <class Body>
 void for_each_around(const LabelVolume& volume, const glm::ivec3& voxel, const Body& body) {
@@ -105,6 +136,18 @@ bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel) {
   unsigned same = 0;
   for_each_around(volume, voxel, [&](int k, Label label) { same |= unsigned{label == own} << k; });
   return bits_hang_together(same);
+}
+
+bool can_join(const LabelVolume& volume, const glm::ivec3& voxel, Label label) {
+  unsigned same = 0;
+  for_each_around(volume, voxel, [&](int k, Label there) { same |= unsigned{there == label} << k; });
+  return bits_hang_together(same);
+}
+
+bool air_can_change(const LabelVolume& volume, const glm::ivec3& voxel) {
+  unsigned air = 0;
+  for_each_around(volume, voxel, [&](int k, Label label) { air |= unsigned{label == 0} << k; });
+  return faces_hang_together(air) && bits_hang_together(~air & ((1u << 27) - 1));
 }
 
 bool is_enclosed(const LabelVolume& volume, const glm::ivec3& voxel) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The 26 voxels around a voxel, and what a tissue loses when one of its voxels is given to another.
+// The 26 voxels around a voxel, and what tissues lose and gain when a voxel is given by one to another.
 #pragma once
 
 #include <array>
@@ -33,6 +33,14 @@ bool hang_together(const std::array<bool, 27>& marked);
 
 // Whether its tissue can spare the voxel: what is left of it around hangs together.
 bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel);
+
+// Whether a tissue may have the voxel without two of its parts, or two ends of one, being joined: the label's voxels around it
+// hang together, and there is one.
+bool can_join(const LabelVolume& volume, const glm::ivec3& voxel, Label label);
+
+// Whether a voxel can go from air to tissue, or back, and the body's parts, holes and cavities stay as they are: it is a simple
+// point, for tissue of 26 and air of 6 neighbours [Bertrand & Malandain, Pattern Recognition Letters 15, 1994].
+bool air_can_change(const LabelVolume& volume, const glm::ivec3& voxel);
 
 // Whether all 26 voxels around have the voxel's own label.
 bool is_enclosed(const LabelVolume& volume, const glm::ivec3& voxel);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/deform/inverse_map.h"
 #include "core/resample/bone_volumes.h"
@@ -13,6 +14,7 @@
 #include "core/resample/mend.h"
 #include "core/resample/output_grid.h"
 #include "core/resample/pose_path.h"
+#include "core/resample/tissue_volumes.h"
 #include "core/rig/bone_parts.h"
 
 namespace limber {
@@ -22,6 +24,9 @@ namespace {
 constexpr glm::ivec3 kTile{64, 64, 32};  // output voxels: 3 MB of map a thread
 constexpr double kSkinReach = 3;         // voxels below air: as deep as what touches a thin skin from below can lie
 constexpr int kReach = 8;                // voxels: as far as soft tissue is looked for where a joint opens between bones
+
+constexpr double kMostSure = 0.8;        // of memberships: a voxel that is surer of its tissue keeps it
+constexpr std::int64_t kJudged = 5000;   // voxels: the grid alone changes smaller tissues by more than is asked here
 
 class Seconds {
  public:
@@ -157,6 +162,12 @@ struct TileCounts {
   }
 };
 
+// Soft tissue of one tile, and where its borders may move.
+struct SoftBorders {
+  std::map<Label, std::int64_t> by_cell;  // voxels whose place at rest lies in a voxel of the tissue
+  std::vector<BorderMove> moves;
+};
+
 // Everything a tile needs to know, and where it writes.
 class Resampling {
  public:
@@ -177,20 +188,29 @@ class Resampling {
   }
 
   void run(Progress& progress) {
-    const glm::ivec3 size = output_.range.high - output_.range.low + 1, tiles = (size + kTile - 1) / kTile;
-    const std::int64_t layer = std::int64_t{tiles.x} * tiles.y;
-    for (int z = 0; z < tiles.z; ++z) {
-      progress.update("resample", double(z) / tiles.z);
-      std::vector<TileCounts> counts(layer);
-      parallel_for(layer, 1, [&](std::int64_t begin, std::int64_t end) {
-        for (auto t = begin; t < end && !progress.cancelled(); ++t) {
-          const glm::ivec3 low = output_.range.low + kTile * glm::ivec3(t % tiles.x, t / tiles.x, z);
-          run_tile({low, glm::min(low + kTile - 1, output_.range.high)}, counts[t]);
-        }
-      });
-      for (const TileCounts& tile : counts) add(tile);
+    for_each_tile<TileCounts>(
+        progress, "resample", [&](const VoxelRange& range, TileCounts& counts) { run_tile(range, counts); },
+        [&](const TileCounts& tile) { add(tile); });
+  }
+
+  // Reading labels takes voxels from thin tissues and gives them to thick ones: they get back what the map gives them.
+  void keep_soft_volumes(Progress& progress) {
+    SoftBorders borders = soft_borders(progress);
+    posed_.report.mended_voxels += keep_tissue_volumes(posed_.volume, borders.by_cell, borders.moves, labels_.soft, labels_.skin).changed;
+  }
+
+  void keep_masses(const TissueTable& tissues, Progress& progress) {
+    MassExactReport& report = posed_.report.mass_exact.emplace();
+    for (const auto& [label, voxels] : soft_voxels(volume_)) report.tissues[label].wanted = std::llround(double(voxels) * output_per_rest());
+    for (const auto& [label, voxels] : soft_voxels(posed_.volume)) report.tissues[label].before = voxels;
+    std::map<Label, std::int64_t> wanted;
+    for (const auto& [label, tissue] : report.tissues) {
+      const double percent = 100.0 * double(tissue.wanted - tissue.before) / double(std::max<std::int64_t>(tissue.wanted, 1));
+      if (tissue.wanted >= kJudged && std::abs(percent) > settings_.mass_limit_percent) throw too_far(tissues, label, percent);
+      wanted[label] = tissue.wanted;
     }
-    progress.update("resample", 1);
+    report.changed_voxels = keep_tissue_volumes(posed_.volume, wanted, soft_borders(progress).moves, labels_.soft, labels_.skin).changed;
+    for (const auto& [label, voxels] : soft_voxels(posed_.volume)) report.tissues[label].after = voxels;
   }
 
   void mend_tears() {
@@ -259,6 +279,106 @@ class Resampling {
       if (const Label label = posed_.volume.at_or_air(v + step); label && labels_.soft[label] && !labels_.skin[label]) ++counts[label];
     const auto most = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     return most == counts.end() ? Label{0} : most->first;
+  }
+
+  // work(range, Tile) by many threads, then add(Tile) in order.
+  template <class Tile, class Work, class Add>
+  void for_each_tile(Progress& progress, const char* stage, const Work& work, const Add& add) const {
+    const glm::ivec3 size = output_.range.high - output_.range.low + 1, tiles = (size + kTile - 1) / kTile;
+    const std::int64_t layer = std::int64_t{tiles.x} * tiles.y;
+    for (int z = 0; z < tiles.z; ++z) {
+      progress.update(stage, double(z) / tiles.z);
+      std::vector<Tile> seen(layer);
+      parallel_for(layer, 1, [&](std::int64_t begin, std::int64_t end) {
+        for (auto t = begin; t < end && !progress.cancelled(); ++t) {
+          const glm::ivec3 low = output_.range.low + kTile * glm::ivec3(t % tiles.x, t / tiles.x, z);
+          work({low, glm::min(low + kTile - 1, output_.range.high)}, seen[t]);
+        }
+      });
+      for (const Tile& tile : seen) add(tile);
+    }
+    progress.update(stage, 1);
+  }
+
+  SoftBorders soft_borders(Progress& progress) const {
+    SoftBorders all;
+    for_each_tile<SoftBorders>(
+        progress, "volumes", [&](const VoxelRange& range, SoftBorders& tile) { find_borders(range, tile); },
+        [&](const SoftBorders& tile) {
+          for (const auto& [label, voxels] : tile.by_cell) all.by_cell[label] += voxels;
+          all.moves.insert(all.moves.end(), tile.moves.begin(), tile.moves.end());
+        });
+    return all;
+  }
+
+  void find_borders(const VoxelRange& range, SoftBorders& borders) const {
+    thread_local InverseMap map;
+    map.has_volume_ratio = false;
+    if (!fill(map, range)) return;
+    std::int64_t i = 0;
+    glm::ivec3 v;
+    for (v.z = range.low.z; v.z <= range.high.z; ++v.z)
+      for (v.y = range.low.y; v.y <= range.high.y; ++v.y)
+        for (v.x = range.low.x; v.x <= range.high.x; ++v.x, ++i) {
+          if (!is_covered(map, i) || map.bone[i] != InverseMap::kNoBone) continue;
+          const glm::ivec3 voxel = v - output_.range.low;
+          const Label label = posed_.volume.at(voxel), own = volume_.voxels[map.cell[i]];
+          if (label == 0 || !labels_.soft[label]) continue;
+          ++borders.by_cell[labels_.soft[own] ? own : label];
+          if (!is_enclosed(posed_.volume, voxel)) add_moves(voxel, label, glm::dvec3(map.rest[i]), borders.moves);
+        }
+  }
+
+  // To the soft tissues at its faces that its place at rest lies near to, and to air.
+  void add_moves(const glm::ivec3& voxel, Label label, const glm::dvec3& rest, std::vector<BorderMove>& moves) const {
+    static const LabelSet every(65536, 1);
+    const LabelSampler::Memberships found = sampler_.memberships(rest, every);
+    double own = 0, body = 0;
+    for (int k = 0; k < found.count; ++k) {
+      body += found.share[k];
+      if (found.label[k] == label) own = found.share[k];
+    }
+    const std::int64_t at = posed_.volume.grid.index(voxel);
+    const auto add = [&](Label to, double share) {
+      if (own - share < kMostSure) moves.push_back({at, label, to, static_cast<float>(std::max(own - share, 0.0))});
+    };
+    for (int k = 0; k < found.count; ++k)
+      if (found.label[k] != label && labels_.soft[found.label[k]] && has_at_face(voxel, found.label[k])) add(found.label[k], found.share[k]);
+    if (touches_air(posed_.volume, voxel)) add(0, 1 - body);
+  }
+
+  bool has_at_face(const glm::ivec3& voxel, Label label) const {
+    bool found = false;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side : {-1, 1}) {
+        glm::ivec3 beside = voxel;
+        beside[axis] += side;
+        found |= posed_.volume.at_or_air(beside) == label;
+      }
+    return found;
+  }
+
+  std::map<Label, std::int64_t> soft_voxels(const LabelVolume& volume) const {
+    std::vector<std::int64_t> counts(65536);
+    for (const Label label : volume.voxels) ++counts[label];
+    std::map<Label, std::int64_t> soft;
+    for (int label = 1; label < 65536; ++label)
+      if (counts[label] && labels_.soft[label]) soft[static_cast<Label>(label)] = counts[label];
+    return soft;
+  }
+
+  // Output voxels that a rest voxel is as large as.
+  double output_per_rest() const {
+    const glm::dvec3& ratio = lattice_.output().ratio;
+    return ratio.x * ratio.y * ratio.z;
+  }
+
+  Error too_far(const TissueTable& tissues, Label label, double percent) const {
+    const Tissue* tissue = tissues.find(label);
+    char text[200];
+    std::snprintf(text, sizeof text, "%.60s would have to %s %.1f %% to keep its mass, and more than %g %% is not made up", tissue ? tissue->name.c_str() : "a tissue",
+                  percent > 0 ? "gain" : "lose", std::abs(percent), settings_.mass_limit_percent);
+    return Error(text, "mass-exact", "pose by finite elements, bend less, or allow more by --mass-limit");
   }
 
   static bool meet(const VoxelRange& a, const VoxelRange& b) { return !intersect(a, b).empty(); }
@@ -368,7 +488,7 @@ class Resampling {
     if (settings_.jacobian)
       posed_.jacobian[at] = map.bone[i] != InverseMap::kNoBone
                                 ? 1.0f
-                                : static_cast<float>(map.posed_per_rest[i] / (lattice.ratio.x * lattice.ratio.y * lattice.ratio.z));
+                                : static_cast<float>(map.posed_per_rest[i] / output_per_rest());
   }
 
   void count(const InverseMap& map, std::int64_t i, const glm::ivec3& v, Label label, TileCounts& counts) const {
@@ -504,6 +624,8 @@ Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Arma
   Resampling resampling(volume, labels, lattice, bones, tets ? &*tets : nullptr, depth ? &*depth : nullptr, settings, output, mends, posed);
   resampling.run(progress);
   if (mends) resampling.mend_tears();
+  if (mends && tets) resampling.keep_soft_volumes(progress);
+  if (settings.mass_exact && can_fold(motions)) resampling.keep_masses(tissues, progress);
   std::erase_if(report.bones, [](const auto& bone) { return bone.voxels == 0; });
   report.seconds_rasterize = rasterize_seconds();
   return posed;

@@ -4,6 +4,7 @@
 // to fill and the rest pose gives back the input bit for bit. Bones are painted rigidly by every method.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,10 +26,21 @@ using Method = std::variant<LinearBlend, DualQuaternion, Fem>;
 
 struct ResampleSettings {
   bool nearest = false;                 // labels by the nearest rest voxel instead of the largest interpolated membership; no mending
+  bool mass_exact = false;              // soft tissues get their rest volumes by moving borders (tissue_volumes.h); not with `nearest`
+  double mass_limit_percent = 3;        // a soft tissue that would have to change by more is refused
   std::optional<double> spacing;        // mm, isotropic output spacing; none keeps the input's
   bool displacement = false;            // also return the displacement field
   bool jacobian = false;                // also return det of the posed-from-rest map
   const GreyVolume* grey = nullptr;     // moved by the same map
+};
+
+// What it took to give soft tissues their rest volumes.
+struct MassExactReport {
+  struct Tissue {
+    std::int64_t wanted = 0, before = 0, after = 0;  // posed voxels
+  };
+  std::map<Label, Tissue> tissues;
+  std::int64_t changed_voxels = 0;
 };
 
 // What the resampling itself saw; compare() adds what two volumes tell.
@@ -46,6 +58,7 @@ struct DeformReport {
     std::int64_t voxels = 0;              // posed bone tissue voxels of this rig bone
   };
   std::vector<BoneResidual> bones;        // those with bone tissue
+  std::optional<MassExactReport> mass_exact;
   std::optional<MeshReport> mesh;         // by finite elements, where anything bends
   std::optional<SolveReport> solve;
   std::optional<double> seconds_mesh, seconds_solve;
@@ -61,6 +74,7 @@ struct Posed {
   std::shared_ptr<const FemShape> shape;  // by finite elements, where anything bends (fem_shape.h)
 };
 
+// Throws Error when mass_exact would have to change a soft tissue of 5000 voxels or more by more than mass_limit_percent.
 // By finite elements a pose that cannot be reached ends where report.solve says.
 Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
                const Pose& pose, const Method& method, const ResampleSettings& settings = {},

@@ -98,6 +98,35 @@ TEST_CASE("command chain: the rest pose gives the input back, and report sees no
   CHECK(report["tissues"].size() > 5);
 }
 
+TEST_CASE("resample: --mass-exact gives soft tissues their rest volumes and reports it, and refuses to make up more than is allowed") {
+  const Arm arm("4");
+  const std::string out = arm.folder / "out.nrrd", report = arm.folder / "report.json";
+  const auto posed = [&](const char* degrees, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"resample", arm.volume, "--rig", arm.rig, "--tissues", arm.tissues, "--flex", std::string("Forearm=") + degrees, "--method", "lbs", "-o", out, "--report", report};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_limber(words);
+  };
+  REQUIRE(posed("20", {"--mass-exact", "--mass-limit", "5"}).exit_code == 0);
+  const auto json = nlohmann::json::parse(bytes_of(report));
+  CHECK(json["settings"]["mass_exact"] == true);
+  CHECK(json["mass_exact"]["changed_voxels"] > 0);
+  int judged = 0;
+  for (const auto& tissue : json["mass_exact"]["tissues"])
+    if (tissue["voxels_wanted"] >= 5000) {
+      CHECK(tissue["voxels_after"].get<double>() == doctest::Approx(tissue["voxels_wanted"].get<double>()).epsilon(0.001));
+      ++judged;
+    }
+  CHECK(judged >= 2);
+
+  std::filesystem::remove(out);
+  const auto refused = posed("90", {"--mass-exact", "--mass-limit", "0.1"});
+  CHECK(refused.exit_code == 1);
+  CHECK(refused.err.find("to keep its mass, and more than 0.1 % is not made up: mass-exact: ") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(out));
+  CHECK(posed("90", {"--mass-exact", "--nearest"}).exit_code == 1);
+  CHECK(posed("90", {"--mass-limit", "2"}).exit_code == 2);
+}
+
 TEST_CASE("prepare: a volume written over itself is prepared, and its labels stay countable") {
   const Arm arm;
   CHECK(run_limber({"prepare", arm.volume, "-o", arm.volume, "--crop", "--pad", "2"}).exit_code == 0);

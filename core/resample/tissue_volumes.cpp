@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/tissue_volumes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+namespace limber {
+
+namespace {
+
+constexpr double kEach = 0.1;                         // cost of a voxel for its own sake: a way over few tissues is better than one over many
+constexpr std::int64_t kFrozen = 2 * kSmallestPart;   // voxels: smaller parts might come to count, or cease to
+constexpr int kRounds = 8;                            // over moves that had no place when it was their turn
+const std::array<glm::ivec3, 6> kFaces{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+
+// As if at random: of equally sure voxels not all lie on one side of the body.
+std::uint64_t shuffled(std::uint64_t at) {
+  at = (at ^ at >> 30) * 0xbf58476d1ce4e5b9;
+  return at ^ at >> 27;
+}
+
+// From one tissue to another one.
+struct Border {
+  std::vector<BorderMove> moves;    // rising by cost
+  size_t next = 0;                  // those before it were made, or
+  std::vector<BorderMove> refused;  // have no place now, but might when others were made
+};
+
+class Exchange {
+ public:
+  Exchange(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted, const LabelSet& soft, const LabelSet& skin)
+      : posed_(posed), soft_(soft), skin_(skin), parts_(connected_components(posed, nullptr, &soft)), missing_(wanted) {
+    for (const auto& run : parts_.runs) has_skin_ |= skin_[run.label] != 0;
+    for (const auto& run : parts_.runs)
+      if (const auto found = missing_.find(run.label); found != missing_.end()) found->second -= run.end - run.begin;
+    missing_[0] = -std::accumulate(missing_.begin(), missing_.end(), std::int64_t{0}, [](std::int64_t sum, const auto& tissue) { return sum + tissue.second; });
+  }
+
+  void add(const BorderMove& move) {
+    borders_[{move.from, move.to}].moves.push_back(move);
+    if (move.to == 0 && skin_[move.from])
+      for (const glm::ivec3& step : kFaces)
+        if (const Label under = posed_.at_or_air(voxel(move.at) + step); under && soft_[under] && !skin_[under]) borders_[{under, 0}].moves.push_back({move.at, under, 0, move.cost});
+  }
+
+  // Where the body may grow: air beside soft tissue, best where it is nearly surrounded.
+  void add_air() {
+    const glm::ivec3 size = posed_.grid.size;
+    glm::ivec3 v;
+    for (v.z = 0; v.z < size.z; ++v.z)
+      for (v.y = 0; v.y < size.y; ++v.y)
+        for (v.x = 0; v.x < size.x; ++v.x) {
+          if (posed_.at(v)) continue;
+          std::set<Label> gains;
+          for (const glm::ivec3& step : kFaces) {
+            const Label beside = posed_.at_or_air(v + step);
+            if (!may_meet_air(beside)) continue;
+            gains.insert(beside);
+            if (skin_[beside])
+              for (const glm::ivec3& below : kFaces)
+                if (const Label under = posed_.at_or_air(v + step + below); under && soft_[under]) gains.insert(under);
+          }
+          if (gains.empty()) continue;
+          const auto around = std::count_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) { return posed_.at_or_air(v + step) != 0; });
+          for (const Label label : gains) add({posed_.grid.index(v), 0, label, 1 - float(around) / 26});
+        }
+  }
+
+  TissueVolumes run() {
+    bool new_layer = true, moved = true;
+    for (int round = 0; round < kRounds && (moved || new_layer); ++round) {
+      if (new_layer && missing_.at(0) < 0) add_air();
+      moved = exchange();
+      // Another layer of air only where the one before has given what it could.
+      new_layer = !moved && !new_layer;
+      if (new_layer) std::erase_if(borders_, [](const auto& border) { return border.first.first == 0; });
+    }
+    std::erase_if(missing_, [](const auto& tissue) { return tissue.first == 0 || tissue.second == 0; });
+    return {changed_, missing_};
+  }
+
+ private:
+  // The change of one voxel, or of two where skin moves with what lies under it.
+  struct Change {
+    std::int64_t at;
+    Label to;
+  };
+  using Changes = std::vector<Change>;
+  using Way = std::vector<Label>;
+
+  // Every move that there is a place for, cheapest ways first. False where there is none.
+  bool exchange() {
+    for (auto& [_, border] : borders_)
+      std::sort(border.moves.begin(), border.moves.end(), [](const BorderMove& a, const BorderMove& b) {
+        return a.cost != b.cost ? a.cost < b.cost : std::pair(shuffled(a.at), a.at) < std::pair(shuffled(b.at), b.at);
+      });
+    bool moved = false;
+    while (const auto way = cheapest_way()) moved |= go(*way);
+    for (auto& [_, border] : borders_) {
+      border.moves = std::exchange(border.refused, {});
+      border.next = 0;
+    }
+    return moved;
+  }
+
+  glm::ivec3 voxel(std::int64_t at) const {
+    const glm::ivec3 size = posed_.grid.size;
+    return {int(at % size.x), int(at / size.x % size.y), int(at / size.x / size.y)};
+  }
+
+  // Soft tissue that is to give, with what it can give to and at which cost [Bellman-Ford, the graph has a dozen places].
+  std::optional<Way> cheapest_way() {
+    struct Step {
+      double cost;
+      Label from;
+    };
+    std::map<Label, Step> reached;
+    for (const auto& [label, missing] : missing_)
+      if (missing < 0) reached[label] = {0, label};
+    if (reached.empty()) return std::nullopt;
+
+    std::vector<std::pair<std::pair<Label, Label>, double>> open;
+    for (auto& [ends, border] : borders_)
+      if (const std::optional<float> cost = next_cost(border)) open.emplace_back(ends, *cost + kEach);
+    for (bool shorter = true; shorter;) {
+      shorter = false;
+      for (const auto& [ends, cost] : open) {
+        const auto from = reached.find(ends.first);
+        if (from == reached.end()) continue;
+        const double sum = from->second.cost + cost;
+        const auto to = reached.find(ends.second);
+        if (to != reached.end() && to->second.cost <= sum) continue;
+        reached[ends.second] = {sum, ends.first};
+        shorter = true;
+      }
+    }
+
+    std::optional<Label> best;
+    for (const auto& [label, step] : reached)
+      if (const auto found = missing_.find(label); found != missing_.end() && found->second > 0 && (!best || step.cost < reached.at(*best).cost)) best = label;
+    if (!best) return std::nullopt;
+    Way way{*best};
+    while (reached.at(way.back()).from != way.back()) way.push_back(reached.at(way.back()).from);
+    std::reverse(way.begin(), way.end());
+    return way;
+  }
+
+  std::optional<float> next_cost(Border& border) {
+    for (; border.next < border.moves.size(); ++border.next) {
+      const BorderMove& move = border.moves[border.next];
+      if (move.to != 0 && posed_.voxels[move.at] != move.from) continue;  // changed hands already
+      if (!changes(move).empty()) return move.cost;
+      border.refused.push_back(move);
+    }
+    return std::nullopt;
+  }
+
+  bool go(const Way& way) {
+    bool moved = false;
+    for (size_t i = 0; i + 1 < way.size(); ++i) {
+      Border& border = borders_.at({way[i], way[i + 1]});
+      if (!next_cost(border)) break;  // a step before it took its place; what came so far waits here
+      const BorderMove move = border.moves[border.next++];
+      for (const Change& change : changes(move)) make(change);
+      ++missing_[move.from];
+      --missing_[move.to];
+      moved = true;
+    }
+    return moved;
+  }
+
+  void make(const Change& change) {
+    const Label was = posed_.voxels[change.at];
+    const glm::ivec3 v = voxel(change.at);
+    if (was) --parts_.voxels[part_of(v)];
+    if (change.to) {
+      const int part = *part_beside(v, change.to);
+      part_of_changed_[change.at] = part;
+      ++parts_.voxels[part];
+    }
+    posed_.voxels[change.at] = change.to;
+    ++changed_;
+  }
+
+  int part_of(const glm::ivec3& v) const {
+    const auto changed = part_of_changed_.find(posed_.grid.index(v));
+    return changed != part_of_changed_.end() ? changed->second : component_at(parts_, posed_, v);
+  }
+
+  std::optional<int> part_beside(const glm::ivec3& v, Label label) const {
+    for (const glm::ivec3& step : neighbours())
+      if (posed_.at_or_air(v + step) == label) return part_of(v + step);
+    return std::nullopt;
+  }
+
+  // Where a body has skin, what lies bare is where it was cut off, or a nail: it neither grows nor shrinks there.
+  bool may_meet_air(Label label) const { return has_skin_ ? skin_[label] != 0 : label && soft_[label]; }
+
+  // What has to change for it; nothing where that would tear, join, open or enclose something.
+  Changes changes(const BorderMove& move) {
+    const glm::ivec3 v = voxel(move.at);
+    if (move.from == 0) return grow(v, move.to);
+    if (move.to == 0) return shrink(v, move.from);
+    return may_change(v, move.to) ? Changes{{move.at, move.to}} : Changes{};
+  }
+
+  // One voxel from its own soft tissue to another one. Skin that lies bare stays, and so does what would lie bare.
+  bool may_change(const glm::ivec3& v, Label to) const {
+    const Label from = posed_.at(v);
+    return !(touches_air(posed_, v) && skin_[from] != skin_[to]) && may_lose(v) && may_gain(v, to);
+  }
+
+  bool may_lose(const glm::ivec3& v) const { return can_spare(posed_, v) && parts_.voxels[part_of(v)] >= kFrozen; }
+
+  bool may_gain(const glm::ivec3& v, Label label) const {
+    return can_join(posed_, v, label) && parts_.voxels[*part_beside(v, label)] >= kFrozen;
+  }
+
+  // Air becomes tissue, or skin does and the skin under it what lies there.
+  Changes grow(const glm::ivec3& v, Label gain) {
+    if (!air_can_change(posed_, v)) return {};
+    for (const glm::ivec3& step : kFaces) {
+      const glm::ivec3 under = v + step;
+      const Label beside = posed_.at_or_air(under);
+      if (!may_meet_air(beside) || !may_gain(v, beside)) continue;
+      if (beside == gain) return {{posed_.grid.index(v), gain}};
+      if (!skin_[beside]) continue;
+      posed_.at(v) = beside;
+      const bool fits = !touches_air(posed_, under) && may_lose(under) && may_gain(under, gain);
+      posed_.at(v) = 0;
+      if (fits) return {{posed_.grid.index(v), beside}, {posed_.grid.index(under), gain}};
+    }
+    return {};
+  }
+
+  // Tissue becomes air, and the one voxel that it covered becomes skin where it was that.
+  Changes shrink(const glm::ivec3& v, Label loss) {
+    const Label own = posed_.at(v);
+    if (!may_meet_air(own) || !touches_air(posed_, v) || !air_can_change(posed_, v) || !may_lose(v)) return {};
+    std::vector<glm::ivec3> laid_bare;
+    for (const glm::ivec3& step : kFaces)
+      if (const Label beside = posed_.at_or_air(v + step); beside && beside != own) laid_bare.push_back(v + step);
+    if (own == loss) return laid_bare.empty() ? Changes{{posed_.grid.index(v), 0}} : Changes{};
+    if (!skin_[own] || laid_bare.size() != 1 || posed_.at(laid_bare[0]) != loss) return {};
+    posed_.at(v) = 0;
+    const bool fits = may_lose(laid_bare[0]) && may_gain(laid_bare[0], own);
+    posed_.at(v) = own;
+    // The second first: it takes its part from the skin that goes.
+    return fits ? Changes{{posed_.grid.index(laid_bare[0]), own}, {posed_.grid.index(v), 0}} : Changes{};
+  }
+
+  LabelVolume& posed_;
+  const LabelSet &soft_, &skin_;
+  bool has_skin_ = false;
+  Components parts_;                                    // as they were, but for their sizes
+  std::unordered_map<std::int64_t, int> part_of_changed_;
+  std::map<Label, std::int64_t> missing_;               // of those wanted; air takes or gives what is over
+  std::map<std::pair<Label, Label>, Border> borders_;   // by giver and taker
+  std::int64_t changed_ = 0;
+};
+
+}  // namespace
+
+TissueVolumes keep_tissue_volumes(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted, const std::vector<BorderMove>& moves,
+                                  const LabelSet& soft, const LabelSet& skin) {
+  Exchange exchange(posed, wanted, soft, skin);
+  for (const BorderMove& move : moves) exchange.add(move);
+  return exchange.run();
+}
+
+}  // namespace limber
