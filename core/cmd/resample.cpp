@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] POSE-OPTIONS --method lbs|dqs|fem [--fit-joints]
 //        [--contact] [--quality draft|normal|fine] [--mesh-out NAME] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2] [--field OUT.nrrd] [--jacobian OUT.nrrd]
-//        [--threads N] [--progress json]
+//        [--frames FIRST:LAST[:STEP]] [--threads N] [--progress json]
 #include "core/resample/resample.h"
 
 #include <filesystem>
@@ -33,6 +33,7 @@ struct Options {
   PoseOptions pose;
   RunOptions run;
   std::string weights, method, output, report, grey, field, jacobian, quality, mesh_out, steps;
+  std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
   bool nearest = false, mass_exact = false, fit_joints = false, contact = false;
@@ -47,6 +48,32 @@ GreyPaths grey_paths(const std::string& request) {
   if (equals == std::string::npos || equals == 0 || equals + 1 == request.size())
     throw Error("this is no grey volume and output", "--with " + request, "write GREY=OUT, as in --with ct.nii.gz=posed-ct.nii.gz");
   return {request.substr(0, equals), request.substr(equals + 1)};
+}
+
+constexpr const char* kFrame = "{frame}";
+
+// Of FIRST:LAST[:STEP].
+std::vector<int> frames_of(const std::string& request, int frame_count) {
+  int first = 0, last = 0, step = 1, read = 0;
+  const int fields = std::sscanf(request.c_str(), "%d:%d%n:%d%n", &first, &last, &read, &step, &read);
+  if (fields < 2 || std::size_t(read) != request.size() || first < 0 || last < first || step < 1)
+    throw Error("these are no frames", "--frames " + request, "write FIRST:LAST or FIRST:LAST:STEP, as in --frames 0:90:10");
+  if (last >= frame_count)
+    throw Error("the motion ends before that frame", "--frames " + request, "its last frame is " + std::to_string(frame_count - 1));
+  std::vector<int> frames;
+  for (std::int64_t frame = first; frame <= last; frame += step) frames.push_back(int(frame));
+  return frames;
+}
+
+// The same request for one frame of a sequence, each output with the frame's number in its name.
+Options of_frame(const Options& options, int frame) {
+  char number[16];
+  std::snprintf(number, sizeof number, "%04d", frame);
+  Options one = options;
+  one.pose.frame = frame;
+  for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.mesh_out})
+    for (size_t at = 0; (at = output->find(kFrame, at)) != std::string::npos;) output->replace(at, std::string(kFrame).size(), number);
+  return one;
 }
 
 std::string mesh_file(const std::string& name, const char* ending) {
@@ -90,6 +117,17 @@ SkinWeights weights_of(const Body& body, const TissueVoxels& tissue, const BoneP
   return weights;
 }
 
+void check_sequence(const Options& options) {
+  if (options.frames.empty()) return;
+  if (options.pose.motion.empty()) throw Error("--frames says which frames, but of no motion", "--frames " + options.frames, "add --motion F.bvh");
+  if (options.pose.frame) throw Error("one frame or a sequence", "--frame " + std::to_string(*options.pose.frame), "leave --frame or --frames out");
+  if (options.fit_joints) throw Error("joints are fitted to one pose, not to a sequence", "--fit-joints", "fit each first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
+  if (!options.steps.empty()) throw Error("a sequence leaves no steps", "--steps " + options.steps, "leave it out");
+  for (const std::string& output : {options.output, options.report, options.grey, options.field, options.jacobian, options.mesh_out})
+    if (!output.empty() && output.find(kFrame) == std::string::npos)
+      throw Error("every frame would be written to the same file", output, "put {frame} into its name, as in posed_{frame}.nrrd");
+}
+
 // Options that go with others only.
 void check_method(const Options& options) {
   if (options.mass_exact && options.nearest)
@@ -104,6 +142,8 @@ class SolveProgress {
  public:
   SolveProgress(CommandProgress& progress, const Options& options, const std::vector<std::string>& bones, const Armature& rig, const Pose& pose)
       : progress_(progress), name_(options.steps), bones_(bones), rig_(rig), pose_(pose) {}
+  // What is solved from now on.
+  void aim_at(const Pose& pose) { pose_ = pose; }
   void begin(const TissueModel& model) const {
     if (!name_.empty()) write_fem_mesh(fem_mesh_of(model), name_);
   }
@@ -126,7 +166,7 @@ class SolveProgress {
   std::string name_;
   const std::vector<std::string>& bones_;
   const Armature& rig_;
-  const Pose& pose_;
+  Pose pose_;
   Stopwatch watch_;
 };
 
@@ -256,49 +296,12 @@ void note_bone_overlap(Report& report, std::int64_t voxels, bool joints_fitted) 
                                                          "add --fit-joints"});
 }
 
-void run(const Options& options) {
-  const Stopwatch total;
-  std::optional<ThreadCount> threads;
-  if (options.run.threads > 0) threads.emplace(options.run.threads);
-  CommandProgress progress(options.run.progress);
-  check_method(options);
-  check_outputs(options);
-  Report report;
-
-  const Stopwatch reading;
-  Body body = read_body(options.body, progress);
-  Pose pose = read_pose_options(options.pose, body.rig);
-  std::optional<GreyVolume> grey;
-  if (!options.grey.empty()) grey = read_grey_volume(grey_paths(options.grey).from, progress);
-  report.seconds.read = reading.seconds();
-
-  const Stopwatch weighting;
-  const TissueVoxels tissue(body.file.volume);
-  BoneParts parts;
-  if (options.weights.empty() || options.fit_joints) parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress);
-  const SkinWeights weights = weights_of(body, tissue, parts, options, report, progress);
-  if (options.fit_joints) {
-    FittedPose fitted = fit_joints(body.file.volume, tissue, parts, body.rig, pose, progress);
-    note(report, fitted.warnings);
-    body.rig = std::move(fitted.armature);
-    pose = std::move(fitted.pose);
-  }
-  report.seconds.weights = weighting.seconds();
-
-  const ResampleSettings settings{.nearest = options.nearest, .mass_exact = options.mass_exact, .mass_limit_percent = options.mass_limit, .spacing = options.spacing,
-                                  .displacement = !options.field.empty(), .jacobian = !options.jacobian.empty(),
-                                  .grey = grey ? &*grey : nullptr};
-  SolveProgress solve(progress, options, weights.bones(), body.rig, pose);
-  Posed posed = [&] {
-    const CommandProgress::LeavesAtOnce nothing_is_written_yet;
-    return resample(body.file.volume, body.tissues, body.rig, weights, pose, method_of(options, solve), settings, progress);
-  }();
-  if (posed.shape) solve.end(*posed.shape);
+// Everything of one pose that is posed now.
+void finish(const Options& options, const Body& body, const Pose& pose, Posed& posed, Report& report, const Stopwatch& total) {
   if (!options.mesh_out.empty() && !posed.shape)
     throw Error("the pose bends nothing, so there is no mesh", options.mesh_out, "leave --mesh-out out, or give a pose");
   report.seconds.mesh = posed.report.seconds_mesh;
   report.seconds.solve = posed.report.seconds_solve;
-  const bool is_reached = !posed.report.solve || posed.report.solve->converged;
   report.seconds.deform = posed.report.seconds_deform;
   report.seconds.rasterize = posed.report.seconds_rasterize;
   note_bone_overlap(report, posed.report.bone_overlap_voxels, options.fit_joints);
@@ -319,7 +322,63 @@ void run(const Options& options) {
     print_report(std::cout, report);
   }
   outputs.complete();
-  if (!is_reached) throw PoseNotReached();
+}
+
+void run(const Options& options) {
+  const Stopwatch total;
+  std::optional<ThreadCount> threads;
+  if (options.run.threads > 0) threads.emplace(options.run.threads);
+  CommandProgress progress(options.run.progress);
+  check_method(options);
+  check_sequence(options);
+  check_outputs(options.frames.empty() ? options : of_frame(options, 0));
+  Report report;
+
+  const Stopwatch reading;
+  Body body = read_body(options.body, progress);
+  std::vector<Pose> poses;
+  std::vector<int> frames;
+  if (options.frames.empty()) {
+    poses = {read_pose_options(options.pose, body.rig)};
+  } else {
+    const std::vector<Pose> all = read_all_poses(options.pose, body.rig);
+    frames = frames_of(options.frames, int(all.size()));
+    for (const int frame : frames) poses.push_back(all[frame]);
+  }
+  std::optional<GreyVolume> grey;
+  if (!options.grey.empty()) grey = read_grey_volume(grey_paths(options.grey).from, progress);
+  report.seconds.read = reading.seconds();
+
+  const Stopwatch weighting;
+  const TissueVoxels tissue(body.file.volume);
+  BoneParts parts;
+  if (options.weights.empty() || options.fit_joints) parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress);
+  const SkinWeights weights = weights_of(body, tissue, parts, options, report, progress);
+  if (options.fit_joints) {
+    FittedPose fitted = fit_joints(body.file.volume, tissue, parts, body.rig, poses[0], progress);
+    note(report, fitted.warnings);
+    body.rig = std::move(fitted.armature);
+    poses[0] = std::move(fitted.pose);
+  }
+  report.seconds.weights = weighting.seconds();
+
+  const ResampleSettings settings{.nearest = options.nearest, .mass_exact = options.mass_exact, .mass_limit_percent = options.mass_limit, .spacing = options.spacing,
+                                  .displacement = !options.field.empty(), .jacobian = !options.jacobian.empty(),
+                                  .grey = grey ? &*grey : nullptr};
+  SolveProgress solve(progress, options, weights.bones(), body.rig, poses[0]);
+  bool all_reached = true;
+  std::optional<CommandProgress::LeavesAtOnce> nothing_is_being_written(std::in_place);
+  resample_sequence(body.file.volume, body.tissues, body.rig, weights, poses, method_of(options, solve), settings, [&](std::size_t place, Posed posed) {
+    nothing_is_being_written.reset();
+    if (posed.shape && frames.empty()) solve.end(*posed.shape);
+    all_reached &= !posed.report.solve || posed.report.solve->converged;
+    Report of_pose = report;
+    finish(frames.empty() ? options : of_frame(options, frames[place]), body, poses[place], posed, of_pose, total);
+    if (place + 1 == poses.size()) return;
+    solve.aim_at(poses[place + 1]);
+    nothing_is_being_written.emplace();
+  }, progress);
+  if (!all_reached) throw PoseNotReached();
 }
 
 }  // namespace
@@ -330,6 +389,7 @@ void add_resample(CLI::App& app) {
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "W.nrrd (default: heat diffusion)");
   add_pose_options(*command, options->pose);
+  command->add_option("--frames", options->frames, "several frames of the motion, one after the other: put {frame} into the outputs' names; fem meshes once and starts each from the one before")->type_name("FIRST:LAST[:STEP]");
   command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions) or fem (finite elements)")->required()->check(CLI::IsMember({"lbs", "dqs", "fem"}));
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));

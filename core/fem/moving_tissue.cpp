@@ -13,16 +13,15 @@ namespace {
 
 constexpr int kCell = 4;             // voxels
 constexpr double kWhole = 0.98;      // of the weight on one motion: such tissue goes with it
-constexpr std::array<double, 4> kOnTheWay{0.25, 0.5, 0.75, 1.0};  // places of the path that are looked at
 
 bool alike(const RigidTransform& a, const RigidTransform& b) {
   const double turn = std::abs(glm::dot(a.rotation, b.rotation));
   return turn > 1 - 1e-14 && glm::length(a.translation - b.translation) < 1e-6;
 }
 
-std::vector<int> first_alike_on_path(const BonePath& path) {
+std::vector<int> first_alike_on_path(const BonePath& path, const std::vector<double>& places) {
   std::vector<std::vector<RigidTransform>> ways;
-  for (double t : kOnTheWay) ways.push_back(path(t));
+  for (double t : places) ways.push_back(path(t));
   std::vector<int> first(ways[0].size());
   for (int i = 0; i < std::ssize(first); ++i) {
     first[i] = i;
@@ -81,10 +80,10 @@ class Cells {
   }
 
   // Cells that one of the looked-at places of the path brings near to cells of another motion that were far away at rest.
-  std::vector<std::uint8_t> brought_near(const BonePath& path, double near_mm) const {
+  std::vector<std::uint8_t> brought_near(const BonePath& path, const std::vector<double>& places, double near_mm) const {
     std::vector<std::uint8_t> near(box_.voxel_count(), 0);
     const AffineTransform world = world_from_voxel(grid_);
-    for (double t : kOnTheWay) {
+    for (double t : places) {
       const auto motions = path(t);
       std::unordered_map<std::uint64_t, std::vector<Placed>> bins;
       std::vector<std::pair<glm::ivec3, Placed>> all;
@@ -180,11 +179,11 @@ bool MovingTissue::empty() const {
 MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const BonePath& path,
                            const MovingSettings& settings, Progress& progress) {
   MovingTissue result;
-  result.moves_as = first_alike_on_path(path);
+  result.moves_as = first_alike_on_path(path, settings.places);
   const Cells cells(volume, tissue, weights, result.moves_as);
   std::vector<std::uint8_t> seeds = cells.mixed();
   if (settings.contact && has_any(seeds)) {
-    const auto near = cells.brought_near(path, settings.near_mm);
+    const auto near = cells.brought_near(path, settings.places, settings.near_mm);
     for (size_t i = 0; i < seeds.size(); ++i) seeds[i] |= near[i];
   }
   const std::vector<float> squared = cells.squared_distance_to(seeds, progress);

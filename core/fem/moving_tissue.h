@@ -22,6 +22,7 @@ struct MovingSettings {
   double rim_mm = 20;      // held, around that
   bool contact = false;    // parts that the pose brings within `near_mm` of each other may bend, and a margin around them
   double near_mm = 16;
+  std::vector<double> places{0.25, 0.5, 0.75, 1};  // of the path that are looked at
 };
 
 struct MovingTissue {

@@ -30,12 +30,31 @@ double tet_spacing(const Fem& fem) {
   return fem.quality == FemQuality::Draft ? 12 : 8;
 }
 
-// The joints that turn, where the mesh of best quality is finer.
-std::vector<glm::dvec3> bent_joints(const Armature& armature, const Pose& pose) {
+// The joints that turn in any of the poses, where the mesh of best quality is finer.
+std::vector<glm::dvec3> bent_joints(const Armature& armature, const std::vector<Pose>& poses) {
   std::vector<glm::dvec3> joints;
   for (size_t b = 0; b < armature.bones.size(); ++b)
-    if (armature.bones[b].parent >= 0 && std::abs(pose.rotation[b].w) < kBent) joints.push_back(armature.bones[b].head);
+    if (armature.bones[b].parent >= 0 && std::any_of(poses.begin(), poses.end(), [&](const Pose& pose) { return std::abs(pose.rotation[b].w) < kBent; }))
+      joints.push_back(armature.bones[b].head);
   return joints;
+}
+
+// From rest through one pose after the other, each at the end of as long a part of the way.
+BonePath way_through(const std::vector<Pose>& poses, const SkinWeights& weights, const Armature& armature) {
+  return [&](double t) {
+    const double place = t * double(poses.size());
+    const auto leg = std::min(std::size_t(place), poses.size() - 1);
+    return bone_motions(weights.bones(), armature, pose_between(leg ? poses[leg - 1] : rest_pose(armature), poses[leg], place - double(leg)));
+  };
+}
+
+// Of that way: four of the first part, which may be long, and two of each after it.
+std::vector<double> places_of(std::size_t poses) {
+  std::vector<double> places;
+  for (int k = 1; k <= 4; ++k) places.push_back(0.25 * k / double(poses));
+  for (std::size_t leg = 1; leg < poses; ++leg)
+    for (int k = 1; k <= 2; ++k) places.push_back((double(leg) + 0.5 * k) / double(poses));
+  return places;
 }
 
 //   spacing  of the mesh, mm
@@ -75,36 +94,55 @@ SolveReport report_of(const SolvedPose& solved) {
 std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const LabelSet& is_bone,
                                             const SkinWeights& weights, const Armature& armature, const Pose& pose, const Fem& fem,
                                             Progress& progress) {
+  return FemSequence(volume, tissue, tissues, is_bone, weights, armature, {pose}, fem, progress).next(progress);
+}
+
+FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const LabelSet& is_bone,
+                         const SkinWeights& weights, const Armature& armature, std::vector<Pose> poses, Fem fem, Progress& progress)
+    : weights_(weights), armature_(armature), is_bone_(is_bone), poses_(std::move(poses)), fem_(std::move(fem)), spacing_(tet_spacing(fem_)) {
   const auto meshing = std::chrono::steady_clock::now();
-  const double spacing = tet_spacing(fem);
-  const BonePath path = [&](double t) { return bone_motions(weights.bones(), armature, part_of_pose(pose, t)); };
-  auto shape = std::make_shared<FemShape>();
-  shape->moving = moving_tissue(volume, tissue, weights, path,
-                                {.margin_mm = kMargin + spacing, .rim_mm = kRim * spacing, .contact = fem.contact, .near_mm = 2 * spacing}, progress);
-  if (shape->moving.empty()) return nullptr;
+  MovingTissue& moving = last_.moving;
+  moving = moving_tissue(volume, tissue, weights, way_through(poses_, weights, armature),
+                         {.margin_mm = kMargin + spacing_, .rim_mm = kRim * spacing_, .contact = fem_.contact, .near_mm = 2 * spacing_, .places = places_of(poses_.size())}, progress);
+  last_.pose = rest_pose(armature);
+  if (moving.empty()) return;
 
-  const LabelVolume regions = regions_to_mesh(volume, tissue, is_bone, weights, shape->moving);
-  MeshSettings settings{.spacing_mm = spacing};
-  if (fem.quality == FemQuality::Fine) settings.fine_around = bent_joints(armature, pose);
+  const LabelVolume regions = regions_to_mesh(volume, tissue, is_bone, weights, moving);
+  MeshSettings settings{.spacing_mm = spacing_};
+  if (fem_.quality == FemQuality::Fine) settings.fine_around = bent_joints(armature, poses_);
+  finest_ = settings.fine_around.empty() ? spacing_ : spacing_ / 2;
   TissueMesh meshed = mesh_tissue(regions, settings, progress);
-  shape->mesh.fallback = meshed.warning;
-  shape->model = tissue_model(volume, tissue, tissues, weights, shape->moving, std::move(meshed.mesh), {.joint_mm = kJoint * spacing});
-  shape->seconds_mesh = seconds_since(meshing);
-  if (fem.on_mesh) fem.on_mesh(shape->model);
+  last_.mesh.fallback = meshed.warning;
+  last_.model = tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh), {.joint_mm = kJoint * spacing_});
+  last_.V = last_.model.fem.mesh.V;
+  last_.seconds_mesh = seconds_since(meshing);
+  if (fem_.on_mesh) fem_.on_mesh(last_.model);
+}
 
+std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
+  const Pose from = last_.pose, to = poses_.at(solved_++);
+  if (last_.moving.empty()) return nullptr;
   const auto solving = std::chrono::steady_clock::now();
-  const double finest = settings.fine_around.empty() ? spacing : spacing / 2;
-  const SolveSettings solve{.contact = fem.contact, .contact_mm = std::min(kContact, finest / 4), .step_tolerance_mm = finest / 2, .bone_drift_mm = std::max(kDrift, spacing / 2)};
-  const SolvedPose solved = solve_pose(shape->model.fem, path, largest_angle_degrees(pose), solve, progress, fem.on_step);
-  if (solved.steps == 0 && solved.converged)  // something should have moved
+  const BonePath path = [&](double t) { return bone_motions(weights_.bones(), armature_, pose_between(from, to, t)); };
+  const SolveSettings settings{.contact = fem_.contact, .contact_mm = std::min(kContact, finest_ / 4), .step_tolerance_mm = finest_ / 2, .bone_drift_mm = std::max(kDrift, spacing_ / 2)};
+  const SolvedPose solved = solve_pose(last_.model.fem, path, largest_angle_degrees(from, to), settings, progress, fem_.on_step, &last_.V);
+  if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)  // something should have moved
     throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements", "choose a finer quality, or blend instead");
+  const bool ends = solved_ == poses_.size();
+  auto shape = std::make_shared<FemShape>(ends ? std::move(last_) : FemShape(last_));
   shape->V = solved.V;
   shape->reached = solved.reached;
+  shape->pose = pose_between(from, to, solved.reached);
   shape->cpu = solved.seconds;
   shape->solve = report_of(solved);
-  measure(solved, spacing, *shape);
-  std::erase_if(shape->mesh.stretch, [&](const auto& tissue) { return is_bone[tissue.first] != 0; });  // painted rigidly, whatever tets it lies in
+  shape->mesh = {.fallback = shape->mesh.fallback};
+  measure(solved, spacing_, *shape);
+  std::erase_if(shape->mesh.stretch, [&](const auto& tissue) { return is_bone_[tissue.first] != 0; });  // painted rigidly, whatever tets it lies in
   shape->seconds_solve = seconds_since(solving);
+  if (ends) return shape;
+  last_.V = shape->V;
+  last_.pose = shape->pose;
+  last_.seconds_mesh = 0;  // once
   return shape;
 }
 

@@ -2,6 +2,8 @@
 // Mesh, solve, and what became of them: the steps of resample.h by finite elements, before any voxel is written.
 #pragma once
 
+#include <vector>
+
 #include "core/fem/tissue_model.h"
 #include "core/pose/pose.h"
 #include "core/resample/fem.h"
@@ -12,7 +14,8 @@ struct FemShape {
   TissueModel model;
   Eigen::MatrixX3d V;    // #V posed nodes, world, mm
   MovingTissue moving;
-  double reached = 1;    // of the way from rest to the pose
+  double reached = 1;    // of the way to the pose
+  Pose pose;             // where that is
   MeshReport mesh;
   SolveReport solve;
   double seconds_mesh = 0, seconds_solve = 0;
@@ -25,5 +28,27 @@ struct FemShape {
 std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const LabelSet& is_bone,
                                             const SkinWeights& weights, const Armature& armature, const Pose& pose, const Fem& fem,
                                             Progress& progress = no_progress());
+
+// The same for a run of poses, as the frames of a motion. They share one mesh, of all the tissue that any of them bends, and each
+// is solved from where the one before it ended, the first from rest.
+class FemSequence {
+ public:
+  // All but the settings must outlive it.
+  FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const LabelSet& is_bone, const SkinWeights& weights,
+              const Armature& armature, std::vector<Pose> poses, Fem fem, Progress& progress = no_progress());
+
+  // Of the next pose. None where nothing bends in any of them.
+  std::shared_ptr<const FemShape> next(Progress& progress = no_progress());
+
+ private:
+  const SkinWeights& weights_;
+  const Armature& armature_;
+  const LabelSet& is_bone_;
+  std::vector<Pose> poses_;
+  Fem fem_;
+  double spacing_, finest_;  // mm
+  std::size_t solved_ = 0;
+  FemShape last_;            // at rest, before the first
+};
 
 }  // namespace limber

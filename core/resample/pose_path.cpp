@@ -15,6 +15,16 @@ Pose part_of_pose(const Pose& pose, double t) {
   return part;
 }
 
+Pose pose_between(const Pose& from, const Pose& to, double t) {
+  if (t == 0) return from;
+  if (t == 1) return to;
+  Pose between = to;
+  for (size_t b = 0; b < to.rotation.size(); ++b)
+    if (from.rotation[b] != to.rotation[b]) between.rotation[b] = glm::slerp(from.rotation[b], to.rotation[b], t);
+  between.root_translation = from.root_translation + t * (to.root_translation - from.root_translation);
+  return between;
+}
+
 std::vector<RigidTransform> bone_motions(const std::vector<std::string>& bones, const Armature& armature, const Pose& pose) {
   const std::vector<RigidTransform> posed = posed_from_rest(armature, pose);
   std::vector<RigidTransform> motions;
@@ -27,6 +37,12 @@ double largest_angle_degrees(const Pose& pose) {
   for (const glm::dquat& turn : pose.rotation)
     largest = std::max(largest, 2 * std::atan2(glm::length(glm::dvec3(turn.x, turn.y, turn.z)), std::abs(turn.w)));
   return largest * 180 / std::numbers::pi;
+}
+
+double largest_angle_degrees(const Pose& from, const Pose& to) {
+  Pose turn = to;
+  for (size_t b = 0; b < turn.rotation.size(); ++b) turn.rotation[b] = to.rotation[b] * glm::conjugate(from.rotation[b]);
+  return largest_angle_degrees(turn);
 }
 
 }  // namespace limber

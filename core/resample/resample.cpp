@@ -583,41 +583,47 @@ void tell(const FemShape& shape, DeformReport& report) {
   report.seconds_solve = shape.seconds_solve;
 }
 
-}  // namespace
+// A body whose bones are rigid, and everything about it that does not hang on the pose.
+struct RigidBody {
+  const LabelVolume& volume;
+  const TissueTable& tissues;
+  const Armature& armature;
+  TissueVoxels tissue;
+  LabelSets labels;
+  SkinWeights weights;
 
-Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
-               const Pose& pose, const Method& method, const ResampleSettings& settings, Progress& progress) {
+  RigidBody(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights, Progress& progress)
+      : volume(volume), tissues(tissues), armature(armature), tissue(volume), labels(tissues),
+        weights(with_rigid_bones(weights, volume, tissue, tissues, labels.bone, armature, progress)) {}
+};
+
+//   shape  by finite elements, where anything bends
+Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape, const Method& method,
+                    const ResampleSettings& settings, Progress& progress) {
   const Seconds seconds;
-  const TissueVoxels tissue(volume);
-  const LabelSets labels(tissues);
-  auto motions = bone_motions(weights.bones(), armature, pose);
-  SkinWeights rigid = with_rigid_bones(weights, volume, tissue, tissues, labels.bone, armature, progress);
+  const LabelVolume& volume = body.volume;
+  const LabelSets& labels = body.labels;
   const glm::dvec3 ratio = settings.spacing ? spacing_ratio(volume.grid, *settings.spacing) : glm::dvec3(1);
-
+  const auto motions = bone_motions(body.weights.bones(), body.armature, shape ? shape->pose : pose);
+  const SkinWeights weights = shape ? with_rigid_rest(body.weights, body.tissue, shape->moving) : body.weights;
   Posed posed;
+  posed.shape = std::move(shape);
   DeformReport& report = posed.report;
-  if (const Fem* fem = std::get_if<Fem>(&method)) {
-    posed.shape = solve_shape(volume, tissue, tissues, labels.bone, rigid, armature, pose, *fem, progress);
-    if (posed.shape) {
-      motions = bone_motions(weights.bones(), armature, part_of_pose(pose, posed.shape->reached));
-      rigid = with_rigid_rest(rigid, tissue, posed.shape->moving);
-      tell(*posed.shape, report);
-    }
-  }
+  if (posed.shape) tell(*posed.shape, report);
 
-  const PosedLattice lattice(volume, tissue, rigid, motions, blend_of(method), ratio, progress);
-  const RigidBones bones(lattice, rigid, labels.bone, motions);
+  const PosedLattice lattice(volume, body.tissue, weights, motions, blend_of(method), ratio, progress);
+  const RigidBones bones(lattice, weights, labels.bone, motions);
   std::optional<PosedTets> tets;
   if (posed.shape) tets.emplace(posed.shape->model.fem.mesh, posed.shape->V, lattice, posed.shape->moving.meshed, progress);
   const OutputGrid output = output_grid(lattice, bones, tets ? &*tets : nullptr);
   std::optional<TissueDepth> depth;
-  if (can_fold(motions)) depth.emplace(tissue, volume.grid.spacing);
+  if (can_fold(motions)) depth.emplace(body.tissue, volume.grid.spacing);
 
-  report.tissue_voxels = tissue.size();
+  report.tissue_voxels = body.tissue.size();
   report.overlap_by_label.assign(65536, 0);
   for (const std::string& name : weights.bones()) report.bones.push_back({name});
   report.dropped_voxels = count_dropped(lattice, tets ? &*tets : nullptr, output.range);
-  report.seconds_deform = seconds() - report.seconds_mesh.value_or(0) - report.seconds_solve.value_or(0);
+  report.seconds_deform = seconds();
 
   const Seconds rasterize_seconds;
   const bool mends = can_fold(motions) && !settings.nearest;
@@ -625,10 +631,34 @@ Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Arma
   resampling.run(progress);
   if (mends) resampling.mend_tears();
   if (mends && tets) resampling.keep_soft_volumes(progress);
-  if (settings.mass_exact && can_fold(motions)) resampling.keep_masses(tissues, progress);
+  if (settings.mass_exact && can_fold(motions)) resampling.keep_masses(body.tissues, progress);
   std::erase_if(report.bones, [](const auto& bone) { return bone.voxels == 0; });
   report.seconds_rasterize = rasterize_seconds();
   return posed;
+}
+
+}  // namespace
+
+Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
+               const Pose& pose, const Method& method, const ResampleSettings& settings, Progress& progress) {
+  Posed one;
+  resample_sequence(volume, tissues, armature, weights, {pose}, method, settings, [&](std::size_t, Posed posed) { one = std::move(posed); }, progress);
+  return one;
+}
+
+void resample_sequence(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
+                       const std::vector<Pose>& poses, const Method& method, const ResampleSettings& settings,
+                       const std::function<void(std::size_t place, Posed posed)>& on_posed, Progress& progress) {
+  const Seconds preparing;
+  const RigidBody body(volume, tissues, armature, weights, progress);
+  const double prepared = preparing();
+  std::optional<FemSequence> shapes;
+  if (const Fem* fem = std::get_if<Fem>(&method)) shapes.emplace(volume, body.tissue, tissues, body.labels.bone, body.weights, armature, poses, *fem, progress);
+  for (std::size_t place = 0; place < poses.size(); ++place) {
+    Posed posed = resample_body(body, poses[place], shapes ? shapes->next(progress) : nullptr, method, settings, progress);
+    if (place == 0) posed.report.seconds_deform += prepared;
+    on_posed(place, std::move(posed));
+  }
 }
 
 }  // namespace limber

@@ -4,6 +4,7 @@
 // to fill and the rest pose gives back the input bit for bit. Bones are painted rigidly by every method.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -79,5 +80,12 @@ struct Posed {
 Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
                const Pose& pose, const Method& method, const ResampleSettings& settings = {},
                Progress& progress = no_progress());
+
+// The same for a run of poses, as the frames of a motion, handed over one after the other with their place in the list. Finite
+// elements mesh once for all of them and start each from the shape of the one before (fem_shape.h); what of a pose could not be
+// reached, the next one starts from.
+void resample_sequence(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
+                       const std::vector<Pose>& poses, const Method& method, const ResampleSettings& settings,
+                       const std::function<void(std::size_t place, Posed posed)>& on_posed, Progress& progress = no_progress());
 
 }  // namespace limber

@@ -98,6 +98,36 @@ TEST_CASE("command chain: the rest pose gives the input back, and report sees no
   CHECK(report["tissues"].size() > 5);
 }
 
+TEST_CASE("resample: --frames writes one volume and report for each frame, as --frame does, and refuses what would overwrite itself") {
+  const Arm arm;
+  const auto posed = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"resample", arm.volume, "--rig", arm.rig, "--tissues", arm.tissues, "--motion", arm.motion, "--method", "dqs"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_limber(words);
+  };
+  REQUIRE(posed({"--frames", "2:12:5", "-o", arm.folder / "posed_{frame}.nrrd", "--report", arm.folder / "{frame}.json"}).exit_code == 0);
+  for (const char* frame : {"2", "7", "12"}) {
+    REQUIRE(posed({"--frame", frame, "-o", arm.folder / "one.nrrd"}).exit_code == 0);
+    const std::string number = std::string(4 - std::string(frame).size(), '0') + frame;
+    CHECK(bytes_of(arm.folder / ("posed_" + number + ".nrrd")) == bytes_of(arm.folder / "one.nrrd"));
+    CHECK(nlohmann::json::parse(bytes_of(arm.folder / (number + ".json")))["settings"]["frame"] == std::stoi(frame));
+  }
+  CHECK_FALSE(std::filesystem::exists(arm.folder / "posed_0003.nrrd"));
+
+  const std::string out = arm.folder / "no_{frame}.nrrd";
+  const auto refused = [&](const std::vector<std::string>& words, const char* why) {
+    const auto run = posed(words);
+    CHECK(run.exit_code == 1);
+    CHECK_MESSAGE(run.err.find(why) != std::string::npos, run.err);
+  };
+  refused({"--frames", "0:3", "-o", arm.folder / "no.nrrd"}, "put {frame} into its name");
+  refused({"--frames", "3:0", "-o", out}, "these are no frames");
+  refused({"--frames", "0:3x", "-o", out}, "these are no frames");
+  refused({"--frames", "0:100000", "-o", out}, "the motion ends before that frame");
+  refused({"--frames", "0:3", "--frame", "1", "-o", out}, "one frame or a sequence");
+  refused({"--frames", "0:3", "--fit-joints", "-o", out}, "joints are fitted to one pose");
+}
+
 TEST_CASE("resample: --mass-exact gives soft tissues their rest volumes and reports it, and refuses to make up more than is allowed") {
   const Arm arm("4");
   const std::string out = arm.folder / "out.nrrd", report = arm.folder / "report.json";

@@ -183,3 +183,41 @@ TEST_CASE("fem: fingers close onto each other and the palm, and pass through nei
   CHECK(std::abs(all(posed.volume) / all(phantom.volume) - 1) < 0.005);
   MESSAGE("closed in ", posed.report.solve->iterations, " iterations, ", posed.report.mesh->tets, " tets, overlap ", posed.report.overlap_voxels);
 }
+
+TEST_CASE("fem: frames of a sequence share one mesh and start from the one before, in fewer iterations than from rest") {
+  const test::BentTube tube = test::bent_tube({}, 84);
+  const std::vector<Pose> poses = {tube.pose(40), tube.pose(50), tube.pose(50), tube.pose(60)};
+  const Fem fem{.contact = true, .spacing_mm = 4};
+  std::vector<Posed> frames;
+  resample_sequence(tube.volume, tube.tissues, tube.rig, tube.weights, poses, fem, {}, [&](std::size_t place, Posed posed) {
+    CHECK(place == frames.size());
+    frames.push_back(std::move(posed));
+  });
+  REQUIRE(frames.size() == poses.size());
+  for (const Posed& frame : frames) {
+    REQUIRE(frame.shape);
+    CHECK(frame.report.solve->converged);
+    CHECK(frame.report.mesh->inverted == 0);
+    CHECK(frame.report.mesh->self_intersections == 0);
+    CHECK(frame.shape->model.fem.mesh.V == frames[0].shape->model.fem.mesh.V);
+  }
+  CHECK((frames[2].shape->V - frames[1].shape->V).rowwise().norm().maxCoeff() < 0.6);  // two tolerances
+  CHECK(frames[2].report.solve->iterations <= 3);
+
+  // The last one from rest.
+  const Posed direct = resample(tube.volume, tube.tissues, tube.rig, tube.weights, poses[3], fem);
+  CHECK(frames[3].report.solve->iterations < direct.report.solve->iterations);
+  const auto soft = [](const LabelVolume& volume) { return std::count_if(volume.voxels.begin(), volume.voxels.end(), [](Label label) { return label == test::kFat || label == test::kSkin; }); };
+  CHECK(double(std::abs(soft(direct.volume) - soft(frames[3].volume))) < 0.003 * double(soft(direct.volume)));
+}
+
+TEST_CASE("resample: a sequence is its poses one by one, with blends") {
+  const test::BentTube tube = test::bent_tube();
+  const std::vector<Pose> poses = {tube.pose(30), rest_pose(tube.rig), tube.pose(-20, 15)};
+  std::size_t count = 0;
+  resample_sequence(tube.volume, tube.tissues, tube.rig, tube.weights, poses, DualQuaternion{}, {}, [&](std::size_t place, Posed posed) {
+    CHECK(posed.volume.voxels == resample(tube.volume, tube.tissues, tube.rig, tube.weights, poses[place], DualQuaternion{}).volume.voxels);
+    ++count;
+  });
+  CHECK(count == poses.size());
+}
