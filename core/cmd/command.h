@@ -28,6 +28,7 @@ void add_project(CLI::App& app);
 void add_report(CLI::App& app);
 void add_resample(CLI::App& app);
 void add_skin_points(CLI::App& app);
+void add_tissues(CLI::App& app);
 void add_weights(CLI::App& app);
 
 // Every subcommand above, and --version.

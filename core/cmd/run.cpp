@@ -24,6 +24,7 @@ void add_commands(CLI::App& app) {
   add_report(app);
   add_resample(app);
   add_skin_points(app);
+  add_tissues(app);
   add_weights(app);
 }
 

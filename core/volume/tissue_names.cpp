@@ -8,32 +8,12 @@
 #include <set>
 
 #include "core/volume/header_text.h"
-#include "core/volume/tissue_table.h"
+#include "core/volume/tissue_match.h"
 
 namespace limber {
 
 namespace {
-using Words = std::set<std::string, std::less<>>;
-
-// Lower-case words of a name: "vertebrae_C1", "BoneMarrow" and "tendon/ligament" are two words each.
-Words words_in(std::string_view name) {
-  Words words;
-  std::string word;
-  const auto end_word = [&] {
-    if (!word.empty()) words.insert(word);
-    word.clear();
-  };
-  char before = ' ';
-  for (char c : name.substr(0, 400)) {
-    const bool upper = c >= 'A' && c <= 'Z', lower = c >= 'a' && c <= 'z';
-    if (!upper && !lower) end_word();
-    if (upper && before >= 'a' && before <= 'z') end_word();
-    if (upper || lower) word += upper ? static_cast<char>(c - 'A' + 'a') : c;
-    before = c;
-  }
-  end_word();
-  return words;
-}
+using Words = TissueWords;
 
 struct Rule {
   TissueKind kind;
@@ -102,7 +82,7 @@ std::optional<TissueKind> tissue_kind_from_text(std::string_view text) {
 }
 
 TissueKind tissue_kind_from_name(std::string_view tissue_name) {
-  const Words words = words_in(tissue_name);
+  const Words words = words_in_tissue_name(tissue_name);
   for (const Rule& rule : rules())
     if (has_any(words, rule.words)) {
       const bool cortical = rule.kind == TissueKind::Bone && (words.contains("cortical") || words.contains("compact"));

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber tissues [VOLUME] --frequency HZ [--tissues T] [--properties P.csv] [--json] [-o OUT.csv]: permittivity, conductivity and
+// density of each tissue of a volume, or of every row of the table.
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "core/cmd/command.h"
+#include "core/cmd/tissue_options.h"
+#include "core/volume/header_text.h"
+
+namespace limber::cmd {
+
+namespace {
+struct Options {
+  std::string volume, output, progress;
+  MaterialOptions material;
+  bool json = false;
+};
+
+std::string csv_of(const TissueMaterials& tissues) {
+  std::string text = "label,tissue,row,matched,density_kg_m3,relative_permittivity,conductivity_S_m,source\n";
+  for (const TissueMaterial& m : tissues.materials)
+    text += text_of(m.file_value) + "," + csv_field(m.name) + "," + csv_field(m.row) + "," + (m.by_name ? "name" : "kind") + "," + text_of(m.density) + "," +
+            text_of(m.dielectric.permittivity) + "," + text_of(m.dielectric.conductivity) + "," + csv_field(m.source) + "\n";
+  return text;
+}
+
+nlohmann::ordered_json json_of(const TissueMaterials& tissues, double frequency) {
+  nlohmann::ordered_json json = {{"kind", "tissue properties"}, {"frequency", frequency}, {"tissues", nlohmann::ordered_json::array()}, {"unmatched", tissues.unmatched}};
+  for (const TissueMaterial& m : tissues.materials)
+    json["tissues"].push_back({{"label", m.file_value}, {"name", m.name}, {"row", m.row}, {"matched", m.by_name ? "name" : "kind"}, {"density_kg_m3", m.density},
+                               {"relative_permittivity", m.dielectric.permittivity}, {"conductivity_S_m", m.dielectric.conductivity}, {"source", m.source}});
+  return json;
+}
+
+void print_table(const TissueMaterials& tissues) {
+  std::printf("%8s  %-28s %-26s %10s %12s %12s\n", "label", "tissue", "properties of", "kg/m3", "eps_r", "S/m");
+  for (const TissueMaterial& m : tissues.materials)
+    std::printf("%8s  %-28s %-26s %10.4g %12.5g %12.5g\n", text_of(m.file_value).c_str(), one_line(m.name).c_str(),
+                one_line(m.row + (m.by_name ? "" : " (by kind)")).c_str(), m.density, m.dielectric.permittivity, m.dielectric.conductivity);
+}
+
+// The table itself, a row as if it were a tissue.
+TissueTable rows_as_tissues(const DielectricTable& table) {
+  TissueTable rows;
+  for (const TissueNames& names : table.names) {
+    Tissue tissue;
+    tissue.name = names.name;
+    tissue.kind = names.kinds.empty() ? tissue_kind_from_name(names.name) : names.kinds.front();
+    apply_kind_defaults(tissue);
+    tissue.file_value = static_cast<double>(rows.tissues.size() + 1);
+    rows.tissues.push_back(std::move(tissue));
+  }
+  return rows;
+}
+
+void list_tissues(const Options& options) {
+  if (!options.output.empty()) check_place(options.output);
+  CommandProgress progress(options.progress);
+  const DielectricTable table = read_dielectric_table(options.material.properties);
+  TissueTable tissues = rows_as_tissues(table);
+  if (!options.volume.empty()) {
+    const VolumeFile file = read_volume(options.volume, progress);
+    warn(file.warnings);
+    tissues = tissues_of(file, options.material.tissues);
+  }
+  const TissueMaterials found = tissue_materials(tissues, table, *options.material.frequency);
+  if (!options.output.empty()) write_file_atomically(options.output, csv_of(found));
+  if (options.json) std::cout << json_of(found, *options.material.frequency).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+  else if (options.output.empty()) print_table(found);
+  if (!found.unmatched.empty()) warn("no dielectric properties are known of: " + joined(found.unmatched) + ": add rows with --properties");
+}
+}  // namespace
+
+void add_tissues(CLI::App& app) {
+  auto* command = app.add_subcommand("tissues", "permittivity, conductivity and density of each tissue at a frequency");
+  auto options = std::make_shared<Options>();
+  command->add_option("VOLUME", options->volume, "label volume (without one: every row of the table)");
+  add_material_options(*command, options->material)->required();
+  command->add_flag("--json", options->json, "for programs");
+  command->add_option("-o,--output", options->output, "the list as comma-separated values")->type_name("OUT.csv");
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  command->callback([options] { list_tissues(*options); });
+}
+
+}  // namespace limber::cmd
