@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber convert IN OUT [--tissues T]: the same thing in another format, chosen by the name of OUT.
+// limber convert IN OUT [--tissues T] [--frequency HZ] [--properties P.csv]: the same thing in another format, chosen by the name of OUT.
 #include <memory>
 
 #include "core/base/error.h"
 #include "core/cmd/command.h"
 #include "core/cmd/convert_rig.h"
+#include "core/cmd/outputs.h"
+#include "core/cmd/surface_options.h"
+#include "core/cmd/tissue_options.h"
+#include "core/deck/decks.h"
+#include "core/mesh/surface_files.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/volume_io.h"
 
@@ -12,15 +17,37 @@ namespace limber::cmd {
 
 namespace {
 struct Options {
-  std::string in, out, tissues, progress;
+  std::string in, out, progress;
+  MaterialOptions material;
 };
+
+void write_deck(DeckFormat format, const VolumeFile& file, const Options& options) {
+  const TissueTable tissues = tissues_of(file, options.material.tissues);
+  std::vector<std::string> warnings;
+  Deck deck{deck_volume(file.volume, warnings), {}, options.material.frequency.value_or(0)};
+  warn(warnings);
+  if (needs_frequency(format)) deck.materials = materials_of(tissues, options.material, options.out);
+  Outputs outputs;
+  outputs.expect({options.out});
+  outputs.expect(companions(format, options.out));
+  if (format == DeckFormat::OpenEms) write_openems(deck, options.out);
+  if (format == DeckFormat::DiscMaterial) write_disc_material(deck, options.out);
+  if (format == DeckFormat::GprMax) write_gprmax(deck, options.out);
+  if (format == DeckFormat::IcrpSlices) write_icrp_slices(deck.volume, tissues, read_composition_table(), options.out);
+  outputs.complete();
+}
 
 // Label volumes keep every value as it was; grey ones with fractions go as float.
 void convert_volume(const Options& options) {
-  check_writable(options.out);
+  const DeckFormat format = deck_format(options.out);
+  const bool is_surface = is_surface_path(options.out);
+  if (needs_frequency(format) && !options.material.frequency) materials_of({}, options.material, options.out);  // says what is missing
+  if (format == DeckFormat::None && !is_surface) check_writable(options.out);
+  else check_place(options.out);
   CommandProgress progress(options.progress);
   const VolumeSummary summary = summarize_volume(options.in);
   if (!summary.is_label) {
+    if (format != DeckFormat::None || is_surface) throw Error("this is no label volume", options.in, "give one whose voxels are labels");
     const GreyVolume grey = read_grey_volume(options.in, progress);
     warn(grey.warnings);
     write_grey_volume(grey, options.out);
@@ -28,10 +55,9 @@ void convert_volume(const Options& options) {
   }
   VolumeFile file = read_volume(options.in, progress);
   warn(file.warnings);
-  if (!options.tissues.empty()) {
-    const TissueTable user = read_tissue_table(options.tissues);
-    file.tissues = merge_tissue_tables(file.tissues, &user);
-  }
+  if (format != DeckFormat::None) return write_deck(format, file, options);
+  if (is_surface) return write_surfaces_of(file.volume, tissues_of(file, options.material.tissues), {}, options.out, progress);
+  if (!options.material.tissues.empty()) file.tissues = tissues_of(file, options.material.tissues);
   write_volume(file.volume, options.out, file.tissues, file.type);
 }
 
@@ -44,11 +70,11 @@ void convert(const Options& options) {
 }  // namespace
 
 void add_convert(CLI::App& app) {
-  auto* command = app.add_subcommand("convert", "the same volume, rig or label table in another format, by file name");
+  auto* command = app.add_subcommand("convert", "a volume, rig or label table in another format, or a volume as surfaces or as what a simulation takes, by file name");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "a volume, a folder with DICOM images, a rig or a label table")->required();
-  command->add_option("OUT", options->out, "its extension says the format")->required();
-  command->add_option("--tissues", options->tissues, "label table whose names and colours go into OUT");
+  command->add_option("OUT", options->out, "its extension says the format: volumes .nrrd .mha .nii.gz .txt ..., surfaces .obj .stl .ply, simulations .xml (openEMS) .csxcad.h5 .gprmax.h5 .dat (ICRP 110)")->required();
+  add_material_options(*command, options->material);
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
   command->callback([options] { convert(*options); });
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] POSE-OPTIONS --method lbs|dqs|fem [--fit-joints]
-//        [--contact] [--quality draft|normal|fine] [--mesh-out NAME] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2] [--field OUT.nrrd] [--jacobian OUT.nrrd]
-//        [--frames FIRST:LAST[:STEP]] [--threads N] [--progress json]
+//        [--contact] [--quality draft|normal|fine] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2]
+//        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--threads N] [--progress json]
 #include "core/resample/resample.h"
 
 #include <filesystem>
@@ -12,17 +12,21 @@
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
+#include "core/cmd/outputs.h"
 #include "core/cmd/pose_options.h"
+#include "core/deck/tet_phantom.h"
 #include "core/fem/solve_pose.h"
 #include "core/mesh/tetgen_files.h"
 #include "core/report/report.h"
 #include "core/resample/fem_shape.h"
 #include "core/resample/fem_steps.h"
 #include "core/resample/pose_path.h"
+#include "core/resample/posed_points.h"
 #include "core/rig/bone_parts.h"
 #include "core/rig/fit_joint.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
+#include "core/volume/landmarks.h"
 
 namespace limber::cmd {
 
@@ -32,23 +36,24 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method, output, report, grey, field, jacobian, quality, mesh_out, steps;
+  std::string weights, method, output, report, grey, field, jacobian, quality, mesh_out, mesh_unit = "mm", landmarks, steps;
   std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
   bool nearest = false, mass_exact = false, fit_joints = false, contact = false;
 };
 
-// GREY=OUT2
-struct GreyPaths {
+// IN=OUT, of what a pose takes along.
+struct Companion {
   std::string from, to;
 };
-GreyPaths grey_paths(const std::string& request) {
+Companion companion(const std::string& request, const char* what, const char* example) {
   const size_t equals = request.rfind('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == request.size())
-    throw Error("this is no grey volume and output", "--with " + request, "write GREY=OUT, as in --with ct.nii.gz=posed-ct.nii.gz");
+  if (equals == std::string::npos || equals == 0 || equals + 1 == request.size()) throw Error(std::string("this is no ") + what + " and output", request, std::string("write IN=OUT, as in ") + example);
   return {request.substr(0, equals), request.substr(equals + 1)};
 }
+Companion grey_paths(const std::string& request) { return companion(request, "grey volume", "--with ct.nii.gz=posed-ct.nii.gz"); }
+Companion landmark_paths(const std::string& request) { return companion(request, "list of landmarks", "--landmarks points.csv=posed-points.csv"); }
 
 constexpr const char* kFrame = "{frame}";
 
@@ -71,7 +76,7 @@ Options of_frame(const Options& options, int frame) {
   std::snprintf(number, sizeof number, "%04d", frame);
   Options one = options;
   one.pose.frame = frame;
-  for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.mesh_out})
+  for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.mesh_out, &one.landmarks})
     for (size_t at = 0; (at = output->find(kFrame, at)) != std::string::npos;) output->replace(at, std::string(kFrame).size(), number);
   return one;
 }
@@ -90,7 +95,8 @@ void check_outputs(const Options& options) {
   for (const std::string& volume : outputs)
     if (!volume.empty()) check_writable(volume);
   std::vector<std::string> others = {options.report};
-  if (!options.mesh_out.empty()) others.insert(others.end(), {mesh_file(options.mesh_out, ".node"), mesh_file(options.mesh_out, ".ele")});
+  if (!options.mesh_out.empty()) others.insert(others.end(), {mesh_file(options.mesh_out, ".node"), mesh_file(options.mesh_out, ".ele"), mesh_file(options.mesh_out, ".material")});
+  if (!options.landmarks.empty()) others.push_back(landmark_paths(options.landmarks).to);
   if (!options.steps.empty()) others.insert(others.end(), {options.steps + ".mesh", options.steps + ".step"});
   for (const std::string& other : others)
     if (!other.empty()) check_place(other);
@@ -123,7 +129,7 @@ void check_sequence(const Options& options) {
   if (options.pose.frame) throw Error("one frame or a sequence", "--frame " + std::to_string(*options.pose.frame), "leave --frame or --frames out");
   if (options.fit_joints) throw Error("joints are fitted to one pose, not to a sequence", "--fit-joints", "fit each first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
   if (!options.steps.empty()) throw Error("a sequence leaves no steps", "--steps " + options.steps, "leave it out");
-  for (const std::string& output : {options.output, options.report, options.grey, options.field, options.jacobian, options.mesh_out})
+  for (const std::string& output : {options.output, options.report, options.grey, options.field, options.jacobian, options.mesh_out, options.landmarks})
     if (!output.empty() && output.find(kFrame) == std::string::npos)
       throw Error("every frame would be written to the same file", output, "put {frame} into its name, as in posed_{frame}.nrrd");
 }
@@ -133,7 +139,7 @@ void check_method(const Options& options) {
   if (options.mass_exact && options.nearest)
     throw Error("masses are kept by what a voxel is nearly, which --nearest does not ask", "--mass-exact", "leave one of the two out");
   if (options.method == "fem") return;
-  for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"}, {!options.quality.empty(), "--quality"}, {!options.mesh_out.empty(), "--mesh-out"}, {!options.steps.empty(), "--steps"}})
+  for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"}, {!options.quality.empty(), "--quality"}, {!options.mesh_out.empty(), "--mesh-out"}, {options.mesh_unit != "mm", "--mesh-unit"}, {!options.steps.empty(), "--steps"}})
     if (is_given) throw Error(std::string(name) + " needs finite elements", "--method " + options.method, "use --method fem, or leave it out");
 }
 
@@ -196,8 +202,8 @@ void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bo
                 (deform.solve->blocked_by.empty() ? "" : ": what stands in the way: " + deform.solve->blocked_by)});
 }
 
-// The posed mesh with its tissues as regions: what files call the label with most voxels of a tet (the label itself where that is
-// no number below 65536); of a tet without any voxel, as of a tet that shares a corner.
+// The posed mesh with organ numbers as regions: that of the label with most voxels of a tet; of a tet without any voxel, as of a tet
+// that shares a corner.
 TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
   const TissueModel& model = shape.model;
   const TetMesh& mesh = model.fem.mesh;
@@ -211,8 +217,7 @@ TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
       if (model.counts[i].voxels > most) {
         most = model.counts[i].voxels;
         const Tissue* tissue = tissues.find(model.counts[i].label);
-        const bool fits = tissue && tissue->file_value >= 1 && tissue->file_value < 65536;
-        of_tet[t] = fits ? static_cast<std::uint16_t>(tissue->file_value) : model.counts[i].label;
+        of_tet[t] = tissue ? organ_number(*tissue) : model.counts[i].label;
       }
     if (most > 0) spread(t);
   }
@@ -228,28 +233,6 @@ TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
   }
   return {.V = shape.V, .T = mesh.T, .region = of_tet};
 }
-
-// Takes away what was written when something later fails.
-class Outputs {
- public:
-  ~Outputs() {
-    std::error_code ignored;
-    if (!complete_)
-      for (const Path& path : written_) std::filesystem::remove(path, ignored);
-  }
-  template <class Write>
-  void write(const std::string& path, const Write& write) {
-    if (path.empty()) return;
-    const bool is_new = !std::filesystem::exists(path);
-    write();
-    if (is_new) written_.push_back(path);
-  }
-  void complete() { complete_ = true; }
-
- private:
-  std::vector<Path> written_;
-  bool complete_ = false;
-};
 
 void describe(Report& report, const Options& options, const Armature& rig, const Pose& pose) {
   report.method = options.method;
@@ -276,14 +259,27 @@ void describe(Report& report, const Options& options, const Armature& rig, const
     if (!path.empty()) report.inputs.push_back(describe_input(path));
 }
 
+// The mesh as NAME.node and NAME.ele with organ numbers, and NAME.material, where what all of them are made of is known.
+void write_mesh(const Options& options, const TissueTable& tissues, const FemShape& shape, Outputs& outputs) {
+  TetMesh mesh = posed_mesh(shape, tissues);
+  if (options.mesh_unit == "cm") mesh.V /= 10;
+  const std::string materials = mesh_file(options.mesh_out, ".material");
+  outputs.expect({materials, mesh_file(options.mesh_out, ".ele"), mesh_file(options.mesh_out, ".node")});
+  write_tetgen_files(options.mesh_out, mesh);
+  std::string list;
+  try {
+    list = material_list(tissues, mesh.region, read_composition_table(), materials);
+  } catch (const Error& error) {
+    return warn(std::string("the mesh has no list of materials: ") + error.what());
+  }
+  write_file_atomically(materials, list);
+}
+
 void write_outputs(const Options& options, const Body& body, Posed& posed, Outputs& outputs) {
   outputs.write(options.output, [&] { write_volume(posed.volume, options.output, body.tissues, body.file.type); });
   outputs.write(options.field, [&] { write_vector_volume(posed.volume.grid, posed.displacement, options.field); });
   outputs.write(options.jacobian, [&] { write_scalar_volume(posed.volume.grid, posed.jacobian, options.jacobian); });
-  if (!options.mesh_out.empty())
-    outputs.write(mesh_file(options.mesh_out, ".ele"), [&] {
-      outputs.write(mesh_file(options.mesh_out, ".node"), [&] { write_tetgen_files(options.mesh_out, posed_mesh(*posed.shape, body.tissues)); });
-    });
+  if (!options.mesh_out.empty()) write_mesh(options, body.tissues, *posed.shape, outputs);
   if (options.grey.empty()) return;
   const std::string to = grey_paths(options.grey).to;
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });
@@ -296,8 +292,25 @@ void note_bone_overlap(Report& report, std::int64_t voxels, bool joints_fitted) 
                                                          "add --fit-joints"});
 }
 
+// Of a pose, beside the posed volume.
+struct Landmarks {
+  std::vector<Landmark> rest;
+  const TissueVoxels& tissue;
+  const SkinWeights& weights;
+};
+
+std::vector<Landmark> posed_landmarks(const Landmarks& landmarks, const Options& options, const Body& body, const Pose& pose, const FemShape* shape) {
+  std::vector<glm::dvec3> places;
+  for (const Landmark& landmark : landmarks.rest) places.push_back(landmark.position);
+  const Blend blend = options.method == "dqs" ? Blend::DualQuaternion : Blend::Linear;
+  places = posed_points(body.file.volume, landmarks.tissue, body.tissues, landmarks.weights, body.rig, pose, blend, shape, places);
+  std::vector<Landmark> there = landmarks.rest;
+  for (size_t i = 0; i < there.size(); ++i) there[i].position = places[i];
+  return there;
+}
+
 // Everything of one pose that is posed now.
-void finish(const Options& options, const Body& body, const Pose& pose, Posed& posed, Report& report, const Stopwatch& total) {
+void finish(const Options& options, const Body& body, const Pose& pose, const Landmarks& landmarks, Posed& posed, Report& report, const Stopwatch& total) {
   if (!options.mesh_out.empty() && !posed.shape)
     throw Error("the pose bends nothing, so there is no mesh", options.mesh_out, "leave --mesh-out out, or give a pose");
   report.seconds.mesh = posed.report.seconds_mesh;
@@ -310,6 +323,10 @@ void finish(const Options& options, const Body& body, const Pose& pose, Posed& p
   Outputs outputs;
   const Stopwatch writing;
   write_outputs(options, body, posed, outputs);
+  if (!landmarks.rest.empty()) {
+    const std::string to = landmark_paths(options.landmarks).to;
+    outputs.write(to, [&] { write_landmarks(posed_landmarks(landmarks, options, body, pose, posed.shape.get()), to); });
+  }
   report.seconds.write = writing.seconds();
   if (!options.report.empty()) {
     const Stopwatch comparing;
@@ -347,6 +364,8 @@ void run(const Options& options) {
   }
   std::optional<GreyVolume> grey;
   if (!options.grey.empty()) grey = read_grey_volume(grey_paths(options.grey).from, progress);
+  std::vector<Landmark> landmarks;
+  if (!options.landmarks.empty()) landmarks = read_landmarks(landmark_paths(options.landmarks).from);
   report.seconds.read = reading.seconds();
 
   const Stopwatch weighting;
@@ -373,7 +392,7 @@ void run(const Options& options) {
     if (posed.shape && frames.empty()) solve.end(*posed.shape);
     all_reached &= !posed.report.solve || posed.report.solve->converged;
     Report of_pose = report;
-    finish(frames.empty() ? options : of_frame(options, frames[place]), body, poses[place], posed, of_pose, total);
+    finish(frames.empty() ? options : of_frame(options, frames[place]), body, poses[place], {landmarks, tissue, weights}, posed, of_pose, total);
     if (place + 1 == poses.size()) return;
     solve.aim_at(poses[place + 1]);
     nothing_is_being_written.emplace();
@@ -393,7 +412,8 @@ void add_resample(CLI::App& app) {
   command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions) or fem (finite elements)")->required()->check(CLI::IsMember({"lbs", "dqs", "fem"}));
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));
-  command->add_option("--mesh-out", options->mesh_out, "fem: the posed mesh as NAME.node and NAME.ele, with the tissue of each tet")->type_name("NAME");
+  command->add_option("--mesh-out", options->mesh_out, "fem: the posed mesh as NAME.node and NAME.ele, with the tissue of each tet, and NAME.material for particle codes")->type_name("NAME");
+  command->add_option("--mesh-unit", options->mesh_unit, "fem: of the mesh: mm, or cm as in the phantoms of ICRP 145")->check(CLI::IsMember({"mm", "cm"}));
   command->add_option("--steps", options->steps, "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step")->type_name("NAME");
   command->add_flag("--fit-joints", options->fit_joints, "first move each bent joint so that its bones do not collide");
   command->add_option("-o,--output", options->output, "the posed volume")->required();
@@ -403,6 +423,7 @@ void add_resample(CLI::App& app) {
   auto* mass_exact = command->add_flag("--mass-exact", options->mass_exact, "soft tissues get their rest volumes: borders between them move by the fewest and least sure voxels");
   command->add_option("--mass-limit", options->mass_limit, "percent of a tissue that mass-exact may make up; more is refused (default: 3)")->needs(mass_exact)->check(CLI::Range(0.0, 20.0));
   command->add_option("--with", options->grey, "a grey volume moved by the same map")->type_name("GREY=OUT");
+  command->add_option("--landmarks", options->landmarks, "points (name,x,y,z; mm, LPS) that travel with the pose")->type_name("IN.csv=OUT.csv");
   command->add_option("--field", options->field, "displacement at each posed voxel, mm");
   command->add_option("--jacobian", options->jacobian, "volume ratio at each posed voxel");
   add_run_options(*command, options->run);

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "core/base/error.h"
+#include "core/cmd/surface_options.h"
 
 namespace limber::cmd {
 
@@ -24,6 +25,7 @@ void add_commands(CLI::App& app) {
   add_report(app);
   add_resample(app);
   add_skin_points(app);
+  add_surfaces(app);
   add_tissues(app);
   add_weights(app);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A tet mesh as TetGen's text files NAME.node and NAME.ele, numbered from 0: the region of a tet is its one attribute
-// (0 soft tissue, 1 + the rig bone), as TetGen, Gmsh, Geant4 and PHITS read it. Places are written so that reading gives
+// (0 soft tissue, 1 + the rig bone; or an organ number), as TetGen, Gmsh, Geant4 and PHITS read it. Places are written so that reading gives
 // them back bit for bit.
 #pragma once
 

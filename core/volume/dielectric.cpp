@@ -67,9 +67,19 @@ Dielectric dielectric_at(const ColeCole& tissue, double frequency) {
   return {epsilon.real(), tissue.conductivity - epsilon.imag() * w * kVacuumPermittivity};
 }
 
+TissueMatch DielectricTable::match(const Tissue& tissue) const {
+  const std::span<const TissueNames> rows = names;
+  const TissueMatch by_user = match_tissue(tissue, rows.first(user_rows));
+  if (by_user.row >= 0) return by_user;
+  TissueMatch match = match_tissue(tissue, rows.subspan(user_rows));
+  if (match.row >= 0) match.row += static_cast<int>(user_rows);
+  return match;
+}
+
 DielectricTable read_dielectric_table(const Path& user) {
   DielectricTable table;
   if (!user.empty()) append(table, user);
+  table.user_rows = table.names.size();
   append(table, asset("tissues/dielectric.csv"));
   return table;
 }
@@ -78,7 +88,7 @@ TissueMaterials tissue_materials(const TissueTable& tissues, const DielectricTab
   TissueMaterials found;
   for (const Tissue& tissue : tissues.tissues) {
     const std::string name = tissue.name.empty() ? "label " + text_of(tissue.file_value) : tissue.name;
-    const TissueMatch match = match_tissue(tissue, table.names);
+    const TissueMatch match = table.match(tissue);
     if (match.row < 0) {
       found.unmatched.push_back(name);
       continue;

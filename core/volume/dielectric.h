@@ -40,6 +40,9 @@ struct DielectricTable {
   std::vector<TissueNames> names;     // #rows
   std::vector<ColeCole> parameters;   // #rows
   std::vector<std::string> sources;   // #rows
+  std::size_t user_rows = 0;          // the first of them are the user's: they are asked before all others
+
+  TissueMatch match(const Tissue& tissue) const;
 };
 
 // The table of the program, behind the rows of the user's where a path is given.

@@ -52,6 +52,7 @@ struct Door {
 
 const std::vector<Door> kDoors = {
     {"GDCM", {"gdcm"}, {"core/volume/dicom_codec.cpp"}},
+    {"HDF5", {"hdf5"}, {"core/deck/hdf5_codec.cpp"}},
     {"ISA-L", {"isa-l"}, {"core/base/deflate.cpp"}},
     {"bzip2", {"bzlib"}, {"core/volume/voxel_stream.cpp"}},
     {"TetGen", {"tetgen"}, {"core/mesh/tetrahedralize.cpp"}},

@@ -85,7 +85,7 @@ TEST_CASE("dielectric: every tissue of the table gives what others published, at
     const Dielectric d = dielectric_at(table.parameters[row], published.frequency);
     // As exact as the digits that were published; conductivities of dry skin at 10 kHz have two.
     const double epsilon = published.source == Duke ? 0.02 : 1e-4;
-    const double last_digit = published.source == BMEO ? (published.frequency == 1e4 && published.conductivity < 0.001 ? 5e-6 : 5.1e-5) : 0;
+    const double last_digit = published.source == BMEO ? (published.frequency == 1e4 && published.conductivity < 0.001 ? 5e-6 : 6e-5) : 0;
     INFO(published.row, " at ", published.frequency, " Hz: ", d.permittivity, ", ", d.conductivity, " S/m");
     CHECK(std::abs(d.permittivity - published.permittivity) <= epsilon * published.permittivity);
     CHECK(std::abs(d.conductivity - published.conductivity) <= (last_digit > 0 ? last_digit : epsilon * published.conductivity));
@@ -123,7 +123,7 @@ TEST_CASE("dielectric: permittivity falls and conductivity rises with frequency,
 TEST_CASE("dielectric: tissues find their row by the words of their name, else by their kind, else not at all") {
   const DielectricTable table = read_dielectric_table();
   const auto row_of = [&](const std::string& name) {
-    const TissueMatch match = match_tissue(tissue_named(name), table.names);
+    const TissueMatch match = table.match(tissue_named(name));
     return match.row < 0 ? std::string("none") : table.names[match.row].name + (match.by_name ? "" : " (kind)");
   };
   for (const auto& [name, row] : std::vector<std::pair<std::string, std::string>>{
@@ -144,8 +144,8 @@ TEST_CASE("dielectric: a user's rows go before the table's, and a damaged one is
     return read_dielectric_table(folder / "p.csv");
   };
   const DielectricTable table = table_of(columns + "# mine\n\nmy muscle,muscle,,60,0,0,0,0,0,0,0,0,0,0,0,0,1.5,\"measured, by me\"\r\n");
-  const TissueMatch match = match_tissue(tissue_named("muscle"), table.names);
-  REQUIRE(match.row == 0);
+  REQUIRE(table.match(tissue_named("muscle")).row == 0);
+  CHECK(table.names[table.match(tissue_named("fat")).row].name == "fat");
   CHECK(table.sources[0] == "measured, by me");
   CHECK(dielectric_at(table.parameters[0], 5e7).conductivity == 1.5);
   for (const char* row : {"a,a,,60,0,0\n", "a,a,,60,0,0,0,0,0,0,0,0,0,0,0,0,x,s\n", "a,a,,60,0,0,0,0,0,0,0,0,0,0,0,0,-1,s\n", "a,a,,0.5,0,0,0,0,0,0,0,0,0,0,0,0,1,s\n",

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Files of a command that belong together: when a later one fails, the earlier ones are taken away again.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/file.h"
+
+namespace limber::cmd {
+
+class Outputs {
+ public:
+  ~Outputs() {
+    std::error_code ignored;
+    if (!complete_)
+      for (const Path& path : written_) std::filesystem::remove(path, ignored);
+  }
+  // Before the files are written: those that are there already are not taken away.
+  void expect(const std::vector<Path>& paths) {
+    for (const Path& path : paths)
+      if (!std::filesystem::exists(path)) written_.push_back(path);
+  }
+  template <class Write>
+  void write(const std::string& path, const Write& write) {
+    if (path.empty()) return;
+    const bool is_new = !std::filesystem::exists(path);
+    write();
+    if (is_new) written_.push_back(path);
+  }
+  void complete() { complete_ = true; }
+
+ private:
+  std::vector<Path> written_;
+  bool complete_ = false;
+};
+
+}  // namespace limber::cmd

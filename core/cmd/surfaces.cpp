@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber surfaces VOLUME -o OUT.obj|stl|ply [--tissues T] [--only A,B] [--relax N]
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "core/base/error.h"
+#include "core/cmd/command.h"
+#include "core/cmd/outputs.h"
+#include "core/cmd/surface_options.h"
+#include "core/cmd/tissue_options.h"
+#include "core/mesh/surface_files.h"
+#include "core/volume/header_text.h"
+
+namespace limber::cmd {
+
+namespace {
+struct Options {
+  std::string volume, tissues, output, progress;
+  SurfaceChoice choice;
+};
+
+bool is_meant(const Tissue& tissue, const std::string& word) { return lower_case(tissue.name) == lower_case(word) || text_of(tissue.file_value) == word; }
+
+void keep_chosen(LabelSurfaces& all, const TissueTable& tissues, const std::vector<std::string>& chosen) {
+  if (chosen.empty()) return;
+  for (const std::string& word : chosen)
+    if (std::none_of(tissues.tissues.begin(), tissues.tissues.end(), [&](const Tissue& tissue) { return is_meant(tissue, word); }))
+      throw Error("there is no tissue " + in_quotes(word), "--only", "name tissues or labels that `limber info` lists");
+  std::erase_if(all.surfaces, [&](const LabelSurface& surface) {
+    const Tissue* tissue = tissues.find(surface.label);
+    return !tissue || std::none_of(chosen.begin(), chosen.end(), [&](const std::string& word) { return is_meant(*tissue, word); });
+  });
+}
+
+void print_surfaces(const LabelSurfaces& all, const LabelVolume& volume, const TissueTable& tissues) {
+  std::vector<std::int64_t> voxels(65536);
+  for (const Label label : volume.voxels) ++voxels[label];
+  std::printf("%-28s %10s %10s %7s %14s %9s\n", "tissue", "triangles", "vertices", "Euler", "mm3", "of voxels");
+  for (const LabelSurface& surface : all.surfaces) {
+    const Tissue* tissue = tissues.find(surface.label);
+    const double mm3 = enclosed_volume(all, surface), by_voxels = static_cast<double>(voxels[surface.label]) * volume.grid.voxel_volume();
+    std::printf("%-28s %10zu %10zu %7d %14.6g %8.2f%%\n", one_line(tissue ? tissue->name : "").c_str(), surface.F.size(), surface.vertex.size(), surface.euler_number(), mm3,
+                100 * mm3 / by_voxels);
+  }
+}
+}  // namespace
+
+void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, const SurfaceChoice& choice, const std::string& output, Progress& progress) {
+  if (!is_surface_path(output)) throw Error("surfaces cannot be written under this name", output, "end it in .obj, .stl or .ply");
+  LabelSurfaces all = label_surfaces(volume, choice.settings, progress);
+  keep_chosen(all, tissues, choice.tissues);
+  if (all.surfaces.empty()) throw Error("there is no tissue", output, "give a volume with labels");
+  Outputs outputs;
+  outputs.expect(surface_paths(all, tissues, output));
+  write_surfaces(all, tissues, output);
+  outputs.complete();
+  print_surfaces(all, volume, tissues);
+}
+
+void add_surfaces(CLI::App& app) {
+  auto* command = app.add_subcommand("surfaces", "closed, smooth surfaces of tissues that share their borders");
+  auto options = std::make_shared<Options>();
+  command->add_option("VOLUME", options->volume, "label volume")->required();
+  command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
+  command->add_option("--only", options->choice.tissues, "tissues by name or label (default: all)")->delimiter(',')->type_name("A,B");
+  command->add_option("--relax", options->choice.settings.relaxations, "how often vertices are drawn to their neighbours (default: 20; 0 keeps voxels' steps)")->check(CLI::Range(0, 1000));
+  command->add_option("-o,--output", options->output, "OUT.obj (one file), OUT.stl or OUT.ply (a file a tissue: OUT-NAME.stl)")->required();
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  command->callback([options] {
+    check_place(options->output);
+    CommandProgress progress(options->progress);
+    const VolumeFile file = read_volume(options->volume, progress);
+    warn(file.warnings);
+    write_surfaces_of(file.volume, tissues_of(file, options->tissues), options->choice, options->output, progress);
+  });
+}
+
+}  // namespace limber::cmd

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Exports read back by other programs' readers (tests/support/read_exports.py): skipped, loudly, where those are not installed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "tests/support/program.h"
+
+namespace limber::test {
+
+inline ProgramRun read_export(std::vector<std::string> words) {
+  words.insert(words.begin(), LIMBER_SOURCE_DIR "/tests/support/read_exports.py");
+  return run_program("/usr/bin/python3", words);
+}
+
+}  // namespace limber::test
+
+#define READ_BACK(...)                                                                                          \
+  if (const auto read = limber::test::read_export({__VA_ARGS__}); read.exit_code == 77)                          \
+    MESSAGE("SKIPPED: not read back: ", read.out);                                                              \
+  else                                                                                                          \
+    CHECK_MESSAGE(read.exit_code == 0, read.out, read.err);
