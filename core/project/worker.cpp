@@ -8,6 +8,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -30,7 +32,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kPollMilliseconds = 20;
+constexpr int kPollMilliseconds = 20, kEndingMilliseconds = 5;
+constexpr double kDying = 0.01;  // seconds that a worker is given to be gone once it is killed
 constexpr std::size_t kMostOutput = std::size_t{16} << 20;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 constexpr std::size_t kMostWarnings = 1000;
@@ -72,7 +75,13 @@ struct Pipe {
   }
 };
 
-// The worker in a process group of its own, so that its own children end with it. Ended and waited for when this goes.
+void bury(pid_t process) {
+  while (::waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+// The worker in a process group of its own, so that its own children end with it. Killed when this goes. One that yields gives its
+// memory back only when the machine has time for it, so nobody waits for that: killed, it does nothing any more.
 class Process {
  public:
   Process(const Path& program, const std::vector<std::string>& arguments, const Pipe& out, const Pipe& err) {
@@ -105,7 +114,10 @@ class Process {
   ~Process() {
     if (ended_) return;
     send(SIGKILL);
-    while (::waitpid(id_, &status_, 0) < 0 && errno == EINTR) {
+    try {
+      std::thread(bury, id_).detach();
+    } catch (const std::system_error&) {
+      bury(id_);
     }
   }
   Process(const Process&) = delete;
@@ -208,11 +220,11 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
 
   enum class Stop { None, Cancel, Time } stop = Stop::None;
   const auto started = Clock::now();
-  Clock::time_point asked;
+  Clock::time_point asked, killed;
   bool out_open = true, err_open = true;
   while (!process.has_ended()) {
     pollfd ends[2] = {{out_open ? out.read_end : -1, POLLIN, 0}, {err_open ? err.read_end : -1, POLLIN, 0}};
-    ::poll(ends, 2, kPollMilliseconds);
+    ::poll(ends, 2, stop == Stop::None ? kPollMilliseconds : kEndingMilliseconds);
     if (out_open && ends[0].revents) out_open = out.drain(take_out);
     if (err_open && ends[1].revents) err_open = err.drain(take_err);
     if (stop == Stop::None) {
@@ -221,8 +233,11 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
       if (stop == Stop::None) continue;
       asked = Clock::now();
       process.send(SIGTERM);
-    } else if (seconds_since(asked) > settings.patience) {
+    } else if (killed == Clock::time_point() && seconds_since(asked) > settings.patience) {
+      killed = Clock::now();
       process.send(SIGKILL);
+    } else if (killed != Clock::time_point() && seconds_since(killed) > kDying) {
+      break;
     }
   }
   out.drain(take_out);

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <fstream>
 #include <thread>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <sched.h>
@@ -196,7 +197,30 @@ TEST_CASE("worker: a cancel ends it within a moment, also when it does not liste
   CHECK_FALSE(alive(pid));
   for (int i = 0; i < 200 && alive(child); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   CHECK_FALSE(alive(child));
+  for (int i = 0; i < 200 && ::waitpid(-1, nullptr, WNOHANG) != -1; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   CHECK(::waitpid(-1, nullptr, WNOHANG) == -1);  // nothing unburied
+}
+
+TEST_CASE("worker: a cancel does not wait until a busy machine has time to end one that yields") {
+  const TemporaryFolder folder;
+  write_job(folder, "0.8");
+  std::atomic<bool> over = false;
+  std::vector<std::thread> busy;
+  Progress progress;
+  std::atomic<bool> told = false;
+  WorkerSettings settings{.yields = true, .program = LIMBER_PROGRAM};
+  settings.on_progress = [&](const WorkerProgress&) { told = true; };
+  std::thread waiting([&] { CHECK_THROWS_AS(run_worker(folder / "job.json", progress, settings), Cancelled); });
+  while (!told) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  for (unsigned i = 0; i < 2 * std::thread::hardware_concurrency(); ++i)
+    busy.emplace_back([&] { while (!over) {} });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto asked = Clock::now();
+  progress.cancel();
+  waiting.join();
+  CHECK(Clock::now() - asked < std::chrono::milliseconds(700));  // 75 where there is room; it takes seconds to die
+  over = true;
+  for (std::thread& each : busy) each.join();
 }
 
 TEST_CASE("worker: it does not outlive the program that started it") {
