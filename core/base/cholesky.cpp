@@ -111,16 +111,20 @@ struct Cholesky::Factor {
   std::vector<int> below;                       // ranks of the blocks below the diagonal, rising
   std::vector<int> column, row;                 // scalar pattern, whole blocks, in ranks
   std::vector<double> value, right_side;
+  std::unique_ptr<double[]> room;               // of the factor's numbers
+  std::size_t room_size = 0;
 
   Factor() {
     cholmod_start(&common);
     common.print = 0;
+    // Up to how many columns supernodes are joined although that stores zeros: CHOLMOD's own bounds, of nodes.
+    for (std::size_t& columns : common.nrelax) columns *= 3;
   }
   ~Factor() {
     cholmod_free_dense(&solution, &common);
     cholmod_free_dense(&work_y, &common);
     cholmod_free_dense(&work_e, &common);
-    cholmod_free_factor(&factor, &common);
+    free_factor();
     cholmod_finish(&common);
   }
   Factor(const Factor&) = delete;
@@ -136,6 +140,8 @@ struct Cholesky::Factor {
   void order(const BlockGraph& graph);
   void expand(const BlockGraph& graph);
   void analyse();
+  void take_room();
+  void free_factor();
 };
 
 // Nested dissection of the nodes, then by postorder of the elimination tree, so that supernodes are contiguous.
@@ -163,6 +169,9 @@ void Cholesky::Factor::order(const BlockGraph& graph) {
 
 void Cholesky::Factor::expand(const BlockGraph& graph) {
   const int n = graph.node_count();
+  below_first.assign(1, 0);
+  below.clear();
+  row.clear();
   std::vector<int> node_of(n);
   for (int i = 0; i < n; ++i) node_of[rank[i]] = i;
   for (int r = 0; r < n; ++r) {
@@ -200,8 +209,36 @@ void Cholesky::Factor::analyse() {
   operations = common.fl;
 }
 
-Cholesky::Cholesky(const BlockGraph& graph) : factor_(std::make_unique<Factor>()) {
+// The numbers are not CHOLMOD's own, which would be given back to the system with each analysis.
+void Cholesky::Factor::take_room() {
+  constexpr std::size_t kSpare = 8;  // one part more in so many: the next graph is much like this one
+  if (factor->xsize > room_size) try {
+    room.reset();
+    room_size = factor->xsize + factor->xsize / kSpare;
+    room = std::make_unique_for_overwrite<double[]>(room_size);
+  } catch (const std::bad_alloc&) {
+    room_size = 0;
+    common.status = CHOLMOD_OUT_OF_MEMORY;
+    require("factorization");
+  }
+  factor->x = room.get();
+  factor->xtype = CHOLMOD_REAL;
+  factor->dtype = CHOLMOD_DOUBLE;
+}
+
+void Cholesky::Factor::free_factor() {
+  if (factor && factor->xtype != CHOLMOD_PATTERN) {
+    factor->x = nullptr;
+    factor->xtype = CHOLMOD_PATTERN;
+  }
+  cholmod_free_factor(&factor, &common);
+}
+
+Cholesky::Cholesky(const BlockGraph& graph) : factor_(std::make_unique<Factor>()) { analyse(graph); }
+
+void Cholesky::analyse(const BlockGraph& graph) {
   const OneThread one_thread;
+  factor_->free_factor();
   factor_->order(graph);
   factor_->expand(graph);
   factor_->analyse();
@@ -235,6 +272,7 @@ bool Cholesky::factorize() {
   A.x = factor_->value.data();
   A.xtype = CHOLMOD_REAL;
   factor_->common.status = CHOLMOD_OK;
+  if (factor_->factor->xtype == CHOLMOD_PATTERN) factor_->take_room();
   cholmod_factorize(&A, factor_->factor, &factor_->common);
   factor_->require("factorization");
   return factor_->common.status != CHOLMOD_NOT_POSDEF && factor_->factor->minor == factor_->factor->n;

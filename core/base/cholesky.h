@@ -47,6 +47,8 @@ class Cholesky {
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
   Cholesky& operator=(Cholesky&&) noexcept;
+  // For another graph, in the memory that the factor has: touching as much anew costs half of a factorization.
+  void analyse(const BlockGraph& graph);
 
   int node_count() const;
   // Of the ordering that keeps the factor sparse. Only blocks whose row node comes at or after their column node are stored;

@@ -12,7 +12,8 @@ namespace limber {
 
 namespace {
 constexpr double kOfRest = 0.5;      // of what a pair is apart at rest: no thickness is more
-constexpr double kSoon = 2;          // thicknesses: pairs this near are in the matrix before they touch
+constexpr double kSoon = 1.4;        // thicknesses: pairs this near are in the matrix before they touch; at 2, where what is as near as at
+                                     // rest counts, skin's own neighbours would double the cost of a factorization
 constexpr double kParallel = 1e-3;   // of the squared product of two edges at rest, below which they count as parallel
 constexpr std::int64_t kGrain = 2048;
 

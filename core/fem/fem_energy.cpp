@@ -83,7 +83,8 @@ void FemEnergy::prepare(const Places& x) {
   flesh_.connect(graph, unknown_);
   patches_.connect(graph, unknown_);
   contact_.connect(graph, unknown_, x);
-  matrix_ = std::make_unique<Cholesky>(graph.build());
+  if (matrix_) matrix_->analyse(graph.build());
+  else matrix_ = std::make_unique<Cholesky>(graph.build());
   flesh_.bind(*matrix_, unknown_);
   patches_.bind(flesh_, *matrix_, unknown_);
 }

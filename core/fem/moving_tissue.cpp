@@ -181,17 +181,16 @@ MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue
   MovingTissue result;
   result.moves_as = first_alike_on_path(path, settings.places);
   const Cells cells(volume, tissue, weights, result.moves_as);
-  std::vector<std::uint8_t> seeds = cells.mixed();
-  if (settings.contact && has_any(seeds)) {
-    const auto near = cells.brought_near(path, settings.places, settings.near_mm);
-    for (size_t i = 0; i < seeds.size(); ++i) seeds[i] |= near[i];
-  }
-  const std::vector<float> squared = cells.squared_distance_to(seeds, progress);
-  const auto within = [&](double mm) {
-    return cells.mask([&](std::int64_t at) { return squared[at] <= mm * mm; });
+  const std::vector<float> to_bending = cells.squared_distance_to(cells.mixed(), progress);
+  std::vector<float> to_near(to_bending.size(), INFINITY);
+  if (settings.contact && has_any(cells.mixed()))
+    if (const auto near = cells.brought_near(path, settings.places, settings.near_mm); has_any(near)) to_near = cells.squared_distance_to(near, progress);
+  const auto squared = [](double mm) { return mm * mm; };
+  const auto within = [&](double rim_mm) {
+    return cells.mask([&](std::int64_t at) { return to_bending[at] <= squared(settings.margin_mm + rim_mm) || to_near[at] <= squared(settings.give_mm + rim_mm); });
   };
-  result.free = within(settings.margin_mm);
-  result.meshed = within(settings.margin_mm + settings.rim_mm);
+  result.free = within(0);
+  result.meshed = within(settings.rim_mm);
   return result;
 }
 

@@ -4,8 +4,8 @@
 //
 // Tissue bends where its influences (or those of its neighbours) lie on bones that move differently. Elasticity carries
 // further than weights do, so what lies within a margin of it may bend too, and so may what the pose brings near to another
-// part of the body, where contact can press it in. Around that lies a rim that is meshed but held, on which the mesh meets
-// what is not meshed. All of it is decided in cells of 4^3 voxels.
+// part of the body, where contact can press it in, with what is close around. Around that lies a rim that is meshed but held,
+// on which the mesh meets what is not meshed. All of it is decided in cells of 4^3 voxels.
 #pragma once
 
 #include <vector>
@@ -20,8 +20,9 @@ namespace limber {
 struct MovingSettings {
   double margin_mm = 30;   // around what bends by its weights
   double rim_mm = 20;      // held, around that
-  bool contact = false;    // parts that the pose brings within `near_mm` of each other may bend, and a margin around them
+  bool contact = false;    // parts that the pose brings within `near_mm` of each other may bend, and what is within `give_mm` of them
   double near_mm = 16;
+  double give_mm = 24;
   std::vector<double> places{0.25, 0.5, 0.75, 1};  // of the path that are looked at
 };
 

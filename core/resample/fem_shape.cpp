@@ -15,6 +15,7 @@ namespace limber {
 namespace {
 
 constexpr double kMargin = 24;  // mm around what bends by its weights: skin creases wider than weights blend
+constexpr double kGive = 16;    // mm around what the pose brings together: pressed flesh gives way less far than a crease reaches
 constexpr double kRim = 2.5;    // tets: two layers whole, whatever cells the tissue's border cuts
 constexpr double kJoint = 2;    // tets: so many layers share the sliding of two bones
 constexpr double kDrift = 2;    // mm that a bone may give way at a node, more where tets are so coarse that bones are rough
@@ -103,7 +104,8 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   const auto meshing = std::chrono::steady_clock::now();
   MovingTissue& moving = last_.moving;
   moving = moving_tissue(volume, tissue, weights, way_through(poses_, weights, armature),
-                         {.margin_mm = kMargin + spacing_, .rim_mm = kRim * spacing_, .contact = fem_.contact, .near_mm = 2 * spacing_, .places = places_of(poses_.size())}, progress);
+                         {.margin_mm = kMargin + spacing_, .rim_mm = kRim * spacing_, .contact = fem_.contact, .near_mm = 2 * spacing_, .give_mm = kGive + spacing_,
+                          .places = places_of(poses_.size())}, progress);
   last_.pose = rest_pose(armature);
   if (moving.empty()) return;
 
