@@ -3,7 +3,9 @@
 #include <filesystem>
 
 #include "core/cmd/command.h"
+#include "core/cmd/experiment.h"
 #include "editor/commands/command.h"
+#include "editor/commands/study_pictures.h"
 #include "editor/loop.h"
 
 int main(int argc, char** argv) {
@@ -16,6 +18,7 @@ int main(int argc, char** argv) {
   });
   app.require_subcommand(0, 1);
   limber::cmd::add_commands(app);
+  limber::cmd::add_experiment(app, limber::editor::start_pictures);
   limber::editor::add_editor(app);
   limber::editor::add_render(app);
   app.callback([&] {

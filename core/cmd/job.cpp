@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber job JOB.json: what a worker or a cluster node runs. A job is a command written down: its keys are the command's
 // options, so that a job can do what the command line can, and the same way.
+// It resamples, or makes what a resampling needs: "prepare", "weights", "phantom" (whose "subject" stands in the volume's place).
 //   {"command": "resample", "volume": "arm.mha", "rig": "rig.json", "flex": ["Forearm=90"], "method": "dqs", "output": "posed.nrrd"}
 // Lists repeat an option (bones, labels: joined by commas); true sets a flag. Paths are relative to the job's folder.
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -20,6 +22,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+const std::map<std::string, void (*)(CLI::App&)> kCommands = {
+    {"phantom", add_phantom}, {"prepare", add_prepare}, {"resample", add_resample}, {"weights", add_weights}};
 constexpr std::uint64_t kLargestJob = 1 << 20;
 
 std::string text_of(const Json& value, const std::string& key, const Path& job) {
@@ -28,11 +32,14 @@ std::string text_of(const Json& value, const std::string& key, const Path& job) 
   throw Error("a setting is neither text nor a number", job.string() + ", " + key, "write \"" + key + "\": \"value\"");
 }
 
+// What a command's first word is called in a job.
+const char* subject_of(const Json& job) { return job.at("command") == "phantom" ? "subject" : "volume"; }
+
 // The words of the command line that the job stands for.
 std::vector<std::string> words_of(const Json& job, const Path& path) {
   std::vector<std::string> words{job.at("command").get<std::string>()};
   for (const auto& [key, value] : job.items()) {
-    if (key == "command" || key == "volume") continue;
+    if (key == "command" || key == subject_of(job)) continue;
     if (value.is_boolean()) {
       if (value.get<bool>()) words.push_back("--" + key);
     } else if (value.is_array()) {
@@ -41,18 +48,21 @@ std::vector<std::string> words_of(const Json& job, const Path& path) {
       words.push_back("--" + key + "=" + text_of(value, key, path));
     }
   }
-  words.insert(words.begin() + 1, text_of(job.at("volume"), "volume", path));
+  words.insert(words.begin() + 1, text_of(job.at(subject_of(job)), subject_of(job), path));
   return words;
 }
 
 Json read_job(const Path& path) {
   const Json job = Json::parse(read_file(path, kLargestJob), nullptr, false);
   if (!job.is_object()) throw Error("this is not a job", path.string(), "write a JSON object with \"command\" and its options");
-  for (const char* key : {"command", "volume"})
+  const auto require = [&](const char* key) {
     if (!job.contains(key) || !job[key].is_string())
       throw Error(std::string("the job has no \"") + key + "\"", path.string(), "add it: \"command\": \"resample\", \"volume\": FILE");
-  if (job["command"] != "resample")
+  };
+  require("command");
+  if (!kCommands.contains(job["command"].get<std::string>()))
     throw Error("a job cannot run this command", path.string() + ", " + job["command"].get<std::string>(), "use \"command\": \"resample\"");
+  require(subject_of(job));
   return job;
 }
 
@@ -73,19 +83,19 @@ void run(const Options& options) {
   std::filesystem::current_path(where.parent_path());
 
   CLI::App app;
-  add_resample(app);
+  kCommands.at(words.front())(app);
   std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
   try {
     app.parse(words);
   } catch (const CLI::ParseError& error) {
-    throw Error("the job does not describe a resampling", path.string(), error.what());
+    throw Error("the job does not describe what its command does", path.string(), error.what());
   }
 }
 
 }  // namespace
 
 void add_job(CLI::App& app) {
-  auto* command = app.add_subcommand("job", "a resampling described in a file");
+  auto* command = app.add_subcommand("job", "a resampling, or what one needs, described in a file");
   auto options = std::make_shared<Options>();
   command->add_option("JOB", options->file, "JSON: {\"command\": \"resample\", \"volume\", \"rig\", ... as the command's options}")->required();
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));

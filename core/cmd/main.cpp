@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The program without the editor: subcommands only.
 #include "core/cmd/command.h"
+#include "core/cmd/experiment.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Limber changes the pose of labelled voxel anatomy.", "limber");
   app.require_subcommand(1);
   limber::cmd::add_commands(app);
+  limber::cmd::add_experiment(app);
   return limber::cmd::run(app, argc, argv);
 }

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/cmd/command.h"
+#include "core/report/dice.h"
 #include "core/volume/volume_io.h"
 
 namespace limber::cmd {
@@ -57,6 +58,7 @@ void run(const Options& options) {
     }
 
   report.metrics = compare(before.volume, after.volume, tissues);
+  if (before.volume.grid == after.volume.grid) report.dice = dice_by_label(before.volume, after.volume);
   progress.update("report", 1);
   report.seconds.total = total.seconds();
   if (options.json)

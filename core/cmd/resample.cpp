@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] POSE-OPTIONS --method lbs|dqs|fem [--fit-joints]
 //        [--contact] [--quality draft|normal|fine] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2]
-//        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--threads N] [--progress json]
+//        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--threads N] [--progress json]
 #include "core/resample/resample.h"
 
 #include <filesystem>
@@ -36,7 +36,7 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method, output, report, grey, field, jacobian, quality, mesh_out, mesh_unit = "mm", landmarks, steps;
+  std::string weights, method, output, report, grey, field, jacobian, overlap, quality, mesh_out, mesh_unit = "mm", landmarks, steps;
   std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
@@ -76,7 +76,7 @@ Options of_frame(const Options& options, int frame) {
   std::snprintf(number, sizeof number, "%04d", frame);
   Options one = options;
   one.pose.frame = frame;
-  for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.mesh_out, &one.landmarks})
+  for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.overlap, &one.mesh_out, &one.landmarks})
     for (size_t at = 0; (at = output->find(kFrame, at)) != std::string::npos;) output->replace(at, std::string(kFrame).size(), number);
   return one;
 }
@@ -90,7 +90,7 @@ std::string mesh_file(const std::string& name, const char* ending) {
 // Before anything is computed.
 void check_outputs(const Options& options) {
   check_writable(options.output);
-  std::vector<std::string> outputs = {options.output, options.field, options.jacobian};
+  std::vector<std::string> outputs = {options.output, options.field, options.jacobian, options.overlap};
   if (!options.grey.empty()) outputs.push_back(grey_paths(options.grey).to);
   for (const std::string& volume : outputs)
     if (!volume.empty()) check_writable(volume);
@@ -129,7 +129,7 @@ void check_sequence(const Options& options) {
   if (options.pose.frame) throw Error("one frame or a sequence", "--frame " + std::to_string(*options.pose.frame), "leave --frame or --frames out");
   if (options.fit_joints) throw Error("joints are fitted to one pose, not to a sequence", "--fit-joints", "fit each first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
   if (!options.steps.empty()) throw Error("a sequence leaves no steps", "--steps " + options.steps, "leave it out");
-  for (const std::string& output : {options.output, options.report, options.grey, options.field, options.jacobian, options.mesh_out, options.landmarks})
+  for (const std::string& output : {options.output, options.report, options.grey, options.field, options.jacobian, options.overlap, options.mesh_out, options.landmarks})
     if (!output.empty() && output.find(kFrame) == std::string::npos)
       throw Error("every frame would be written to the same file", output, "put {frame} into its name, as in posed_{frame}.nrrd");
 }
@@ -254,6 +254,7 @@ void describe(Report& report, const Options& options, const Armature& rig, const
   for (size_t b = 0; b < rig.bones.size(); ++b)
     if (pose.rotation[b] != glm::dquat(1, 0, 0, 0)) turned.push_back(rig.bones[b].name);
   settings["turned_bones"] = turned;
+  report.joints = turned_joints(rig, pose);
   for (const std::string& path : {options.body.volume, options.body.rig, options.body.tissues, options.weights, options.pose.pose,
                                   options.pose.motion, options.pose.map})
     if (!path.empty()) report.inputs.push_back(describe_input(path));
@@ -279,6 +280,7 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
   outputs.write(options.output, [&] { write_volume(posed.volume, options.output, body.tissues, body.file.type); });
   outputs.write(options.field, [&] { write_vector_volume(posed.volume.grid, posed.displacement, options.field); });
   outputs.write(options.jacobian, [&] { write_scalar_volume(posed.volume.grid, posed.jacobian, options.jacobian); });
+  outputs.write(options.overlap, [&] { write_volume({posed.volume.grid, std::move(posed.overlap)}, options.overlap, {}, {"NRRD", "uint8", true}); });
   if (!options.mesh_out.empty()) write_mesh(options, body.tissues, *posed.shape, outputs);
   if (options.grey.empty()) return;
   const std::string to = grey_paths(options.grey).to;
@@ -383,6 +385,7 @@ void run(const Options& options) {
 
   const ResampleSettings settings{.nearest = options.nearest, .mass_exact = options.mass_exact, .mass_limit_percent = options.mass_limit, .spacing = options.spacing,
                                   .displacement = !options.field.empty(), .jacobian = !options.jacobian.empty(),
+                                  .overlap = !options.overlap.empty(),
                                   .grey = grey ? &*grey : nullptr};
   SolveProgress solve(progress, options, weights.bones(), body.rig, poses[0]);
   bool all_reached = true;
@@ -425,6 +428,7 @@ void add_resample(CLI::App& app) {
   command->add_option("--with", options->grey, "a grey volume moved by the same map")->type_name("GREY=OUT");
   command->add_option("--landmarks", options->landmarks, "points (name,x,y,z; mm, LPS) that travel with the pose")->type_name("IN.csv=OUT.csv");
   command->add_option("--field", options->field, "displacement at each posed voxel, mm");
+  command->add_option("--overlap", options->overlap, "a label volume: 1 where two places of tissue claimed a posed voxel, 2 where two bones did");
   command->add_option("--jacobian", options->jacobian, "volume ratio at each posed voxel");
   add_run_options(*command, options->run);
   command->callback([options] { run(*options); });

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "core/rig/joint_limits.h"
+
 namespace limber {
 
 namespace {
@@ -41,6 +43,7 @@ Json tissue_rows(const Report& report) {
     row["components_before"] = tissue.components_before;
     row["components_after"] = tissue.components_after;
     if (report.deform) row["overlap_voxels"] = overlap_of(report, tissue.label);
+    if (!report.dice.empty()) row["dice"] = report.dice[tissue.label];
     rows.push_back(row);
   }
   return rows;
@@ -111,6 +114,15 @@ Json mass_exact_of(const Report& report, const MassExactReport& exact) {
   return row;
 }
 
+Json vector_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json joint_of(const TurnedJoint& joint) {
+  Json row{{"bone", joint.bone}, {"degrees", joint.degrees}, {"axis", vector_of(joint.axis)}, {"head", vector_of(joint.head)}, {"tail", vector_of(joint.tail)},
+           {"parent_head", vector_of(joint.parent_head)}};
+  if (joint.excess_degrees) row["excess_degrees"] = *joint.excess_degrees;
+  return row;
+}
+
 Json seconds_of(const StageSeconds& seconds) {
   Json row = Json::object();
   auto add = [&](const char* stage, const std::optional<double>& value) {
@@ -168,6 +180,26 @@ void print_tissues(std::ostream& out, const VolumeMetrics& metrics) {
 }
 }  // namespace
 
+std::vector<TurnedJoint> turned_joints(const Armature& rig, const Pose& pose) {
+  std::vector<TurnedJoint> joints;
+  const std::vector<RigidTransform> motions = posed_from_rest(rig, pose);
+  for (size_t b = 0; b < rig.bones.size(); ++b) {
+    const Bone& bone = rig.bones[b];
+    glm::dquat turn = pose.rotation[b];
+    if (turn.w < 0) turn = -turn;
+    const glm::dvec3 about(turn.x, turn.y, turn.z);
+    if (glm::length(about) == 0) continue;
+    TurnedJoint joint{.bone = bone.name, .degrees = glm::degrees(2 * std::atan2(glm::length(about), turn.w)), .axis = glm::normalize(about)};
+    if (bone.parent >= 0) joint.axis = motions[bone.parent].rotation * joint.axis;
+    joint.head = motions[b] * bone.head;
+    joint.tail = motions[b] * bone.tail;
+    joint.parent_head = bone.parent >= 0 ? motions[bone.parent] * rig.bones[bone.parent].head : joint.head;
+    if (bone.limits.type != JointLimits::Type::Free) joint.excess_degrees = glm::degrees(limit_excess(bone, pose.rotation[b]));
+    joints.push_back(joint);
+  }
+  return joints;
+}
+
 InputFile describe_input(const Path& path) { return {path.string(), sha256_of_file(path)}; }
 
 double peak_memory_mb() {
@@ -184,6 +216,7 @@ std::string to_json(const Report& report) {
       std::visit([&, &key = name](const auto& v) { json["settings"][key] = v; }, value);
   if (!report.inputs.empty())
     for (const InputFile& input : report.inputs) json["inputs"].push_back({{"path", input.path}, {"sha256", input.sha256}});
+  for (const TurnedJoint& joint : report.joints) json["joints"].push_back(joint_of(joint));
   if (Json seconds = seconds_of(report.seconds); !seconds.empty()) json["seconds"] = seconds;
   json["peak_memory_mb"] = std::round(peak_memory_mb() * 10) / 10;
   if (report.metrics) json["tissues"] = tissue_rows(report);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "core/pose/pose.h"
 #include "core/report/metrics.h"
 #include "core/resample/resample.h"
 
@@ -31,12 +32,25 @@ struct StageSeconds {
   std::optional<double> read, weights, deform, mesh, solve, rasterize, report, write, total;
 };
 
+// A joint that a pose turns.
+struct TurnedJoint {
+  std::string bone;
+  double degrees = 0;                // relative to rest and to the parent
+  glm::dvec3 axis{0};                // unit, world, as the parent stands
+  glm::dvec3 head{0}, tail{0}, parent_head{0};  // of the posed bones, world, mm
+  std::optional<double> excess_degrees;  // beyond the bone's limits; none where it has none
+};
+// By bone.
+std::vector<TurnedJoint> turned_joints(const Armature& rig, const Pose& pose);
+
 struct Report {
   std::string method;  // "lbs", "dqs", "fem"; empty when two volumes were only compared
   std::map<std::string, SettingValue> settings;
   std::vector<InputFile> inputs;
+  std::vector<TurnedJoint> joints;
   StageSeconds seconds;
   std::optional<VolumeMetrics> metrics;
+  std::vector<double> dice;  // by label [dice.h], or empty
   std::optional<DeformReport> deform;
   std::vector<std::string> warnings;
 };

@@ -184,6 +184,7 @@ class Resampling {
     if (mends) posed_bones_ = {output.grid, ZeroedVector<Label>(voxels)};
     if (settings.displacement) posed.displacement.resize(voxels);
     if (settings.jacobian) posed.jacobian.resize(voxels);
+    if (settings.overlap) posed.overlap.resize(voxels);
     if (settings.grey) start_grey();
   }
 
@@ -489,6 +490,8 @@ class Resampling {
       posed_.jacobian[at] = map.bone[i] != InverseMap::kNoBone
                                 ? 1.0f
                                 : static_cast<float>(map.posed_per_rest[i] / output_per_rest());
+    if (settings_.overlap)
+      posed_.overlap[at] = map.flags[i] & InverseMap::kBoneOverlap ? Label{2} : map.flags[i] & InverseMap::kOverlap ? Label{1} : Label{0};
   }
 
   void count(const InverseMap& map, std::int64_t i, const glm::ivec3& v, Label label, TileCounts& counts) const {

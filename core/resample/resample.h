@@ -32,6 +32,7 @@ struct ResampleSettings {
   std::optional<double> spacing;        // mm, isotropic output spacing; none keeps the input's
   bool displacement = false;            // also return the displacement field
   bool jacobian = false;                // also return det of the posed-from-rest map
+  bool overlap = false;                 // also return where the body claims a voxel twice
   const GreyVolume* grey = nullptr;     // moved by the same map
 };
 
@@ -71,6 +72,7 @@ struct Posed {
   DeformReport report;
   ZeroedVector<glm::vec3> displacement;  // posed - rest, mm, on the output grid; zero in air
   ZeroedVector<float> jacobian;          // on the output grid; zero in air
+  ZeroedVector<Label> overlap;           // on the output grid; 1 where two places of tissue claim the voxel, 2 where two bones do
   GreyVolume grey;
   std::shared_ptr<const FemShape> shape;  // by finite elements, where anything bends (fem_shape.h)
 };

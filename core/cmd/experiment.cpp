@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber experiment STUDY.json|arm [DIR] -o OUT [--shard i/n] [--threads N] [--progress json]
+#include "core/cmd/experiment.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "core/cmd/command.h"
+#include "core/study/study_results.h"
+#include "core/study/text.h"
+
+namespace limber::cmd {
+
+namespace {
+struct Options {
+  std::string study, folder, out, shard;
+  RunOptions run;
+};
+
+// i/n, counted from 1
+void read_shard(const std::string& text, StudyRun& run) {
+  int number = 0, of = 0, end = 0;
+  if (std::sscanf(text.c_str(), "%d/%d%n", &number, &of, &end) != 2 || end != static_cast<int>(text.size()) || of < 1 || number < 1 || number > of)
+    throw Error("this is no shard", "--shard " + text, "write i/n with i from 1 to n, as in --shard 1/4");
+  run.shard = number - 1;
+  run.shards = of;
+}
+
+// A line on stderr, in place of the bar where one stands.
+void say(const std::string& line) {
+  std::fprintf(stderr, "%s%s\n", ::isatty(STDERR_FILENO) ? "\r\033[K" : "", one_line(line).c_str());
+}
+
+void tell(const Study& study, const CellOutcome& outcome, int done, int of, bool was_there, double seconds_left) {
+  std::string line = std::to_string(done) + " of " + std::to_string(of) + "  " + text_of(study, outcome.cell) + ": ";
+  line += outcome.failure.empty() ? was_there ? "there already" : "done" : "FAILED: " + outcome.failure;
+  if (done < of && seconds_left > 0) line += ", " + minutes_text(seconds_left) + " left";
+  say(line);
+}
+
+void run(const Options& options, const StartPictures& pictures) {
+  CommandProgress progress(options.run.progress);
+  if (options.study != "arm" && !options.folder.empty())
+    throw Error("only the arm's study takes a folder", options.folder, "write: limber experiment arm " + options.folder + " -o " + options.out);
+  const Study study = options.study == "arm" ? paper_study(options.folder) : read_study(options.study);
+  StudyRun run{.out = options.out, .threads = options.run.threads};
+  if (!options.shard.empty()) read_shard(options.shard, run);
+  run.on_cell = [&](const CellOutcome& outcome, int done, int of, bool was_there, double left) { tell(study, outcome, done, of, was_there, left); };
+  const std::vector<CellOutcome> outcomes = run_study(study, run, progress);
+
+  std::size_t failed = 0;
+  for (const CellOutcome& outcome : outcomes) failed += !outcome.failure.empty();
+  if (run.shards == 1) {
+    const std::string command = "limber experiment " + options.study + (options.folder.empty() ? "" : " " + options.folder) + " -o " + options.out;
+    write_results(study, outcomes, options.out, command, pictures, progress);
+    std::printf("%s\n%s\n%s\n", (Path(options.out) / "report.html").c_str(), (Path(options.out) / "cells.csv").c_str(), (Path(options.out) / "cells.json").c_str());
+  } else {
+    say("the cells of shard " + options.shard + " are done: run the same without --shard to collect");
+  }
+  if (failed) throw Error(std::to_string(failed) + " of " + std::to_string(outcomes.size()) + " cells failed", options.out, "see the lines above, then run the same again: it computes only what is missing");
+}
+}  // namespace
+
+void add_experiment(CLI::App& app, const StartPictures& pictures) {
+  auto* command = app.add_subcommand("experiment", "a study: poses x techniques x spacings, with tables and a report; what is done is kept, run it again to go on");
+  auto options = std::make_shared<Options>();
+  command->add_option("STUDY", options->study, "description (JSON), or arm: the elbow at 2, 3, 4 mm, by every technique")->required();
+  command->add_option("DIR", options->folder, "for arm: a folder with man-arm-2mm.mha and its armature (default: the procedural arm)");
+  command->add_option("-o,--output", options->out, "folder for cells.csv, cells.json, report.html and all that was computed; made if absent")->required();
+  command->add_option("--shard", options->shard, "computes every n-th cell only, from the i-th on")->type_name("i/n");
+  add_run_options(*command, options->run);
+  command->callback([options, pictures] { run(*options, pictures); });
+}
+
+}  // namespace limber::cmd

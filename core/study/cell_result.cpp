@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/study/cell_result.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/study/text.h"
+
+namespace limber {
+
+namespace {
+using Json = nlohmann::ordered_json;
+
+template <class T>
+std::optional<T> optional_of(const Json& json, const char* key) {
+  return json.contains(key) && json[key].is_number() ? std::optional(json[key].get<T>()) : std::nullopt;
+}
+glm::dvec3 vector_of(const Json& json) { return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()}; }
+
+void read_body(const Json& json, CellResult& result) {
+  for (const Json& row : json.value("tissues", Json::array()))
+    result.tissues.push_back({row.at("label"), row.at("name"), row.at("voxels_before"), row.at("voxels_after"), optional_of<double>(row, "volume_change_percent"),
+                              optional_of<double>(row, "mass_change_percent"), row.at("components_before"), row.at("components_after"), row.value("overlap_voxels", std::int64_t{0})});
+  const Json& total = json.at("total");
+  result.voxels_before = total.at("voxels_before");
+  result.voxels_after = total.at("voxels_after");
+  result.volume_percent = total.value("volume_change_percent", 0.0);
+  result.mass_percent = total.value("mass_change_percent", 0.0);
+  for (const auto& [key, to] : {std::pair{"overlap_voxels", &result.overlap_voxels}, {"bone_overlap_voxels", &result.bone_overlap_voxels}, {"new_hole_voxels", &result.new_hole_voxels},
+                                {"dropped_voxels", &result.dropped_voxels}, {"trapped_air_voxels", &result.trapped_air_voxels}, {"mended_voxels", &result.mended_voxels}})
+    *to = total.value(key, std::int64_t{0});
+  if (json.contains("skin")) {
+    result.skin_share_before = json["skin"].at("surface_share_before");
+    result.skin_share_after = json["skin"].at("surface_share_after");
+  }
+  for (const Json& bone : json.value("bones", Json::array()))
+    if (const double residual = bone.at("rigid_residual_mm"); !result.bone_residual_mm || residual > *result.bone_residual_mm) {
+      result.bone_residual_mm = residual;
+      result.worst_bone = bone.at("name");
+    }
+}
+
+void read_solve(const Json& json, CellResult& result) {
+  if (json.contains("mesh")) {
+    const Json& mesh = json["mesh"];
+    result.mesh = {mesh.at("tets"), mesh.at("nodes"), mesh.at("inverted"), mesh.at("min_det_f"), optional_of<std::int64_t>(mesh, "self_intersections"),
+                   optional_of<double>(mesh, "min_gap_mm"), optional_of<double>(mesh, "median_gap_mm")};
+  }
+  if (json.contains("solve")) {
+    const Json& solve = json["solve"];
+    result.solve = {solve.at("converged"), solve.at("reached"), solve.value("blocked_by", ""), solve.at("iterations"), solve.at("residual")};
+  }
+}
+
+Gate gate(const char* name, bool passed, const std::string& figure, const std::string& limit) {
+  return {name, figure, limit, passed ? Gate::State::Passed : Gate::State::Failed};
+}
+Gate no_gate(const char* name, const char* why, const std::string& limit) { return {name, why, limit}; }
+
+Gate mass_gate(const CellResult& cell, const GateLimits& limits) {
+  const TissueFigures* worst = nullptr;
+  for (const TissueFigures& tissue : cell.tissues)
+    if (tissue.voxels_before >= limits.least_voxels && tissue.mass_percent && (!worst || std::abs(*tissue.mass_percent) > std::abs(*worst->mass_percent))) worst = &tissue;
+  const std::string limit = "±" + number(limits.mass_percent) + " %";
+  if (!worst) return no_gate("Mass", "no tissue is large enough", limit);
+  return gate("Mass", std::abs(*worst->mass_percent) <= limits.mass_percent, signed_number(*worst->mass_percent, 2) + " % " + worst->name, limit);
+}
+
+Gate islands_gate(const CellResult& cell) {
+  int islands = 0;
+  std::string where;
+  for (const TissueFigures& tissue : cell.tissues)
+    if (const int more = tissue.components_after - tissue.components_before; more > 0) islands += more, where += (where.empty() ? " " : ", ") + tissue.name;
+  return gate("Islands", islands == 0, grouped(islands) + where, "no new piece");
+}
+
+Gate skin_gate(const CellResult& cell, const GateLimits& limits) {
+  const std::string limit = "loses " + number(limits.skin_share_percent) + " % at most";
+  if (!cell.skin_share_before) return no_gate("Skin closed", "there is no skin", limit);
+  const double change = 100 * (*cell.skin_share_after - *cell.skin_share_before);
+  return gate("Skin closed", change >= -limits.skin_share_percent, fixed(100 * *cell.skin_share_after, 1) + " % of surface", limit);
+}
+
+std::vector<Gate> gates_of(const CellResult& cell, const GateLimits& limits) {
+  std::vector<Gate> gates;
+  const bool reached = !cell.solve || cell.solve->converged;
+  gates.push_back(gate("Pose reached", reached, fixed(100 * (cell.solve ? cell.solve->reached : 1), 0) + " %" + (cell.solve && !reached && cell.solve->reached == 1 ? ", not settled" : ""), "100 %, settled"));
+  gates.push_back(mass_gate(cell, limits));
+  const std::string rigid = "≤ " + number(limits.bone_residual_mm) + " mm";
+  gates.push_back(cell.bone_residual_mm ? gate("Bone rigidity", *cell.bone_residual_mm <= limits.bone_residual_mm, fixed(*cell.bone_residual_mm, 4) + " mm", rigid)
+                                        : no_gate("Bone rigidity", "there is no bone", rigid));
+  gates.push_back(islands_gate(cell));
+  gates.push_back(gate("Holes", cell.new_hole_voxels + cell.dropped_voxels == 0, grouped(cell.new_hole_voxels + cell.dropped_voxels) + " voxels", "none"));
+  gates.push_back(skin_gate(cell, limits));
+  gates.push_back(cell.mesh ? gate("Inverted cells", cell.mesh->inverted == 0, grouped(cell.mesh->inverted), "none") : no_gate("Inverted cells", "no mesh", "none"));
+  gates.push_back(cell.mesh && cell.mesh->self_intersections ? gate("Self-intersections", *cell.mesh->self_intersections == 0, grouped(*cell.mesh->self_intersections) + " pairs", "none")
+                                                             : no_gate("Self-intersections", "no mesh", "none"));
+  gates.push_back(cell.mesh && cell.mesh->min_gap_mm ? gate("Gap", *cell.mesh->min_gap_mm > 0, fixed(*cell.mesh->min_gap_mm, 3) + " mm", "> 0 mm") : no_gate("Gap", cell.mesh ? "nothing comes near" : "no mesh", "> 0 mm"));
+  const std::string limit = "≤ " + number(limits.joint_excess_degrees) + "° beyond";
+  const JointFigures* worst = nullptr;
+  for (const JointFigures& joint : cell.joints)
+    if (joint.excess_degrees && (!worst || *joint.excess_degrees > *worst->excess_degrees)) worst = &joint;
+  gates.push_back(worst ? gate("Joint limits", *worst->excess_degrees <= limits.joint_excess_degrees, fixed(*worst->excess_degrees, 1) + "° " + worst->bone, limit)
+                        : no_gate("Joint limits", cell.joints.empty() ? "no joint turns" : "the rig has none", limit));
+  return gates;
+}
+}  // namespace
+
+CellResult read_result(const Study& study, const CellOutcome& outcome) {
+  CellResult result{.cell = outcome.cell, .folder = outcome.folder, .failure = outcome.failure};
+  if (!result.done()) return result;
+  result.report = read_file(outcome.folder / "report.json");
+  result.cell_json = read_file(outcome.folder / "cell.json");
+  try {
+    const Json report = Json::parse(result.report), cell = Json::parse(result.cell_json);
+    result.cpu_seconds = cell.at("cpu_seconds");
+    result.wall_seconds = cell.at("wall_seconds");
+    result.machine = cell.at("machine");
+    result.peak_memory_mb = report.at("peak_memory_mb");
+    for (const auto& [stage, value] : report.at("seconds").items()) result.seconds[stage] = value;
+    read_body(report, result);
+    read_solve(report, result);
+    for (const Json& row : report.value("joints", Json::array()))
+      result.joints.push_back({row.at("bone"), row.at("degrees"), vector_of(row.at("axis")), vector_of(row.at("head")), vector_of(row.at("tail")), vector_of(row.at("parent_head")),
+                               optional_of<double>(row, "excess_degrees")});
+    for (const Json& input : report.value("inputs", Json::array())) result.inputs[input.at("path")] = input.at("sha256");
+    result.warnings = report.value("warnings", std::vector<std::string>{});
+  } catch (const Json::exception& error) {
+    throw Error("a result of the study is damaged", outcome.folder.string(), std::string("delete the folder and run the same again (") + error.what() + ")");
+  }
+  result.gates = gates_of(result, study.gates);
+  return result;
+}
+
+std::optional<double> weights_seconds(const Path& out, const CellResult& cell) {
+  for (const auto& [path, hash] : cell.inputs) {
+    if (!path.ends_with("weights.nrrd")) continue;
+    const Path file = out / "bodies" / Path(path).parent_path().filename() / "body.json";
+    if (!std::filesystem::exists(file)) return {};
+    const Json json = Json::parse(read_file(file), nullptr, false);
+    if (json.is_object() && json.contains("cpu_seconds")) return json["cpu_seconds"].value("weights", 0.0);
+  }
+  return {};
+}
+
+}  // namespace limber

@@ -1,0 +1,474 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/study/html_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "core/study/charts.h"
+#include "core/study/machine.h"
+#include "core/study/page_style.h"
+#include "core/study/text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kMostBars = 6;      // of a group; more become their mean
+constexpr std::size_t kMostPanels = 12;   // tissues with a chart of their own
+constexpr double kNarrow = 300;           // width of such a chart
+
+std::string base64(const std::string& bytes) {
+  static const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t three = 0;
+    for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? letters[three >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+std::string picture(const std::string& png, const std::string& what) {
+  if (png.empty()) return "<span class=\"none\">not drawn</span>";
+  return "<img alt=\"" + escaped(what) + "\" src=\"data:image/png;base64," + base64(png) + "\">";
+}
+
+class Page {
+ public:
+  Page(const Study& study, const std::vector<CellResult>& cells, const StudyFigures& figures, const ReportFacts& facts)
+      : study_(study), cells_(cells), figures_(figures), facts_(facts) {
+    for (const CellResult& cell : cells)
+      if (cell.done()) at_[{cell.cell.spacing, cell.cell.pose, cell.cell.technique}] = &cell;
+  }
+
+  std::string operator()() {
+    html_ = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+            "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" + escaped(study_.name) + "</title>\n<style>" + std::string(page_style()) + "</style>\n</head>\n<body>\n<main>\n";
+    head();
+    summary();
+    time();
+    volume();
+    pictures();
+    worst();
+    gates();
+    tissues();
+    provenance();
+    html_ += "</main>\n</body>\n</html>\n";
+    return std::move(html_);
+  }
+
+ private:
+  const CellResult* cell(int spacing, int pose, int technique) const {
+    const auto found = at_.find({spacing, pose, technique});
+    return found == at_.end() ? nullptr : found->second;
+  }
+  std::string finest() const { return study_.spacings[figures_.spacing] ? spacing_text(study_.spacings[figures_.spacing]) : "its own spacing"; }
+  int techniques() const { return static_cast<int>(study_.techniques.size()); }
+  int poses() const { return static_cast<int>(study_.poses.size()); }
+  int look(int technique) const { return static_cast<int>(study_.techniques[technique]); }  // colour and mark
+  std::string technique_name(int technique) const { return name_of(study_.techniques[technique]); }
+  std::string marked_name(int technique) const { return mark_svg(look(technique)) + " " + technique_name(technique); }
+  std::vector<std::string> pose_names() const {
+    std::vector<std::string> names;
+    for (const StudyPose& pose : study_.poses) names.push_back(pose.name);
+    return names;
+  }
+
+  void section(const std::string& title, const std::string& id) { html_ += "<h2 id=\"" + id + "\">" + std::to_string(++sections_) + "&ensp;" + title + "</h2>\n"; }
+  void figure(const std::string& inside, const std::string& caption, const std::string& style = "") {
+    html_ += "<figure" + (style.empty() ? "" : " class=\"" + style + "\"") + ">" + inside + "<figcaption><b>Figure " + std::to_string(++figures_shown_) + ".</b> " + caption + "</figcaption></figure>\n";
+  }
+  void table(const std::string& inside, const std::string& caption, const std::string& style = "") {
+    html_ += "<figure class=\"table" + (style.empty() ? "" : " " + style) + "\"><figcaption><b>Table " + std::to_string(++tables_) + ".</b> " + caption + "</figcaption><div class=\"wide\"><table" +
+             (style.empty() ? "" : " class=\"" + style + "\"") + ">" + inside + "</table></div></figure>\n";
+  }
+
+  static bool passes(const CellResult& cell) {
+    return std::none_of(cell.gates.begin(), cell.gates.end(), [](const Gate& gate) { return gate.state == Gate::State::Failed; });
+  }
+
+  void head() {
+    html_ += "<header><p class=\"kind\">Limber study</p><h1>" + escaped(study_.name) + "</h1><p class=\"lead\">";
+    std::string spacings;
+    for (const auto& spacing : study_.spacings) spacings += (spacings.empty() ? "" : ", ") + spacing_text(spacing);
+    html_ += std::to_string(study_.spacings.size()) + " spacing" + (study_.spacings.size() == 1 ? "" : "s") + " (" + escaped(spacings) + ") × " + std::to_string(poses()) + " pose" +
+             (poses() == 1 ? "" : "s") + " × " + std::to_string(techniques()) + " technique" + (techniques() == 1 ? "" : "s") + " = " + std::to_string(cells_.size()) + " cells. " +
+             (study_.phantom.empty() ? "Volume: " + escaped(study_.volume.filename().string()) : "Volume: the procedural " + study_.phantom) + ". Limber " LIMBER_VERSION ", " + escaped(facts_.date) + ".</p></header>\n";
+  }
+
+  // The largest of something over a technique's poses, by size, at the finest spacing.
+  struct Extreme {
+    double value = 0;
+    const CellResult* cell = nullptr;
+    const TissueFigures* tissue = nullptr;
+    void take(double candidate, const CellResult* of, const TissueFigures* in = nullptr) {
+      if (!cell || std::abs(candidate) > std::abs(value)) value = candidate, cell = of, tissue = in;
+    }
+  };
+  std::string pose_of(const Extreme& extreme) const { return extreme.cell ? escaped(study_.poses[extreme.cell->cell.pose].name) : ""; }
+
+  void summary() {
+    section("Summary", "summary");
+    std::size_t done = at_.size(), whole = 0;
+    for (const auto& [key, one] : at_) whole += passes(*one);
+    html_ += "<p>" + std::to_string(done) + " of " + std::to_string(cells_.size()) + " cells are computed; " + std::to_string(whole) + " of them pass every gate that applies to them. ";
+    if (!figures_.joint.empty()) html_ += "The joint that turns the furthest is at the head of " + escaped(figures_.joint) + ". ";
+    html_ += "Changes are of volume, relative to the same tissue at rest at the same spacing; they can cancel in a total, so the tissue that changes most stands beside it.</p>\n";
+
+    std::string rows = "<thead><tr><th rowspan=\"2\">Technique</th><th colspan=\"2\">Total volume</th><th colspan=\"3\">Tissue that changes most</th><th rowspan=\"2\">Overlap<small>voxels</small></th>"
+                       "<th rowspan=\"2\">Time<small>CPU s, mean</small></th><th rowspan=\"2\">Memory<small>MB, peak</small></th><th rowspan=\"2\">Cells that pass<small>all spacings</small></th></tr>"
+                       "<tr><th>change, %</th><th class=\"word\">at</th><th>change, %</th><th class=\"word\">of</th><th class=\"word\">at</th></tr></thead><tbody>";
+    for (int t = 0; t < techniques(); ++t) {
+      Extreme total, tissue;
+      double seconds = 0, memory = 0;
+      std::int64_t overlap = 0;
+      int count = 0;
+      for (int p = 0; p < poses(); ++p)
+        if (const CellResult* one = cell(figures_.spacing, p, t)) {
+          ++count;
+          seconds += one->cpu_seconds;
+          memory = std::max(memory, one->peak_memory_mb);
+          overlap = std::max(overlap, one->overlap_voxels);
+          total.take(one->volume_percent, one);
+          for (const TissueFigures& of : one->tissues)
+            if (of.voxels_before >= study_.gates.least_voxels && of.volume_percent) tissue.take(*of.volume_percent, one, &of);
+        }
+      int pass = 0, all = 0;
+      for (const auto& [key, one] : at_)
+        if (one->cell.technique == t) ++all, pass += passes(*one);
+      rows += "<tr><th class=\"row\">" + marked_name(t) + "</th>";
+      if (count == 0) {
+        rows += "<td colspan=\"9\" class=\"none\">not computed</td></tr>";
+        continue;
+      }
+      rows += "<td>" + signed_number(total.value, 2) + "</td><td class=\"word\">" + pose_of(total) + "</td>";
+      rows += tissue.cell ? "<td>" + signed_number(tissue.value, 2) + "</td><td class=\"word\">" + escaped(tissue.tissue->name) + "</td><td class=\"word\">" + pose_of(tissue) + "</td>" : "<td class=\"none\" colspan=\"3\">none is large enough</td>";
+      rows += "<td>" + grouped(overlap) + "</td><td>" + fixed(seconds / count, 1) + "</td><td>" + fixed(memory, 0) + "</td><td>" + std::to_string(pass) + " of " + std::to_string(all) + "</td></tr>";
+    }
+    table(rows + "</tbody>", "Each technique at " + finest() + ": the largest change over all poses with the pose that has it, the most voxels that two places of the body claimed, "
+          "mean processor time and largest memory of a cell. Tissues of fewer than " + grouped(study_.gates.least_voxels) + " voxels at rest are left out.");
+  }
+
+  void time() {
+    section("Time", "time");
+    BarChart bars{.unit = "CPU s", .places = pose_names()};
+    const bool too_many = bars.places.size() > kMostBars;
+    if (too_many) bars.places = {"mean"};
+    double most = 0;
+    for (int t = 0; t < techniques(); ++t) {
+      Series group{technique_name(t), look(t), {}};
+      double sum = 0;
+      int count = 0;
+      for (int p = 0; p < poses(); ++p) {
+        const CellResult* one = cell(figures_.spacing, p, t);
+        if (one) sum += one->cpu_seconds, ++count, most = std::max(most, one->cpu_seconds);
+        if (!too_many) group.values.push_back(one ? std::optional(one->cpu_seconds) : std::nullopt);
+      }
+      if (too_many) group.values = {count ? std::optional(sum / count) : std::nullopt};
+      bars.groups.push_back(group);
+    }
+    bars.decimals = most < 20 ? 1 : 0;
+    figure(svg_of(bars), "Time by technique at " + finest() + ": processor time of each cell from reading the volume to writing the result" +
+           std::string(too_many ? ", mean over " + std::to_string(poses()) + " poses." : ", one bar for each pose.") + " Weights are computed once for each spacing and not counted" + weights_note() + ".");
+
+    if (study_.spacings.size() > 1) {
+      LineChart lines{.unit = "CPU s", .x_unit = "spacing", .logarithmic = true};
+      for (const auto& spacing : study_.spacings) lines.places.push_back(spacing_text(spacing));
+      if (std::all_of(study_.spacings.begin(), study_.spacings.end(), [](const auto& spacing) { return spacing.has_value(); }))
+        for (const auto& spacing : study_.spacings) lines.positions.push_back(*spacing);
+      for (int t = 0; t < techniques(); ++t) {
+        Series series{technique_name(t), look(t), {}};
+        for (int s = 0; s < std::ssize(study_.spacings); ++s) series.values.push_back(mean_seconds(s, t));
+        lines.series.push_back(series);
+      }
+      Series weights{"Weights, once", -1, {}};
+      for (int s = 0; s < std::ssize(study_.spacings); ++s) weights.values.push_back(seconds_of_weights(s));
+      lines.series.push_back(weights);
+      figure(svg_of(lines), "Time by resolution: mean processor time over the poses, against the edge of a voxel, on a logarithmic scale. The tets of finite elements have their own size, whatever the voxels'.");
+    }
+  }
+  std::optional<double> mean_seconds(int spacing, int technique) const {
+    double sum = 0;
+    int count = 0;
+    for (int p = 0; p < poses(); ++p)
+      if (const CellResult* one = cell(spacing, p, technique)) sum += one->cpu_seconds, ++count;
+    return count ? std::optional(sum / count) : std::nullopt;
+  }
+  std::optional<double> seconds_of_weights(int spacing) const {
+    for (const auto& [key, one] : at_)
+      if (one->cell.spacing == spacing) return weights_seconds(facts_.out, *one);
+    return {};
+  }
+  std::string weights_note() const {
+    const auto seconds = seconds_of_weights(figures_.spacing);
+    return seconds ? " (" + fixed(*seconds, 1) + " CPU s here)" : "";
+  }
+
+  // Percent at the finest spacing, along the poses.
+  template <class Percent>
+  std::vector<Series> changes(const Percent& percent_of) const {
+    std::vector<Series> all;
+    for (int t = 0; t < techniques(); ++t) {
+      Series series{technique_name(t), look(t), {}};
+      for (int p = 0; p < poses(); ++p) {
+        const CellResult* one = cell(figures_.spacing, p, t);
+        series.values.push_back(one ? percent_of(*one) : std::nullopt);
+      }
+      all.push_back(series);
+    }
+    return all;
+  }
+
+  // By label, most voxels first, of those large enough.
+  std::vector<const TissueFigures*> large_tissues() const {
+    std::vector<const TissueFigures*> tissues;
+    for (const auto& [key, one] : at_) {
+      if (one->cell.spacing != figures_.spacing) continue;
+      for (const TissueFigures& tissue : one->tissues)
+        if (tissue.voxels_before >= study_.gates.least_voxels) tissues.push_back(&tissue);
+      break;
+    }
+    std::stable_sort(tissues.begin(), tissues.end(), [](auto a, auto b) { return a->voxels_before > b->voxels_before; });
+    return tissues;
+  }
+  static const TissueFigures* tissue_of(const CellResult& cell, double label) {
+    for (const TissueFigures& tissue : cell.tissues)
+      if (tissue.label == label) return &tissue;
+    return nullptr;
+  }
+
+  void volume() {
+    section("Volume", "volume");
+    LineChart chart{.unit = "change of volume, %", .places = pose_names(), .series = changes([](const CellResult& one) { return std::optional(one.volume_percent); }), .is_signed = true};
+    figure(svg_of(chart), "Change of volume by technique, all tissues together, at " + finest() + ". Zero is what a body does that keeps its volume.");
+
+    std::vector<const TissueFigures*> tissues = large_tissues();
+    const std::size_t left_out = tissues.size() > kMostPanels ? tissues.size() - kMostPanels : 0;
+    if (left_out) tissues.resize(kMostPanels);
+    if (tissues.empty()) return;
+    std::vector<LineChart> panels;
+    double low = 0, high = 0;
+    for (const TissueFigures* tissue : tissues) {
+      LineChart panel{.title = tissue->name + "  (" + grouped(tissue->voxels_before) + " voxels)", .unit = "%", .places = pose_names(), .is_signed = true, .names = false, .width = int(kNarrow), .height = 200};
+      panel.series = changes([&](const CellResult& one) {
+        const TissueFigures* same = tissue_of(one, tissue->label);
+        return same ? same->volume_percent : std::nullopt;
+      });
+      for (const Series& series : panel.series)
+        for (const auto& value : series.values)
+          if (value) low = std::min(low, *value), high = std::max(high, *value);
+      panels.push_back(panel);
+    }
+    const double pad = 0.04 * std::max(high - low, 0.1);
+    std::string inside = legend() + "<div class=\"panels\">";
+    for (LineChart& panel : panels) {
+      panel.low = low - pad;
+      panel.high = high + pad;
+      panel.low = nice_floor(*panel.low, high - low);
+      panel.high = nice_ceiling(*panel.high, high - low);
+      inside += "<div>" + svg_of(panel) + "</div>";
+    }
+    figure(inside + "</div>", "Change of volume by technique, tissue by tissue, at " + finest() + ", all on one scale. Tissues of " + grouped(study_.gates.least_voxels) +
+           " voxels or more at rest" + (left_out ? ", the " + std::to_string(kMostPanels) + " largest of them" : "") + "; figures are in Table " + std::to_string(tables_ + 1 + int(study_.spacings.size())) + " and after.");
+  }
+  static double nice_step(double range) {
+    const double power = std::pow(10, std::floor(std::log10(std::max(range, 1e-3) / 5)));
+    for (const double nice : {1.0, 2.0, 5.0})
+      if (nice * power >= range / 5) return nice * power;
+    return 10 * power;
+  }
+  static double nice_floor(double value, double range) { return nice_step(range) * std::floor(value / nice_step(range) + 1e-9); }
+  static double nice_ceiling(double value, double range) { return nice_step(range) * std::ceil(value / nice_step(range) - 1e-9); }
+
+  std::string legend() const {
+    std::string text = "<p class=\"legend\">";
+    for (int t = 0; t < techniques(); ++t) text += "<span>" + marked_name(t) + "</span>";
+    return text + "</p>";
+  }
+
+  // Techniques downward, poses across.
+  std::string grid(const PictureGrid& pictures, const std::vector<int>& columns, const std::string& what) const {
+    std::string html = "<table class=\"pictures\"><thead><tr><th></th>";
+    for (const int pose : columns) html += "<th>" + escaped(study_.poses[pose].name) + "</th>";
+    html += "</tr></thead><tbody>";
+    for (int t = 0; t < techniques(); ++t) {
+      html += "<tr><th class=\"row\"><span>" + marked_name(t) + "</span></th>";
+      for (std::size_t c = 0; c < columns.size(); ++c) html += "<td>" + picture(pictures.png[t][c], what + ", " + technique_name(t) + ", " + study_.poses[columns[c]].name) + "</td>";
+      html += "</tr>";
+    }
+    return html + "</tbody></table>";
+  }
+
+  void pictures() {
+    section("Pictures", "pictures");
+    const std::string shown = study_.poses.size() > figures_.poses.size() ? " The first " + std::to_string(figures_.poses.size()) + " of " + std::to_string(study_.poses.size()) + " poses." : "";
+    if (figures_.no_bodies.empty())
+      figure(grid(figures_.bodies, figures_.poses, "Body"), "The posed volumes in 3D at " + finest() + ", technique by pose, all at one scale: each picture is " + fixed(figures_.bodies.width_mm, 0) + " mm wide, seen along the joint's axis, turned by 20°." + shown, "grid");
+    else
+      html_ += "<p class=\"note\"><b>No pictures in 3D:</b> " + escaped(figures_.no_bodies) + ". Run the same again with a program that draws; the cells need not be computed again.</p>\n";
+    figure(grid(figures_.slices, figures_.poses, "Slice"), "The same cut " + where() + ", voxels as they are. Each picture is " + fixed(figures_.slices.width_mm, 0) + " mm wide; the bar is 50 mm." + shown, "grid");
+  }
+  std::string where() const { return figures_.joint.empty() ? "through the middle" : "through the head of " + escaped(figures_.joint) + ", across the axis that it turns about"; }
+
+  void worst() {
+    if (figures_.largest_pose < 0) return;
+    section("Where it is worst", "worst");
+    std::string html = "<table class=\"pictures maps\"><thead><tr><th></th>";
+    for (int t = 0; t < techniques(); ++t) html += "<th>" + marked_name(t) + "</th>";
+    html += "</tr></thead><tbody>";
+    const std::string pose = study_.poses[figures_.largest_pose].name;
+    for (const auto& [name, of] : {std::pair{"Volume ratio", &figures_.ratios}, {"Overlap", &figures_.overlaps}}) {
+      html += std::string("<tr><th class=\"row\"><span>") + name + "</span></th>";
+      for (int t = 0; t < techniques(); ++t) html += "<td>" + picture(of->png[t][0], std::string(name) + ", " + technique_name(t) + ", " + pose) + overlap_words(of == &figures_.overlaps, t) + "</td>";
+      html += "</tr>";
+    }
+    html += "</tbody></table><div class=\"ramp\"><span>½ and less: pressed</span><i></i><span>2 and more: stretched</span><span class=\"gap\"><b class=\"twice\"></b> claimed by two places of the body</span><span><b class=\"bone\"></b> claimed by two bones</span></div>";
+    figure(html, "Maps at " + escaped(pose) + ", " + finest() + ", cut " + where() + ". Above: volume of each posed voxel's surroundings per volume at rest (determinant of the deformation; grey is 1). "
+           "Below: voxels that two places of the body claimed, over the tissues in dull colours; the number is of the whole volume.", "grid");
+    if (figures_.close_ups.empty()) return;
+
+    html = "<table class=\"pictures\"><thead><tr><th></th><th>Cut open</th><th>Tissues</th><th>Volume ratio</th></tr></thead><tbody>";
+    for (const CloseUp& close : figures_.close_ups) {
+      const std::string what = technique_name(close.cell->cell.technique) + ", " + study_.poses[close.cell->cell.pose].name;
+      html += "<tr><th class=\"row\"><span>" + marked_name(close.cell->cell.technique) + "<br>" + escaped(study_.poses[close.cell->cell.pose].name) + "<br><small>" + grouped(close.region.voxels) + " of " + grouped(close.region.of) +
+              " voxels<br>ratio " + fixed(close.region.least, 2) + " to " + fixed(close.region.most, 2) + "</small></span></th>";
+      html += "<td>" + (close.body.empty() ? "<span class=\"none\">not drawn</span>" : picture(close.body, "Close-up, " + what)) + "</td><td>" + picture(close.tissues, "Slice, " + what) + "</td><td>" + picture(close.ratio, "Ratio, " + what) + "</td></tr>";
+    }
+    figure(html + "</tbody></table>", "Close-ups of the worst region of each technique at " + finest() + ", worst first: the box of about 48 mm with most voxels whose surroundings are pressed to less than half or stretched to more than twice their volume "
+           "(their number, of all tissue there). Each picture is 96 mm wide, the bar is 10 mm.", "grid");
+  }
+  std::string overlap_words(bool is_overlap, int technique) const {
+    if (!is_overlap) return "";
+    const CellResult* one = cell(figures_.spacing, figures_.largest_pose, technique);
+    return one ? "<small>" + grouped(one->overlap_voxels) + " voxels</small>" : "";
+  }
+
+  static std::string gate_cell(const Gate& gate) {
+    if (gate.state == Gate::State::DoesNotApply) return "<td class=\"gate na\"><span>–</span><small>" + escaped(gate.figure) + "</small></td>";
+    const bool passed = gate.state == Gate::State::Passed;
+    return std::string("<td class=\"gate ") + (passed ? "ok\"><span>✓</span>" : "bad\"><span>✗</span>") + "<small>" + escaped(gate.figure) + "</small></td>";
+  }
+
+  void gates() {
+    section("Gates", "gates");
+    const CellResult* first = at_.empty() ? nullptr : at_.begin()->second;
+    if (!first) {
+      html_ += "<p>No cell is computed yet.</p>\n";
+      return;
+    }
+    html_ += "<p>A gate is a figure with a limit. ✓ it keeps to it; ✗ it does not; – it does not apply, and why. A failed gate is a finding about the technique in that pose, not a mistake of the run.</p>\n";
+    for (int s = 0; s < std::ssize(study_.spacings); ++s) {
+      std::string rows = "<thead><tr><th colspan=\"2\">Cell</th>";
+      for (const Gate& gate : first->gates) rows += "<th>" + gate.name + "<small>" + escaped(gate.limit) + "</small></th>";
+      rows += "</tr></thead>";
+      for (int p = 0; p < poses(); ++p) {
+        rows += "<tbody>";
+        for (int t = 0; t < techniques(); ++t) {
+          rows += "<tr>";
+          if (t == 0) rows += "<th class=\"row pose\" rowspan=\"" + std::to_string(techniques()) + "\">" + escaped(study_.poses[p].name) + "</th>";
+          rows += "<th class=\"row\">" + marked_name(t) + "</th>";
+          if (const CellResult* one = cell(s, p, t))
+            for (const Gate& gate : one->gates) rows += gate_cell(gate);
+          else
+            rows += "<td class=\"bad failed\" colspan=\"" + std::to_string(first->gates.size()) + "\">" + failure_of(s, p, t) + "</td>";
+          rows += "</tr>";
+        }
+        rows += "</tbody>";
+      }
+      table(rows, "Gates at " + spacing_text(study_.spacings[s]) + (s ? "." : ". <b>Mass</b>: the largest change of a tissue of " + grouped(study_.gates.least_voxels) + " voxels or more. <b>Bone rigidity</b>: furthest that a bone's voxel is from where the bone's own motion takes it. <b>Islands</b>: pieces of 50 voxels or more that were not apart at rest. "
+            "<b>Holes</b>: posed voxels inside the body without a label, and voxels that fell off the grid. <b>Skin closed</b>: share of the surface that is skin. <b>Inverted cells</b> and <b>self-intersections</b>: of the mesh of finite elements. <b>Gap</b>: least air between skins that came near each other. <b>Joint limits</b>: how far the pose goes beyond the rig's."), "gates");
+    }
+  }
+  std::string failure_of(int spacing, int pose, int technique) const {
+    for (const CellResult& one : cells_)
+      if (one.cell.spacing == spacing && one.cell.pose == pose && one.cell.technique == technique) return "✗ not computed: " + escaped(one.failure);
+    return "not computed";
+  }
+
+  void tissues() {
+    section("Tissues", "tissues");
+    html_ += "<p>Change of volume in %, at " + finest() + ". Small tissues change by some percent where a rigid turn alone meets the voxel grid. Every figure of every cell is in cells.csv and cells.json beside this page.</p>\n";
+    for (int p = 0; p < poses(); ++p) {
+      const CellResult* any = nullptr;
+      for (int t = 0; t < techniques() && !any; ++t) any = cell(figures_.spacing, p, t);
+      if (!any) continue;
+      std::string rows = "<thead><tr><th>Tissue</th><th>Label</th><th>Voxels at rest</th>";
+      for (int t = 0; t < techniques(); ++t) rows += "<th>" + marked_name(t) + "<small>change, %</small></th>";
+      rows += "</tr></thead><tbody>";
+      for (const TissueFigures& tissue : any->tissues) {
+        rows += "<tr><th class=\"row\">" + escaped(tissue.name) + "</th><td>" + number(tissue.label) + "</td><td>" + grouped(tissue.voxels_before) + "</td>";
+        for (int t = 0; t < techniques(); ++t) rows += change_cell(cell(figures_.spacing, p, t), tissue.label);
+        rows += "</tr>";
+      }
+      rows += "</tbody><tfoot><tr><th class=\"row\">All tissue</th><td></td><td>" + grouped(any->voxels_before) + "</td>";
+      for (int t = 0; t < techniques(); ++t) {
+        const CellResult* one = cell(figures_.spacing, p, t);
+        rows += one ? "<td>" + signed_number(one->volume_percent, 2) + "</td>" : "<td class=\"none\">–</td>";
+      }
+      table(rows + "</tr></tfoot>", escaped(study_.poses[p].name) + ", " + finest() + ".", "tissues");
+    }
+  }
+  static std::string change_cell(const CellResult* one, double label) {
+    const TissueFigures* tissue = one ? tissue_of(*one, label) : nullptr;
+    if (!tissue || !tissue->volume_percent) return "<td class=\"none\">–</td>";
+    return "<td>" + signed_number(*tissue->volume_percent, 2) + "</td>";
+  }
+
+  void provenance() {
+    section("Provenance", "provenance");
+    std::set<std::string> machines;
+    double seconds = 0;
+    for (const auto& [key, one] : at_) machines.insert(one->machine), seconds += one->cpu_seconds;
+    std::string list;
+    const auto fact = [&](const std::string& name, const std::string& value) { list += "<dt>" + name + "</dt><dd>" + value + "</dd>"; };
+    fact("Program", "Limber " LIMBER_VERSION);
+    fact("Command", "<code>" + escaped(facts_.command) + "</code>");
+    fact("Made on", escaped(facts_.date));
+    for (const std::string& machine : machines) fact("Computed on", escaped(machine));
+    fact("Processor time", fixed(seconds / 60, 1) + " min for all cells");
+    fact("Weights", escaped(study_.weights));
+    fact("Finite elements", "quality " + escaped(study_.quality));
+    fact("Joints", study_.fit_joints ? "fitted to the bones before each pose, so that no bone enters another" : "as the rig has them");
+    fact("Labels", study_.nearest ? "of the nearest rest voxel" : "with the largest interpolated membership");
+    html_ += "<dl>" + list + "</dl>\n";
+
+    std::map<std::string, std::string> inputs;
+    for (const auto& [key, one] : at_)
+      for (const auto& [path, hash] : one->inputs) inputs.emplace(path.starts_with("../../") ? path.substr(6) : path, hash);
+    std::string rows = "<thead><tr><th>File</th><th>SHA-256</th></tr></thead><tbody>";
+    for (const auto& [path, hash] : inputs) rows += "<tr><th class=\"row\">" + escaped(path) + "</th><td class=\"hash\">" + hash + "</td></tr>";
+    table(rows + "</tbody>", "What the cells read. Each cell's folder has the job that made it: <code>limber job cells/…/job.json</code> makes it again.", "inputs");
+    warnings();
+    html_ += "<h3>The study</h3><pre>" + escaped(to_json(study_)) + "</pre>\n";
+  }
+  void warnings() {
+    std::map<std::string, std::vector<std::string>> by_text;
+    for (const auto& [key, one] : at_)
+      for (const std::string& warning : one->warnings) by_text[warning].push_back(text_of(study_, one->cell));
+    if (by_text.empty()) return;
+    std::string list;
+    for (const auto& [text, where] : by_text) {
+      list += "<li>" + escaped(text) + " <small>(" + escaped(where.front());
+      list += (where.size() > 1 ? " and " + std::to_string(where.size() - 1) + " more" : "") + ")</small></li>";
+    }
+    html_ += "<h3>What the cells warned of</h3><ul>" + list + "</ul>\n";
+  }
+
+  const Study& study_;
+  const std::vector<CellResult>& cells_;
+  const StudyFigures& figures_;
+  const ReportFacts& facts_;
+  std::map<std::tuple<int, int, int>, const CellResult*> at_;
+  std::string html_;
+  int sections_ = 0, figures_shown_ = 0, tables_ = 0;
+};
+
+}  // namespace
+
+std::string html_report(const Study& study, const std::vector<CellResult>& cells, const StudyFigures& figures, const ReportFacts& facts) { return Page(study, cells, figures, facts)(); }
+
+}  // namespace limber

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The study as one page: summary, figures, gates, tissues, provenance. Everything is in the file, nothing runs in it; it reads in
+// a browser in light and dark, and printed on A4.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/study/figures.h"
+
+namespace limber {
+
+struct ReportFacts {
+  Path out;
+  std::string command;  // that made it
+  std::string date;     // of the report
+};
+
+std::string html_report(const Study& study, const std::vector<CellResult>& cells, const StudyFigures& figures, const ReportFacts& facts);
+
+}  // namespace limber

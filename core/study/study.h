@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A study: one body at some spacings, in some poses, by some techniques. Each combination is a cell, which is one
+// `limber resample`. Described in JSON; paths are relative to the description:
+//   {"name"?: "Elbow", "volume": "arm.nrrd" | "phantom": "arm"|"body", "rig"?: "rig.json", "tissues"?: "t.json", "bones"?: [111, 209],
+//    "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4], "methods"?: ["lbs", "dqs", "fem", "fem-contact"],
+//    "poses": [{"name": "+45", "flex": ["Forearm=45"]}, {"name": "curl", "motion": "curl.bvh", "frame": 12, "map"?, "up"?}, {"name": "mine", "pose": "p.json"}],
+//    "quality"?: "draft"|"normal"|"fine", "fit_joints"?: true, "nearest"?: true, "gates"?: {"mass_percent": 1, ...}}
+// Without spacings the volume is taken as it is; a phantom brings its own rig and tissues.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/file.h"
+
+namespace limber {
+
+enum class Technique { LinearBlend, DualQuaternion, Fem, FemContact };
+constexpr int kTechniques = 4;
+std::string word_of(Technique technique);  // "fem-contact": in descriptions, folders and tables
+std::string name_of(Technique technique);  // "FEM with contact"
+
+struct StudyPose {
+  std::string name;
+  std::vector<std::string> flex;  // BONE=DEG; neither this nor a file: rest
+  Path pose, motion, map;         // files, or empty
+  std::optional<int> frame;
+  std::string up;
+};
+
+// What a result must keep to. A gate that does not apply to a cell is neither passed nor failed.
+struct GateLimits {
+  double mass_percent = 1;             // change of each soft tissue of `least_voxels` or more
+  std::int64_t least_voxels = 5000;    // at rest: smaller tissues change by more where a rigid turn alone meets the grid
+  double bone_residual_mm = 0.05;      // from each bone's rigid motion
+  double skin_share_percent = 0.2;     // of the surface that is no longer skin
+  double joint_excess_degrees = 0.1;   // beyond the rig's limits
+};
+
+struct Study {
+  std::string name = "Study";
+  Path description;                    // the file it was read from, or empty
+  std::string phantom;                 // "arm", "body", or empty: `volume`
+  Path volume, rig, tissues;
+  std::map<double, Path> ready;        // volumes that exist at a spacing; others are made from `volume`
+  std::vector<double> bones;
+  std::string weights = "heat", quality = "normal";
+  bool fit_joints = false, nearest = false;
+  std::vector<std::optional<double>> spacings;  // mm; none: as it is
+  std::vector<StudyPose> poses;
+  std::vector<Technique> techniques;
+  GateLimits gates;
+};
+
+// Throws Error naming the key that is wrong.
+Study read_study(const Path& path);
+
+// The paper's: an arm at 2, 3 and 4 mm, its elbow bent by 0, 45, 60 and 90 degrees more, by every technique.
+//   folder  holds man-arm-2mm.mha (or others, man-arm-*mm*) and its armature; empty: the procedural arm
+//   throws Error where the folder lacks either
+Study paper_study(const Path& folder = {});
+
+// As JSON, defaults included: goes into the results.
+std::string to_json(const Study& study);
+
+// "2 mm", or "as it is"
+std::string spacing_text(const std::optional<double>& spacing);
+
+}  // namespace limber

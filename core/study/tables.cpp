@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/study/tables.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+namespace limber {
+
+namespace {
+using Json = nlohmann::ordered_json;
+
+Json gates_json(const CellResult& cell) {
+  Json rows = Json::array();
+  for (const Gate& gate : cell.gates) {
+    Json row{{"name", gate.name}};
+    if (gate.state != Gate::State::DoesNotApply) row["passed"] = gate.state == Gate::State::Passed;
+    row["figure"] = gate.figure;
+    row["limit"] = gate.limit;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json cell_json(const Study& study, const CellResult& cell) {
+  const auto& spacing = study.spacings[cell.cell.spacing];
+  Json row{{"spacing_mm", spacing ? Json(*spacing) : Json()}, {"pose", study.poses[cell.cell.pose].name}, {"method", word_of(study.techniques[cell.cell.technique])}};
+  if (!cell.done()) {
+    row["failure"] = cell.failure;
+    return row;
+  }
+  const Json own = Json::parse(cell.cell_json);
+  row["folder"] = "cells/" + cell.folder.filename().string();
+  for (const char* key : {"key", "pose_reached", "cpu_seconds", "wall_seconds", "machine"}) row[key] = own.at(key);
+  row["gates"] = gates_json(cell);
+  row["report"] = Json::parse(cell.report);
+  return row;
+}
+
+using Row = std::map<std::string, std::string>;
+
+// RFC 4180
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+// Rows of a list go by their names; what else is a list is joined.
+void flatten(const Json& value, const std::string& name, std::vector<std::string>& order, Row& row) {
+  const auto put = [&](const std::string& text) {
+    if (row.emplace(name, text).second) order.push_back(name);
+  };
+  if (value.is_object()) {
+    for (const auto& [key, inner] : value.items()) flatten(inner, name.empty() ? key : name + "." + key, order, row);
+  } else if (value.is_array()) {
+    const bool is_named = !value.empty() && value.front().is_object();
+    std::string joined;
+    std::set<std::string> seen;
+    for (const Json& inner : value) {
+      if (is_named) {
+        std::string key = inner.contains("label") ? inner["label"].dump() : "";
+        for (const char* by : {"name", "bone", "path"})
+          if (inner.contains(by) && inner[by].is_string()) { key = inner[by].get<std::string>(); break; }
+        if (!seen.insert(key).second && inner.contains("label")) key += " (" + inner["label"].dump() + ")";
+        for (const auto& [inner_key, figure] : inner.items())
+          if (inner_key != "name" && inner_key != "bone" && inner_key != "path") flatten(figure, name + "." + key + "." + inner_key, order, row);
+      } else {
+        joined += (joined.empty() ? "" : "; ") + (inner.is_string() ? inner.get<std::string>() : inner.dump());
+      }
+    }
+    if (!is_named) put(joined);
+  } else {
+    put(value.is_string() ? value.get<std::string>() : value.is_null() ? "" : value.dump());
+  }
+}
+
+}  // namespace
+
+std::string cells_json(const Study& study, const std::vector<CellResult>& cells) {
+  Json json{{"schema", "limber-study/1"}, {"version", LIMBER_VERSION}, {"study", Json::parse(to_json(study))}, {"cells", Json::array()}};
+  for (const CellResult& cell : cells) json["cells"].push_back(cell_json(study, cell));
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string cells_csv(const Study& study, const std::vector<CellResult>& cells) {
+  std::vector<std::string> columns;
+  std::vector<Row> rows;
+  for (const CellResult& cell : cells) {
+    Json json = cell_json(study, cell);
+    json.erase("gates");
+    if (json.contains("report")) {
+      Json report = std::move(json["report"]);
+      json.erase("report");
+      for (const char* key : {"schema", "method", "inputs", "settings"}) report.erase(key);
+      json.update(report);
+    }
+    std::vector<std::string> order;
+    Row row;
+    flatten(json, "", order, row);
+    // A figure that an earlier row lacks goes behind the one that it follows here.
+    std::size_t at = 0;
+    for (const std::string& name : order) {
+      const auto found = std::find(columns.begin(), columns.end(), name);
+      if (found == columns.end()) columns.insert(columns.begin() + static_cast<std::ptrdiff_t>(at++), name);
+      else at = static_cast<std::size_t>(found - columns.begin()) + 1;
+    }
+    rows.push_back(std::move(row));
+  }
+  std::string text;
+  for (std::size_t c = 0; c < columns.size(); ++c) text += (c ? "," : "") + csv_field(columns[c]);
+  text += "\r\n";
+  for (const Row& row : rows) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const auto found = row.find(columns[c]);
+      text += (c ? "," : "") + (found == row.end() ? "" : csv_field(found->second));
+    }
+    text += "\r\n";
+  }
+  return text;
+}
+
+}  // namespace limber

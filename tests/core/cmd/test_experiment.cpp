@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber experiment, as a user runs it: whole, in shards, killed and taken up again.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <random>
+#include <set>
+#include <thread>
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "core/base/file.h"
+#include "tests/support/program.h"
+
+using namespace limber;
+using namespace limber::test;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+void describe(const Path& path, const std::string& methods, const std::string& poses = R"([{"name": "+0"}, {"name": "+40", "flex": ["Forearm=40"]}])") {
+  std::ofstream(path) << R"({"name": "Small & quick", "phantom": "arm", "spacings_mm": [8], "quality": "draft", "methods": )" << methods << R"(, "poses": )" << poses << "}";
+}
+
+// Without what differs from run to run.
+json without_times(json value) {
+  if (value.is_object())
+    for (const char* key : {"cpu_seconds", "wall_seconds", "seconds", "peak_memory_mb"}) value.erase(key);
+  if (value.is_structured())
+    for (json& inner : value) inner = without_times(inner);
+  return value;
+}
+json cells_of(const Path& folder) { return without_times(json::parse(read_file(folder / "cells.json"))); }
+
+int cells_there(const Path& folder) {
+  int cells = 0;
+  if (fs::exists(folder / "cells"))
+    for (const auto& entry : fs::directory_iterator(folder / "cells")) cells += entry.path().filename().string()[0] != '.';
+  return cells;
+}
+
+// Starts it, ends it by a signal `after` seconds after that many cells are there, and returns how it ended.
+int ended_by(int signal, const Path& study, const Path& out, int cells, double after) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int nothing = ::open("/dev/null", O_WRONLY);
+    ::dup2(nothing, 1);
+    ::dup2(nothing, 2);
+    ::execl(LIMBER_PROGRAM, "limber", "experiment", study.c_str(), "-o", out.c_str(), nullptr);
+    ::_exit(127);
+  }
+  int status = 0;
+  while (cells_there(out) < cells && ::waitpid(child, &status, WNOHANG) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  std::this_thread::sleep_for(std::chrono::duration<double>(after));
+  ::kill(child, signal);
+  ::waitpid(child, &status, 0);
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+std::size_t count(const std::string& text, const std::string& of) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(of); at != text.npos; at = text.find(of, at + of.size())) ++found;
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("experiment: a study gives tables and one self-contained page; killed after a random cell and taken up again it gives the same") {
+  const TemporaryFolder folder;
+  const Path study = folder / "study.json", whole = folder / "whole", killed = folder / "killed";
+  describe(study, R"(["lbs", "dqs", "fem"])");
+  const auto run = run_limber({"experiment", study, "-o", whole});
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  CHECK(count(run.err, ": done") == 6);
+  CHECK(run.err.find(" left") != std::string::npos);
+
+  const json cells = cells_of(whole);
+  CHECK(cells["schema"] == "limber-study/1");
+  REQUIRE(cells["cells"].size() == 6);
+  std::set<std::string> seen;
+  for (const json& cell : cells["cells"]) {
+    seen.insert(cell["pose"].get<std::string>() + " " + cell["method"].get<std::string>());
+    CHECK(cell["spacing_mm"] == 8);
+    CHECK(cell["report"]["schema"] == "limber-report/1");
+    CHECK(cell["gates"].size() == 10);
+    for (const json& input : cell["report"]["inputs"]) CHECK_FALSE(input["path"].get<std::string>().starts_with("/"));
+    if (cell["pose"] == "+0") {
+      CHECK(cell["report"]["total"]["volume_change_percent"] == 0);
+      CHECK(cell["report"]["total"]["overlap_voxels"] == 0);
+      CHECK_FALSE(cell["report"].contains("joints"));
+    } else {
+      CHECK(cell["report"]["joints"][0]["bone"] == "Forearm");
+      CHECK(cell["report"]["joints"][0]["degrees"].get<double>() == doctest::Approx(40));
+    }
+    CHECK(cell["report"].contains("solve") == (cell["method"] == "fem" && cell["pose"] != "+0"));
+  }
+  CHECK(seen.size() == 6);
+
+  const std::string table = read_file(whole / "cells.csv");
+  CHECK(count(table, "\r\n") == 7);
+  CHECK(table.starts_with("spacing_mm,pose,method,"));
+  CHECK(table.find(",tissues.muscle.volume_change_percent,") != std::string::npos);
+
+  const std::string page = read_file(whole / "report.html");
+  CHECK(page.starts_with("<!doctype html>"));
+  CHECK(page.ends_with("</html>\n"));
+  CHECK(page.find("Small &amp; quick") != std::string::npos);
+  for (const char* outside : {"<script", "http:", "https:", "<link", "src=\"/", "url("}) CHECK_MESSAGE(page.find(outside) == std::string::npos, outside);
+  CHECK(count(page, "data:image/png;base64,") >= 6);
+  for (const char* part : {"id=\"summary\"", "id=\"time\"", "id=\"volume\"", "id=\"pictures\"", "id=\"worst\"", "id=\"gates\"", "id=\"provenance\"", "prefers-color-scheme:dark", "@media print"}) CHECK_MESSAGE(page.find(part) != std::string::npos, part);
+  for (const char* tag : {"figure", "table", "tr", "td", "th", "svg", "figcaption", "thead"}) CHECK_MESSAGE(count(page, std::string("</") + tag + ">") == count(page, std::string("<") + tag + ">") + count(page, std::string("<") + tag + " "), tag);
+
+  std::random_device random;
+  const int after = static_cast<int>(random() % 5);
+  INFO("killed after ", after, " cells");
+  CHECK(ended_by(SIGKILL, study, killed, after, (random() % 1000) * 3e-4) == 128 + SIGKILL);
+  CHECK_FALSE(fs::exists(killed / "cells.json"));
+  const int kept = cells_there(killed);
+  CHECK(kept >= after);
+  const auto rest = run_limber({"experiment", study, "-o", killed});
+  INFO(rest.err);
+  REQUIRE(rest.exit_code == 0);
+  CHECK(count(rest.err, ": there already") == std::size_t(kept));
+  CHECK(count(rest.err, ": done") == std::size_t(6 - kept));
+  CHECK(cells_of(killed) == cells);
+  for (const auto& entry : fs::recursive_directory_iterator(killed)) CHECK_MESSAGE(entry.path().filename().string()[0] != '.', entry.path().string());
+
+  const auto again = run_limber({"experiment", study, "-o", killed});
+  CHECK(count(again.err, ": there already") == 6);
+  CHECK(cells_of(killed) == cells);
+
+  // A job of a cell makes the cell's volume again.
+  const Path one = killed / cells["cells"][4]["folder"].get<std::string>();
+  const std::string before = read_file(one / "posed.nrrd");
+  REQUIRE(run_limber({"job", one / "job.json"}).exit_code == 0);
+  CHECK(read_file(one / "posed.nrrd") == before);
+}
+
+TEST_CASE("experiment: shards compute each their own cells, and a run without one collects them") {
+  const TemporaryFolder folder;
+  const Path study = folder / "study.json", out = folder / "out";
+  describe(study, R"(["lbs", "dqs"])");
+  for (const char* shard : {"1/2", "2/2"}) {
+    const auto run = run_limber({"experiment", study, "-o", out, "--shard", shard});
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    CHECK(count(run.err, ": done") == 2);
+    CHECK_FALSE(fs::exists(out / "cells.json"));
+  }
+  const auto all = run_limber({"experiment", study, "-o", out});
+  REQUIRE(all.exit_code == 0);
+  CHECK(count(all.err, ": there already") == 4);
+  CHECK(cells_of(out)["cells"].size() == 4);
+
+  // Another pose more: only its cells are computed.
+  describe(study, R"(["lbs", "dqs"])", R"([{"name": "+0"}, {"name": "+40", "flex": ["Forearm=40"]}, {"name": "+20", "flex": "Forearm=20"}])");
+  const auto more = run_limber({"experiment", study, "-o", out});
+  CHECK(count(more.err, ": there already") == 4);
+  CHECK(count(more.err, ": done") == 2);
+}
+
+TEST_CASE("experiment: a cancel leaves done cells and nothing half-written; what cannot be is one clear line") {
+  const TemporaryFolder folder;
+  const Path study = folder / "study.json", out = folder / "out";
+  describe(study, R"(["lbs", "dqs"])");
+  CHECK(ended_by(SIGINT, study, out, 1, 0.02) == 3);
+  CHECK(cells_there(out) >= 1);
+  CHECK_FALSE(fs::exists(out / "report.html"));
+  for (const auto& entry : fs::recursive_directory_iterator(out)) CHECK_MESSAGE(entry.path().filename().string()[0] != '.', entry.path().string());
+
+  const auto refused = [](const std::vector<std::string>& words, const std::string& named) {
+    const auto run = run_limber(words);
+    INFO(run.err);
+    CHECK(run.exit_code == 1);
+    CHECK(run.err.starts_with("limber: "));
+    CHECK(run.err.find(named) != std::string::npos);
+    CHECK(count(run.err, "\n") == 1);
+  };
+  refused({"experiment", folder / "none.json", "-o", folder / "x"}, "none.json");
+  refused({"experiment", study, "-o", out, "--shard", "3/2"}, "3/2");
+  refused({"experiment", study, folder.path(), "-o", out}, "arm");
+  refused({"experiment", "arm", folder.path(), "-o", folder / "x"}, "no arm");
+  CHECK_FALSE(fs::exists(folder / "x"));
+  std::ofstream(folder / "file") << "x";
+  refused({"experiment", study, "-o", folder / "file" / "out"}, "cannot be made");
+  CHECK(run_limber({"experiment"}).exit_code == 2);
+
+  // A pose that the rig does not know fails its cells alone, and the page says so.
+  describe(study, R"(["lbs"])", R"([{"name": "+0"}, {"name": "wrong", "flex": ["Elbow=40"]}])");
+  const auto wrong = run_limber({"experiment", study, "-o", out});
+  CHECK(wrong.exit_code == 1);
+  CHECK(wrong.err.find("limber: 1 of 2 cells failed") != std::string::npos);
+  const json cells = cells_of(out);
+  CHECK_FALSE(cells["cells"][0].contains("failure"));
+  CHECK(cells["cells"][1]["failure"].get<std::string>().find("Elbow") != std::string::npos);
+  CHECK(read_file(out / "report.html").find("Elbow") != std::string::npos);
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/study/study.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <doctest/doctest.h>
+
+#include "core/base/error.h"
+#include "core/study/run_study.h"
+#include "tests/support/program.h"
+
+using namespace limber;
+
+TEST_CASE("study: the paper's has 48 cells, spacing by spacing, each named once") {
+  const Study study = paper_study();
+  CHECK(study.phantom == "arm");
+  const std::vector<StudyCell> cells = cells_of(study);
+  REQUIRE(cells.size() == 48);
+  CHECK(text_of(study, cells.front()) == "2 mm, +0°, Linear blend");
+  CHECK(text_of(study, cells.back()) == "4 mm, +90°, FEM with contact");
+  std::vector<std::string> names;
+  for (const StudyCell& cell : cells) names.push_back(text_of(study, cell));
+  std::sort(names.begin(), names.end());
+  CHECK(std::adjacent_find(names.begin(), names.end()) == names.end());
+}
+
+TEST_CASE("study: the real arm's folder brings its volumes and its armature, and joints are fitted") {
+  const test::TemporaryFolder folder;
+  const auto refused = [&] {
+    try {
+      paper_study(folder.path());
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(refused().find("no arm in the folder") != std::string::npos);
+  for (const char* name : {"man-arm-2mm.mha", "man-arm-2mm-skinned.mha", "man-arm-4mm.nrrd", "man-arm-3mm.txt"}) std::ofstream(folder / name) << "x";
+  CHECK(refused().find("no armature") != std::string::npos);
+  std::ofstream(folder / "man-arm-2mm-armature.vtk") << "x";
+  const Study study = paper_study(folder.path());
+  CHECK(study.volume.filename() == "man-arm-2mm.mha");
+  REQUIRE(study.ready.size() == 2);
+  CHECK(study.ready.at(4).filename() == "man-arm-4mm.nrrd");
+  CHECK(study.fit_joints);
+}
+
+TEST_CASE("study: a description says body, poses, techniques and spacings; what it leaves out has defaults") {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "body.nrrd") << "x";
+  std::ofstream(folder / "rig.json") << "x";
+  std::ofstream(folder / "study.json") << R"({"name": "Knee", "volume": "body.nrrd", "rig": "rig.json", "bones": [3, 4], "spacings_mm": [1.5, null], "methods": ["dqs", "fem-contact"],
+    "poses": [{"name": "rest"}, {"name": "bent", "flex": ["Shin=60", "Foot=-10"]}], "quality": "draft", "weights": "geodesic", "fit_joints": true, "gates": {"mass_percent": 0.5}})";
+  const Study study = read_study(folder / "study.json");
+  CHECK(study.name == "Knee");
+  CHECK(study.volume == folder / "body.nrrd");
+  CHECK(study.bones == std::vector<double>{3, 4});
+  REQUIRE(study.spacings.size() == 2);
+  CHECK(study.spacings[0] == 1.5);
+  CHECK_FALSE(study.spacings[1].has_value());
+  CHECK(study.techniques == std::vector<Technique>{Technique::DualQuaternion, Technique::FemContact});
+  CHECK(study.poses[1].flex == std::vector<std::string>{"Shin=60", "Foot=-10"});
+  CHECK(study.gates.mass_percent == 0.5);
+  CHECK(study.gates.least_voxels == 5000);
+  CHECK(cells_of(study).size() == 8);
+
+  std::ofstream(folder / "short.json") << R"({"phantom": "arm", "poses": [{"name": "rest"}]})";
+  const Study few = read_study(folder / "short.json");
+  CHECK(few.name == "short");
+  CHECK(cells_of(few).size() == 4);
+}
+
+TEST_CASE("study: a description that is wrong is refused in one line that names the key") {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "v.nrrd") << "x";
+  std::ofstream(folder / "r.json") << "x";
+  const std::string body = R"("volume": "v.nrrd", "rig": "r.json")", pose = R"("poses": [{"name": "a"}])";
+  for (const auto& [text, named] : std::vector<std::pair<std::string, std::string>>{
+           {"", "no description"},
+           {"[]", "no description"},
+           {"{", "no description"},
+           {"{}", "one body"},
+           {R"({"volume": "v.nrrd", )" + pose + "}", "rig"},
+           {R"({"volume": "none.nrrd", "rig": "r.json", )" + pose + "}", "none.nrrd"},
+           {R"({"phantom": "leg", )" + pose + "}", "leg"},
+           {R"({"phantom": "arm", "rig": "r.json", )" + pose + "}", "phantom"},
+           {"{" + body + "}", "no poses"},
+           {"{" + body + R"(, "poses": []})", "poses"},
+           {"{" + body + R"(, "poses": [{}]})", "number 1"},
+           {"{" + body + R"(, "poses": [{"name": "a"}, {"name": "a"}]})", "twice"},
+           {"{" + body + R"(, "poses": [{"name": "a", "bend": 3}]})", "bend"},
+           {"{" + body + R"(, "poses": [{"name": "a", "frame": 3}]})", "motion"},
+           {"{" + body + R"(, "poses": [{"name": "a", "flex": [3]}]})", "flex"},
+           {"{" + body + ", " + pose + R"(, "methods": ["spline"]})", "spline"},
+           {"{" + body + ", " + pose + R"(, "spacings_mm": [0]})", "spacings_mm"},
+           {"{" + body + ", " + pose + R"(, "spacings_mm": [2, 2]})", "twice"},
+           {"{" + body + ", " + pose + R"(, "spacings_mm": "2"})", "spacings_mm"},
+           {"{" + body + ", " + pose + R"(, "gates": {"mass": 1}})", "mass"},
+           {"{" + body + ", " + pose + R"(, "colour": "red"})", "colour"},
+           {"{" + body + ", " + pose + R"(, "fit_joints": "yes"})", "fit_joints"},
+       }) {
+    std::ofstream(folder / "study.json") << text;
+    std::string said;
+    try {
+      read_study(folder / "study.json");
+    } catch (const Error& error) {
+      said = error.what();
+    }
+    INFO(text, " -> ", said);
+    CHECK(said.find(named) != std::string::npos);
+    CHECK(said.find("study.json") != std::string::npos);
+    CHECK(said.find('\n') == std::string::npos);
+  }
+}
