@@ -64,7 +64,7 @@ void add_surfaces(CLI::App& app) {
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
   command->add_option("--only", options->choice.tissues, "tissues by name or label (default: all)")->delimiter(',')->type_name("A,B");
-  command->add_option("--relax", options->choice.settings.relaxations, "how often vertices are drawn to their neighbours (default: 20; 0 keeps voxels' steps)")->check(CLI::Range(0, 1000));
+  command->add_option("--relax", options->choice.settings.relaxations, "steps of smoothing (default: 5; more is smoother, but what is thin loses volume; 0 keeps voxels and volumes as they are)")->check(CLI::Range(0, 1000));
   command->add_option("-o,--output", options->output, "OUT.obj (one file), OUT.stl or OUT.ply (a file a tissue: OUT-NAME.stl)")->required();
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
   command->callback([options] {
