@@ -71,7 +71,7 @@ std::size_t count(const std::string& text, const std::string& of) {
 
 }  // namespace
 
-TEST_CASE("experiment: a study gives tables and one self-contained page; killed after a random cell and taken up again it gives the same") {
+TEST_CASE("experiment: a study gives tables and one self-contained page, and killed after a random cell and taken up again the same") {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", whole = folder / "whole", killed = folder / "killed";
   describe(study, R"(["lbs", "dqs", "fem"])");
@@ -106,7 +106,7 @@ TEST_CASE("experiment: a study gives tables and one self-contained page; killed 
   const std::string table = read_file(whole / "cells.csv");
   CHECK(count(table, "\r\n") == 7);
   CHECK(table.starts_with("spacing_mm,pose,method,"));
-  CHECK(table.find(",tissues.muscle.volume_change_percent,") != std::string::npos);
+  CHECK(table.find(",tissues.fat.volume_change_percent,") != std::string::npos);
 
   const std::string page = read_file(whole / "report.html");
   CHECK(page.starts_with("<!doctype html>"));
@@ -166,7 +166,7 @@ TEST_CASE("experiment: shards compute each their own cells, and a run without on
   CHECK(count(more.err, ": done") == 2);
 }
 
-TEST_CASE("experiment: a cancel leaves done cells and nothing half-written; what cannot be is one clear line") {
+TEST_CASE("experiment: a cancel leaves done cells and nothing half-written, and what cannot be is one clear line") {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", out = folder / "out";
   describe(study, R"(["lbs", "dqs"])");

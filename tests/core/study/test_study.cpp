@@ -46,7 +46,7 @@ TEST_CASE("study: the real arm's folder brings its volumes and its armature, and
   CHECK(study.fit_joints);
 }
 
-TEST_CASE("study: a description says body, poses, techniques and spacings; what it leaves out has defaults") {
+TEST_CASE("study: a description says body, poses, techniques and spacings, and what it leaves out has defaults") {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "body.nrrd") << "x";
   std::ofstream(folder / "rig.json") << "x";
