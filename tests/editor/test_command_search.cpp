@@ -64,7 +64,7 @@ TEST_CASE("search: every command can be found by its own name, first of all") {
   }
 }
 
-TEST_CASE("search: what is for the pointer alone is left out; Repeat does the last command again") {
+TEST_CASE("search: what is for the pointer alone is left out, Repeat does the last command again") {
   SmallEditor test;
   for (const FoundCommand& command : find_commands(*test.editor, "")) CHECK(command.op->id != "view.orbit");
   test.play(R"(

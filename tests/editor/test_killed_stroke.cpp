@@ -15,7 +15,7 @@
 
 namespace limber::test {
 
-TEST_CASE("painting: kill -9 during a stroke loses that stroke alone; layers and strokes before it are offered and come back") {
+TEST_CASE("painting: kill -9 during a stroke loses that stroke alone, layers and strokes before it are offered and come back") {
   const Home home;
   Document document = small_limb();
   document.weights = half_weights(*document.volume);

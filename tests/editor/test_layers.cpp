@@ -195,7 +195,7 @@ TEST_CASE("layers: opacity, eye and mask are edits in the sidebar, and a hidden 
   CHECK(why_not_paint(*test.editor).empty());
 }
 
-TEST_CASE("layers: computed and imported weights come below the layers; those of other bones take their place") {
+TEST_CASE("layers: computed and imported weights come below the layers, those of other bones take their place") {
   PaintEditor test;
   test.play("move \"3D view/view\"\nkey Shift+Ctrl+L\nwait-idle");
   stroke(test, dab(test));

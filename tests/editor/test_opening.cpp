@@ -49,7 +49,7 @@ TEST_CASE("opening: files are told apart by what they hold") {
   for (const char* name : {"odd.json", "odd.limber", "missing", "scans"}) CHECK_THROWS_AS(editor::kind_of(files / name), Error);
 }
 
-TEST_CASE("opening: a dropped motion whose z axis points up is turned upright and says so; the dialog opens with z") {
+TEST_CASE("opening: a dropped motion whose z axis points up is turned upright and says so, the dialog opens with z") {
   const TubeFiles files;
   const Motion y_up = t_pose_body({{0, 0, 0}, {20, 5, 1}});
   write_bvh(y_up_from_z_up(y_up_from_z_up(y_up_from_z_up(y_up))), files / "z.bvh");

@@ -65,7 +65,7 @@ TEST_CASE("outliner: rows fold, eyes hide and show, Ctrl with a click leaves one
   CHECK(test.editor->comparison.b == "First");
 }
 
-TEST_CASE("outliner: a tissue and a result are renamed by double click, by F2 and from their menus; Escape keeps the name") {
+TEST_CASE("outliner: a tissue and a result are renamed by double click, by F2 and from their menus, Escape keeps the name") {
   Tree test;
   test.play(R"#(
     click Outliner/tissues/fold
@@ -99,7 +99,7 @@ TEST_CASE("outliner: a tissue and a result are renamed by double click, by F2 an
   )#");
 }
 
-TEST_CASE("outliner: arrows, Home, End, Space, Left and Right do what the mouse does; the keys return to the view with the pointer") {
+TEST_CASE("outliner: arrows, Home, End, Space, Left and Right do what the mouse does, the keys return to the view with the pointer") {
   Tree test;
   test.play(R"(
     click Outliner/armature/name

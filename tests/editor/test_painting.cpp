@@ -200,7 +200,7 @@ TEST_CASE("painting: where a lock is in the way nothing changes by one bit, it i
   CHECK(test.editor->document().weights != before);
 }
 
-TEST_CASE("painting: Ctrl takes away, Shift smooths, whatever the brush; the other bone gets what is taken") {
+TEST_CASE("painting: Ctrl takes away, Shift smooths, whatever the brush, the other bone gets what is taken") {
   PaintEditor test;
   test.play("key-down Ctrl");
   test.stroke(test.at(0, -20), test.at(0, -20));

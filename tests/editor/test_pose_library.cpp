@@ -23,7 +23,7 @@ void fill_library(Stage& s) {
 }
 }  // namespace
 
-TEST_CASE("pose library: a card applies its pose by a click and a part of it by a drag, each one edit; Escape leaves the pose") {
+TEST_CASE("pose library: a card applies its pose by a click and a part of it by a drag, each one edit, Escape leaves the pose") {
   Stage s;
   fill_library(s);
   const auto edits = s.editor().history.position();

@@ -42,7 +42,7 @@ TEST_CASE("preferences: what is written reads back as the same") {
   CHECK(problem.empty());
 }
 
-TEST_CASE("preferences: a damaged file gives the program's own and says so; wrong values are brought into range or left out") {
+TEST_CASE("preferences: a damaged file gives the program's own and says so, wrong values are brought into range or left out") {
   std::string problem;
   for (const char* text : {"", "{", "[1]", "null", "{\"schema\": 3}", "{}"}) {
     problem.clear();
@@ -170,7 +170,7 @@ TEST_CASE("preferences: Maya's keys have no clash, name only operators that exis
   CHECK(test.editor->preferences.keymap == "maya");
 }
 
-TEST_CASE("preferences: keys are exported and imported as a file; a file that is no key map changes nothing") {
+TEST_CASE("preferences: keys are exported and imported as a file, a file that is no key map changes nothing") {
   const TemporaryFolder folder;
   SmallEditor test({1280, 720});
   test.editor->preferences.keys[{"select", "select.none"}] = {"A"};

@@ -93,7 +93,7 @@ TEST_CASE("prepare: weights and rig stay only while they fit, and it is said") {
   CHECK_FALSE(test.editor->document().armature);
 }
 
-TEST_CASE("prepare: crop to the clip box keeps what is seen; a form says what is wrong and waits") {
+TEST_CASE("prepare: crop to the clip box keeps what is seen, a form says what is wrong and waits") {
   LimbEditor test;
   CHECK_FALSE(why_not(*test.editor, *find_operator(*test.editor, "prepare.crop_to_clip_box")).empty());
   run(*test.editor, "view.clip_box");

@@ -168,7 +168,7 @@ TEST_CASE("project: what a crash left of a saved project is offered when it is o
   }
 }
 
-TEST_CASE("project: two editors do not write one project; the second may look at a copy") {
+TEST_CASE("project: two editors do not write one project, the second may look at a copy") {
   const Home home;
   {
     Sitting first(home.folder.path(), {home / "scans/ball.nrrd"});

@@ -280,7 +280,7 @@ TEST_CASE("replay: named widgets lie in their regions and none covers another") 
   }
 }
 
-TEST_CASE("replay: an editor at rest draws nothing and leaves no OpenGL error; closed, no OpenGL object") {
+TEST_CASE("replay: an editor at rest draws nothing and leaves no OpenGL error, closed, no OpenGL object") {
   {
     SmallEditor test;
     test.play("wait-idle\n click view.four\n wait 1\n wait-idle");  // the tool tip of the button has come

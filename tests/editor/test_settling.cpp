@@ -138,7 +138,7 @@ TEST_CASE("settling: while finite elements are solved the Resample workspace sho
   CHECK(test.editor->fem->solves.empty());
 }
 
-TEST_CASE("settling: during a solve the pose is changed, weights are painted, edits undone and the project saved; then the result comes beside all that") {
+TEST_CASE("settling: during a solve the pose is changed, weights are painted, edits undone and the project saved, then the result comes beside all that") {
   SolveEditor test;
   const Path go = test.folder / "go", project = test.folder / "limb.limber";
   // Without --parent: it is the script's child.
@@ -186,7 +186,7 @@ TEST_CASE("settling: during a solve the pose is changed, weights are painted, ed
   CHECK(test.editor->document().pose == posed);
 }
 
-TEST_CASE("settling: a result that was watched to its end is what the views then show; one that was not is not") {
+TEST_CASE("settling: a result that was watched to its end is what the views then show, one that was not is not") {
   for (const bool watched : {true, false}) {
     SolveEditor test;
     test.editor->worker_program = LIMBER_PROGRAM;
@@ -198,7 +198,7 @@ TEST_CASE("settling: a result that was watched to its end is what the views then
   }
 }
 
-TEST_CASE("settling: a result by finite elements becomes stale when weights change, or how stiff tissue is; another one does not mind stiffness") {
+TEST_CASE("settling: a result by finite elements becomes stale when weights change, or how stiff tissue is, another one does not mind stiffness") {
   SolveEditor test;
   test.editor->worker_program = LIMBER_PROGRAM;
   test.play("key Ctrl+Return\nwait-job");

@@ -36,7 +36,7 @@ TEST_CASE("start screen: it shows recent files with pictures, opens one, and kee
   CHECK(sitting.editor().remembered.recents.size() == 2);
 }
 
-TEST_CASE("start screen: arrows and Return choose a recent file; the menu lists them too") {
+TEST_CASE("start screen: arrows and Return choose a recent file, the menu lists them too") {
   const Home home;
   { Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}); }
   {
@@ -47,7 +47,7 @@ TEST_CASE("start screen: arrows and Return choose a recent file; the menu lists 
   sitting.play("click \"File/Open recent/ball.nrrd\"\n wait-job\n expect name ball");
 }
 
-TEST_CASE("start screen: a key that is a command closes it and runs; Escape closes it; it can be told to stay away") {
+TEST_CASE("start screen: a key that is a command closes it and runs, Escape closes it, it can be told to stay away") {
   const Home home;
   {
     Sitting sitting(home.folder.path());

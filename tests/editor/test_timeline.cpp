@@ -155,7 +155,7 @@ TEST_CASE("timeline: keys without a motion make a clip of their own") {
   CHECK(test.bend() == doctest::Approx(60));
 }
 
-TEST_CASE("timeline: a frame that is typed stays in the clip, and a range does not cross itself; both are told") {
+TEST_CASE("timeline: a frame that is typed stays in the clip, and a range does not cross itself, both are told") {
   BendingEditor test;
   const auto type = [&](const char* field, const char* number) { test.play(std::string("double-click timeline/\"") + field + "\"\nkey Ctrl+A\ntype \"" + number + "\"\nkey Return\nwait-idle"); };
   type("Frame", "99999");

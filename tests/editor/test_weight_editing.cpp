@@ -176,7 +176,7 @@ TEST_CASE("weight editing: on a large body an edit is a job, adjustable when it 
   CHECK(test.last_toast().find("changed meanwhile") != std::string::npos);
 }
 
-TEST_CASE("weight editing: a gradient goes from full to none along the line drawn, or around its beginning; Escape gives it up") {
+TEST_CASE("weight editing: a gradient goes from full to none along the line drawn, or around its beginning, Escape gives it up") {
   EditEditor test;
   test.play("key Num5\nwait-idle");
   const int steps = test.steps();

@@ -92,7 +92,7 @@ TEST_CASE("camera: framing puts every corner of the box into the picture, and no
   }
 }
 
-TEST_CASE("camera: orbiting keeps the centre and the horizon; zooming stays within its limits") {
+TEST_CASE("camera: orbiting keeps the centre and the horizon, zooming stays within its limits") {
   const Camera camera = looking_from(StandardView::Front, {});
   const Camera turned = orbited(camera, {200, 90});
   CHECK(turned.centre == camera.centre);

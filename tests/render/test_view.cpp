@@ -368,7 +368,7 @@ TEST_CASE("view: the same scene gives the same picture, byte for byte, at once a
   CHECK(difference(first, picture_of(studio.renderer, scene, camera, kSize)).mean < 4);
 }
 
-TEST_CASE("view: a moving picture is refined only after a rest of 100 ms; a finished one stays as it is") {
+TEST_CASE("view: a moving picture is refined only after a rest of 100 ms, a finished one stays as it is") {
   Studio studio;
   const Grid grid = grid_of({50, 50, 50});
   const Scene scene = scene_of(lump(grid));

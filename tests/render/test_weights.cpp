@@ -202,7 +202,7 @@ TEST_CASE("weights: contours run where the weight is a quarter, a half and three
   }
 }
 
-TEST_CASE("weights: dominant bones have their swatches, the active one orange; the count of influences has four colours; mixes blend") {
+TEST_CASE("weights: dominant bones have their swatches, the active one orange, the count of influences has four colours, mixes blend") {
   Studio studio;
   SliceView view(studio.renderer);
   const Block block({36, 20, 20}, [](const glm::ivec3&) { return 0; });

@@ -62,7 +62,7 @@ int exit_code_after(int signal, std::chrono::milliseconds wait, const std::vecto
 
 }  // namespace
 
-TEST_CASE("command chain: a phantom is weighted and posed; weights from a file give the volume that weights on the way give") {
+TEST_CASE("command chain: a phantom is weighted and posed, weights from a file give the volume that weights on the way give") {
   const Arm arm;
   const std::string weights = arm.folder / "w.nrrd", direct = arm.folder / "direct.nrrd", by_file = arm.folder / "by-file.nrrd",
                     report = arm.folder / "report.json";
@@ -186,7 +186,7 @@ TEST_CASE("fit-joint: a rig is written whose forearm turns freely") {
   CHECK(info_of(rig)["bones"].size() == info_of(arm.rig)["bones"].size());
 }
 
-TEST_CASE("convert: volumes go through every format and come back bit for bit; rigs and motions keep bones and frames") {
+TEST_CASE("convert: volumes go through every format and come back bit for bit, rigs and motions keep bones and frames") {
   const Arm arm;
   const std::string back = arm.folder / "back.nrrd";
   const auto original = info_of(arm.volume);

@@ -95,7 +95,7 @@ TEST_CASE("fem command: the steps that it leaves for a watcher end where the mes
   CHECK(arm.resample({"--method", "dqs", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--steps", arm.folder / "solve"}).err.starts_with("limber: --steps"));
 }
 
-TEST_CASE("fem command: writes volume, report and mesh; tells angle, iteration, residual and time left; a job does the same bit for bit") {
+TEST_CASE("fem command: writes volume, report and mesh, tells angle, iteration, residual and time left, a job does the same bit for bit") {
   const Arm arm;
   const auto run = arm.resample({"--method", "fem", "--quality", "draft", "--flex", "Forearm=25", "-o", arm.folder / "out.nrrd", "--report",
                                  arm.folder / "r.json", "--mesh-out", arm.folder / "posed", "--progress", "json"});

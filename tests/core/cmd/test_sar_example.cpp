@@ -26,7 +26,7 @@ nlohmann::json read(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth; a posed arm's peak over 10 g lies above its average") {
+TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth, a posed arm's peak over 10 g lies above its average") {
   if (!can_simulate()) {
     MESSAGE("SKIPPED: openEMS, or python's h5py, numpy or scipy, is not installed");
     return;

@@ -30,7 +30,7 @@ struct Block {
 
 }  // namespace
 
-TEST_CASE("carried points: those in and near a mesh turn with it as one body; those too far are not carried") {
+TEST_CASE("carried points: those in and near a mesh turn with it as one body, those too far are not carried") {
   const Block block;
   std::vector<PointToCarry> points;
   for (const glm::dvec3& at : {glm::dvec3(9.3, 7.1, 12.9), glm::dvec3(4, 4, 4), glm::dvec3(2.5, 3, 12), glm::dvec3(17, 15, 19.5)}) points.push_back({at, at});

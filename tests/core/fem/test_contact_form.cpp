@@ -161,7 +161,7 @@ TEST_CASE("contact: what one bone carries is not watched against itself") {
   CHECK(!ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, 1).empty());
 }
 
-TEST_CASE("contact: nothing pushes at rest, however close skin is; nearer it does, by a force that is the slope of its energy") {
+TEST_CASE("contact: nothing pushes at rest, however close skin is, nearer it does, by a force that is the slope of its energy") {
   const TwoBoxes boxes(0.3);
   ContactForm form(boxes.F, boxes.rest, boxes.free());
   const Places still = Places::Zero(boxes.rest.rows(), 3);

@@ -38,7 +38,7 @@ class CancelAfter : public Progress {
 };
 }  // namespace
 
-TEST_CASE("solve pose: a bar of flesh bends, keeps its volume and holds its bones; not one tet inverts on the way") {
+TEST_CASE("solve pose: a bar of flesh bends, keeps its volume and holds its bones, not one tet inverts on the way") {
   const BarModel bar;
   double reached = 0;
   int calls = 0;

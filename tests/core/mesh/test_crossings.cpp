@@ -58,7 +58,7 @@ TEST_CASE("crossings: the side of a point is exact where rounding would decide o
   CHECK(flat > 0);
 }
 
-TEST_CASE("crossings: triangles that pierce, touch or lie upon each other cross; neighbours and strangers do not") {
+TEST_CASE("crossings: triangles that pierce, touch or lie upon each other cross, neighbours and strangers do not") {
   const std::initializer_list<std::array<int, 3>> two = {{0, 1, 2}, {3, 4, 5}};
   CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 1}}, two) == Pairs{{0, 1}});  // pierced
   CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {1, 1, 1}, {2, 2, 1}}, two) == Pairs{{0, 1}});   // touched by a corner

@@ -72,7 +72,7 @@ std::set<std::vector<int>> triangles_of(const LabelSurface& surface) {
 
 }  // namespace
 
-TEST_CASE("label surfaces: a ball, a ring and a hollow ball have their Euler numbers; enclosed volumes are near the voxels'") {
+TEST_CASE("label surfaces: a ball, a ring and a hollow ball have their Euler numbers, enclosed volumes are near the voxels'") {
   const auto solid = volume_of({14, 14, 14}, [](const glm::ivec3& v) { return glm::length(glm::dvec3(v) - 6.5) < 5 ? 3 : 0; });
   const LabelSurfaces ball = label_surfaces(solid);
   REQUIRE(ball.surfaces.size() == 1);
@@ -147,7 +147,7 @@ TEST_CASE("label surfaces: outside is outside on a mirrored grid, too, and spaci
   CHECK(least == doctest::Approx(100 - 4.5));
 }
 
-TEST_CASE("surfaces command: one OBJ with groups that share vertices; STL and PLY a file a tissue, watertight for VTK") {
+TEST_CASE("surfaces command: one OBJ with groups that share vertices, STL and PLY a file a tissue, watertight for VTK") {
   const TemporaryFolder folder;
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
   const std::string volume = folder / "volume.nrrd", tissues = folder / "tissues.json", nifti = folder / "v.nii.gz";

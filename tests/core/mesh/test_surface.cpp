@@ -67,7 +67,7 @@ TEST_CASE("surface: a ball's is closed, faces outwards, lies on the ball and hol
     }
 }
 
-TEST_CASE("surface: whatever the voxels, it is closed, also at the border of the grid; air has none") {
+TEST_CASE("surface: whatever the voxels, it is closed, also at the border of the grid, air has none") {
   std::mt19937 random(5);
   for (int round = 0; round < 20; ++round) {
     const unsigned filled = 1 + round % 4;

@@ -129,7 +129,7 @@ TEST_CASE("report: the command matches labels by their file values, whatever els
   CHECK(test::run_limber({"report", (folder / "before.nrrd").string(), (folder / "none.nrrd").string()}).exit_code == 1);
 }
 
-TEST_CASE("report: finite elements add mesh and solve under the schema's keys, labels as files call them; what was not measured is left out") {
+TEST_CASE("report: finite elements add mesh and solve under the schema's keys, labels as files call them, what was not measured is left out") {
   Report report{.method = "fem", .metrics = compare(box_of(3, 8), box_of(3, 8), table_of(3, 143, "skin"))};
   report.seconds.mesh = 1.25;
   report.seconds.solve = 20.5;

@@ -159,7 +159,7 @@ TEST_CASE("tissue volumes: a strand is not torn, and what could not be had is to
   check_sound(before, after);
 }
 
-TEST_CASE("mass-exact: soft tissues of a bent limb get their rest volumes with every blend; bones, parts and the closed skin stay") {
+TEST_CASE("mass-exact: soft tissues of a bent limb get their rest volumes with every blend, bones, parts and the closed skin stay") {
   const test::BentTube tube = test::bent_tube({}, 120);
   const auto soft_share_off = [&](const LabelVolume& volume) {
     double most = 0;
@@ -188,7 +188,7 @@ TEST_CASE("mass-exact: soft tissues of a bent limb get their rest volumes with e
   }
 }
 
-TEST_CASE("mass-exact: the same for 1 and 2 threads; nothing at rest; refused where too much would be made up") {
+TEST_CASE("mass-exact: the same for 1 and 2 threads, nothing at rest, refused where too much would be made up") {
   const test::BentTube tube = test::bent_tube({}, 120);
   const auto posed = [&](double degrees, int threads) {
     const ThreadCount count(threads);

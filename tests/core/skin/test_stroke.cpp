@@ -134,7 +134,7 @@ TEST_CASE("stroke: whatever is painted, sums stay exact, locks and bone tissue k
   CHECK(in_bone == 0);
 }
 
-TEST_CASE("stroke: without accumulation going over a place again changes nothing more; with it, it does") {
+TEST_CASE("stroke: without accumulation going over a place again changes nothing more, with it, it does") {
   const Painted painted = bar();
   for (const auto kind : {BrushKind::Add, BrushKind::Smooth, BrushKind::Average}) {
     StrokeSettings settings = brush_of(kind, 12, 1);
@@ -336,7 +336,7 @@ TEST_CASE("stroke: dabs stand a spacing apart however the way is cut up, and pre
   CHECK(at(painted.tissue, pressed.weights(), {3, 3, 5}).of(1) == doctest::Approx(0.2).epsilon(1e-3));
 }
 
-TEST_CASE("stroke: it says which bricks changed, when nothing did, and which lock was in the way; giving up costs nothing") {
+TEST_CASE("stroke: it says which bricks changed, when nothing did, and which lock was in the way, giving up costs nothing") {
   const Painted painted = bar();
   const SkinWeights before = *painted.weights;
   StrokeSettings settings = brush_of(BrushKind::Add, 6);

@@ -168,7 +168,7 @@ TEST_CASE("weight edits: a part of the tissue hangs together through faces, all 
   CHECK(std::count(none.begin(), none.end(), 1) == 0);
 }
 
-TEST_CASE("weight edits: weights are copied, moved and swapped between bones; swapped twice they are what they were") {
+TEST_CASE("weight edits: weights are copied, moved and swapped between bones, swapped twice they are what they were") {
   const Painted painted = random_arm(6, 3);
   const StrokeBody body = painted.stroke_body();
   EditScope scope;
@@ -190,7 +190,7 @@ TEST_CASE("weight edits: weights are copied, moved and swapped between bones; sw
   CHECK(mean_difference(copied(body, swapped, 1, 2, Copy::Swap, scope).weights, before) == 0);
 }
 
-TEST_CASE("weight edits: one side mirrors the other; on an asymmetric body what has no match stays and is reported") {
+TEST_CASE("weight edits: one side mirrors the other, on an asymmetric body what has no match stays and is reported") {
   Painted painted(two_sided_body());
   std::mt19937 random(4);
   painted.set([&](const glm::ivec3&) { return quantize({{0, 1 + random() % 9}, {1, 1 + random() % 9}, {2, random() % 9}}); });
@@ -251,7 +251,7 @@ TEST_CASE("weight edits: weights of the same volume come over as they are, those
   CHECK(difference > 0);
 }
 
-TEST_CASE("weight edits: bones that another rig lacks leave their weight to the ancestor that it has; rigs of other names are refused") {
+TEST_CASE("weight edits: bones that another rig lacks leave their weight to the ancestor that it has, rigs of other names are refused") {
   Painted to(two_bone_bar()), from(two_bone_bar());
   from.body.armature.bones.push_back(bone_between("Hand", 1, {15, 15, 80}, {15, 15, 90}));
   std::vector<std::string> names{"Upper", "Lower", "Hand"};
