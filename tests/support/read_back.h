@@ -2,6 +2,7 @@
 // Exports read back by other programs' readers (tests/support/read_exports.py): skipped, loudly, where those are not installed.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 namespace limber::test {
 
 inline ProgramRun read_export(std::vector<std::string> words) {
+  if (!std::filesystem::exists("/usr/bin/python3")) return {.exit_code = 77, .out = "python3 is not installed", .err = {}};
   words.insert(words.begin(), LIMBER_SOURCE_DIR "/tests/support/read_exports.py");
   return run_program("/usr/bin/python3", words);
 }
