@@ -4,6 +4,7 @@
 //        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--threads N] [--progress json]
 #include "core/resample/resample.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -287,6 +288,16 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });
 }
 
+// Of the tissues that are large enough to be held to it, what did not get its mass to a tenth of a percent.
+void note_masses(Report& report, const MassExactReport& exact, const TissueTable& tissues) {
+  for (const auto& [label, tissue] : exact.tissues) {
+    if (tissue.wanted < 5000 || std::abs(tissue.after - tissue.wanted) * 1000 <= tissue.wanted) continue;
+    const Tissue* known = tissues.find(label);
+    note(report, {(known ? known->name : "label " + std::to_string(label)) + " is " + std::to_string(std::abs(tissue.after - tissue.wanted)) + " voxels " +
+                  (tissue.after < tissue.wanted ? "short of" : "above") + " its mass at rest: no border could move further"});
+  }
+}
+
 void note_bone_overlap(Report& report, std::int64_t voxels, bool joints_fitted) {
   if (voxels == 0) return;
   note(report, {joints_fitted ? std::to_string(voxels) + " voxels are still claimed by two bones"
@@ -321,6 +332,7 @@ void finish(const Options& options, const Body& body, const Pose& pose, const La
   report.seconds.rasterize = posed.report.seconds_rasterize;
   note_bone_overlap(report, posed.report.bone_overlap_voxels, options.fit_joints);
   note_shape(report, posed.report, pose, options.contact);
+  if (posed.report.mass_exact) note_masses(report, *posed.report.mass_exact, body.tissues);
 
   Outputs outputs;
   const Stopwatch writing;

@@ -634,7 +634,7 @@ Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<con
   resampling.run(progress);
   if (mends) resampling.mend_tears();
   if (mends && tets) resampling.keep_soft_volumes(progress);
-  if (settings.mass_exact && can_fold(motions)) resampling.keep_masses(body.tissues, progress);
+  if (settings.mass_exact) resampling.keep_masses(body.tissues, progress);
   std::erase_if(report.bones, [](const auto& bone) { return bone.voxels == 0; });
   report.seconds_rasterize = rasterize_seconds();
   return posed;

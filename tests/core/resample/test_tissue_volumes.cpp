@@ -196,5 +196,10 @@ TEST_CASE("mass-exact: the same for 1 and 2 threads, nothing at rest, refused wh
   };
   CHECK(posed(25, 1) == posed(25, 2));
   CHECK(posed(0, 1) == tube.volume.voxels);
+  // A body that turns as a whole loses nothing but what the grid takes, and gets that back.
+  Pose turned = rest_pose(tube.rig);
+  turned.rotation[0] = glm::angleAxis(0.5, glm::normalize(glm::dvec3(1, 2, 3)));
+  const LabelVolume whole = resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, LinearBlend{}, {.mass_exact = true}).volume;
+  for (const Label label : {test::kSkin, test::kFat}) CHECK(std::abs(double(count(whole, label)) / double(count(tube.volume, label)) - 1) < 0.001);
   CHECK_THROWS_WITH_AS(posed(120, 2), doctest::Contains("mass-exact"), Error);
 }
