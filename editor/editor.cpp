@@ -8,6 +8,7 @@
 
 #include "editor/adjust.h"
 #include "editor/assets.h"
+#include "editor/difference.h"
 #include "editor/dispatch.h"
 #include "editor/fem_view.h"
 #include "editor/joint_fit.h"
@@ -39,22 +40,29 @@ Picture& drawn(Views& views, std::unique_ptr<Picture>& picture) {
   return *picture;
 }
 
-void draw_view_picture(Views& views, const Document& document, const ViewPlace& place, double now) {
+// Side by side each place shows one side, else both lie upon one another.
+void draw_view_picture(Views& views, const Document& document, const Layout& layout, const ViewPlace& place, double now) {
   const glm::ivec2 size(place.rect.size());
   if (size.x < 1 || size.y < 1) return;
+  const bool one = !place.side_a, other = views.other_scene && (place.side_a || !layout.by_sides);
   if (place.id == ViewId::Body) {
-    views.body.picture->draw(views.scene, views.body.camera, size, now);
-    if (views.other_scene) drawn(views, views.body.other).draw(*views.other_scene, views.body.camera, size, now);
-    else views.body.other.reset();
+    if (one) views.body.picture->draw(views.scene, views.body.camera, size, now);
+    if (other) drawn(views, views.body.other).draw(*views.other_scene, views.body.camera, size, now);
+    else if (!views.other_scene) views.body.other.reset();
     return;
   }
   SliceState& slice = slice_of(views, place.id);
   if (!slice.fitted) fit(slice, tissue_box(views, document, std::nullopt), place.rect.size());
   const glm::dvec3 normal = render::frame_of(slice.camera.axis).normal;
   slice.camera.centre += normal * glm::dot(views.cross_hair - slice.camera.centre, normal);
-  slice.picture->draw(views.scene, slice.camera, views.slice_display, size);
-  if (views.other_scene) drawn(views, slice.other).draw(*views.other_scene, slice.camera, views.slice_display, size);
-  else slice.other.reset();
+  if (one) slice.picture->draw(views.scene, slice.camera, views.slice_display, size);
+  if (other) drawn(views, slice.other).draw(*views.other_scene, slice.camera, views.slice_display, size);
+  else if (!views.other_scene) slice.other.reset();
+}
+
+Layout layout_of(const Editor& editor, const glm::ivec2& size) {
+  Layout layout = arrange(size, editor.look.scale, editor.arrangement());
+  return side_by_side(editor) ? in_sides(std::move(layout), editor.comparison.share, editor.look.scale) : layout;
 }
 
 bool is_complete(const SliceState& slice) { return slice.picture->complete() && (!slice.other || slice.other->complete()); }
@@ -96,7 +104,7 @@ void Dialog::escape(Editor& editor) { editor.close_dialog(); }
 Editor::Editor(Host& host, const Preferences& preferences)
     : host(host), preferences(preferences), keymap(read_keymap(asset("keymap.json"))), operators(gather_operators()),
       jobs(kJobsAtOnce, [&host] { host.wake(); }), arrangements(preferences.arrangements),
-      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), fem(std::make_unique<FemView>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
+      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), fem(std::make_unique<FemView>()), difference(std::make_unique<DifferenceView>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
   IMGUI_CHECKVERSION();
   imgui = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -165,13 +173,14 @@ void Editor::draw_views() {
   show_posed(*this);
   show_weights(*this);
   show_fem(*this);
+  show_difference(*this);
   show_proposed_joint(*this);
   move_camera(views->body, now, preferences.reduce_motion);
   ended(*this, "pose");
   const Document shown = shown_document(*this);
   views->renderer.begin_frame(kUploadTime);
   for (const ViewPlace& place : layout.view_places) {
-    draw_view_picture(*views, shown, place, now);
+    draw_view_picture(*views, shown, layout, place, now);
     ended(*this, place.id == ViewId::Body ? "body" : "slice");
   }
   hover_views(*this);
@@ -217,7 +226,7 @@ void Editor::frame(double time) {
   if (glm::vec2(size) != layout.window.size()) touch();
   if (apply_look_if_changed(*this)) touch();
   io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
-  layout = arrange(size, look.scale, arrangement());
+  layout = layout_of(*this, size);
   ImGui_ImplOpenGL3_NewFrame();
   take_input();
   ended(*this, "input");
@@ -226,7 +235,7 @@ void Editor::frame(double time) {
   if (poll_jobs(*this)) touch();
   std::erase_if(each_frame, [this](const auto& act) { return !act(*this); });
   ended(*this, "jobs");
-  layout = arrange(size, look.scale, arrangement());
+  layout = layout_of(*this, size);
   advance_time(*this);
   ended(*this, "time");
   draw_views();

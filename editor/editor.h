@@ -42,6 +42,7 @@ struct Handling;
 struct LastOperation;
 struct SkinDisplay;
 struct FemView;
+struct DifferenceView;
 
 // What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
 struct Drag {
@@ -172,6 +173,7 @@ struct Editor {
   Comparison comparison;
   std::unique_ptr<LivePose> live;
   std::unique_ptr<FemView> fem;  // of fem_view.h; never null
+  std::unique_ptr<DifferenceView> difference;  // of difference.h; never null
   struct {
     std::string result;  // whose name is a text field now; "" for none
     std::string text;
@@ -182,6 +184,7 @@ struct Editor {
     std::string method = "dqs";
     double spacing = 0;  // mm; 0: as the volume
     bool fit_joints = false;
+    bool mass_exact = false;  // soft tissues keep their volume to the voxel's accuracy
     // Of finite elements.
     bool contact = true;
     std::string quality = "normal";  // "draft", "normal", "fine"

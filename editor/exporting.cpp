@@ -16,6 +16,7 @@
 #include "core/rig/motion_edit.h"
 #include "editor/icons.h"
 #include "editor/panels/question.h"
+#include "editor/results.h"
 #include "render/image_io.h"
 
 namespace limber::editor {
@@ -98,6 +99,24 @@ void export_file(Editor& editor, ExportKind kind, const Path& path) {
     progress.update("write", 0);
     write_export(kind, document, path, progress);
     return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+  });
+}
+
+void export_result(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+  check_writable(path);
+  start_task(editor, "Export " + path.filename().string(), [result, path, document = editor.document()](Progress& progress) -> Finish {
+    progress.update("write", 0);
+    write_volume(*result->volume, path, *(result->from_tissues ? result->from_tissues : document.tissues), document.volume_type ? *document.volume_type : FileType{});
+    return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+  });
+}
+
+void export_report(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+  check_place(path);
+  const std::string text = path.extension() == ".json" ? result->report : text_of_report(result->name, *facts_of(editor, result));
+  start_task(editor, "Report " + path.filename().string(), [text, path](Progress&) -> Finish {
+    write_file_atomically(path, text);
+    return [path](Editor& e) { e.messages.ok("Wrote " + path.filename().string(), path.parent_path().string()); };
   });
 }
 

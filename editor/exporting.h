@@ -9,6 +9,9 @@ namespace limber::editor {
 enum class ExportKind { Volume, Tissues, Rig, Weights, Pose, Motion, Gltf };
 std::string why_not_export(const Editor& editor, ExportKind kind);  // "" when there is something to write
 void export_file(Editor& editor, ExportKind kind, const Path& path);
+void export_result(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path);
+// JSON as it is, or by another ending a text to read.
+void export_report(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path);
 
 // The active view as it is shown now, without the window around it.
 void export_picture(Editor& editor, const Path& path);

@@ -170,7 +170,7 @@ std::string range_text(const MeasuredMesh& shown) {
 
 std::string why_no_fem_overlay(const Editor& editor) {
   if (editor.workspace != Workspace::Resample && editor.workspace != Workspace::Pose) return "Works in the Resample workspace";
-  if (shown_mesh(editor, false) || (wiping(editor) && shown_mesh(editor, true))) return "";
+  if (shown_mesh(editor, false) || (comparing(editor) && shown_mesh(editor, true))) return "";
   const auto& results = editor.document().results;
   if (std::none_of(results.begin(), results.end(), [](const auto& result) { return result->solved != nullptr; })) return "Resample by FEM first";
   return "Show a result by FEM";

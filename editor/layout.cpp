@@ -131,6 +131,19 @@ Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrange
   return layout;
 }
 
+Layout in_sides(Layout layout, float share, float scale) {
+  const float half = std::max(1.0f, std::round(kGap * scale / 2));
+  std::vector<ViewPlace> sides;
+  for (const ViewPlace& place : layout.view_places) {
+    const float x = std::round(place.rect.low.x + place.rect.width() * share);
+    sides.push_back({place.id, {{x + half, place.rect.low.y}, place.rect.high}});
+    sides.push_back({place.id, {place.rect.low, {x - half, place.rect.high.y}}, true});
+  }
+  layout.view_places = std::move(sides);
+  layout.by_sides = true;
+  return layout;
+}
+
 Arrangement dragged(Arrangement arrangement, SplitterId id, const glm::vec2& to, const Layout& layout, float scale) {
   const glm::vec2 share = glm::clamp((to - layout.views.low) / glm::max(layout.views.size(), glm::vec2(1)), 0.2f, 0.8f);
   switch (id) {

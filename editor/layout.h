@@ -46,6 +46,7 @@ Arrangements default_arrangements();
 struct ViewPlace {
   ViewId id;
   Rect rect;
+  bool side_a = false;  // of two beside one another that are compared: the left one
 };
 
 enum class SplitterId { Sidebar, Bottom, SplitX, SplitY, FourX, FourY };
@@ -58,14 +59,19 @@ struct Splitter {
 struct Layout {
   Rect window, top_bar, tool_header, tool_strip, views, sidebar, sidebar_handle, bottom, status;  // empty where absent
   bool sidebar_over_views = false;
+  bool by_sides = false;  // each view stands twice
   bool search_as_icon = false, few_hints = false, short_labels = false;
   std::vector<ViewPlace> view_places;
   std::vector<Splitter> splitters;
 
+  bool several() const { return view_places.size() > (by_sides ? 2u : 1u); }
   const ViewPlace* view_at(const glm::vec2& point) const;  // nullptr outside every view
   const Rect* place_of(ViewId id) const;                   // nullptr when not shown
 };
 Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrangement);
+// Each view becomes two with a gap between them, the one to compare with at the left.
+//   share  of its width that the left one takes
+Layout in_sides(Layout layout, float share, float scale);
 
 // The arrangement after the pointer dragged a splitter to that point; limits hold (sidebar 260-520, bottom 120 to half of
 // the window, views 20-80 %).

@@ -47,7 +47,7 @@ struct Request {
   Document from;  // with a pose
   std::string method;
   double spacing = 0;  // mm; 0: as the volume
-  bool fit_joints = false, contact = false;
+  bool fit_joints = false, mass_exact = false, contact = false;
   std::string quality;  // of finite elements
   std::string scratch;
   WorkerSettings worker;
@@ -72,6 +72,7 @@ void write_inputs(const Request& request, const ScratchFolder& folder, Progress&
                              {"pose", "pose.json"},   {"method", request.method}, {"output", "posed.nrrd"}, {"report", "report.json"}};
   if (request.spacing > 0) job["spacing"] = request.spacing;
   if (request.fit_joints) job["fit-joints"] = true;
+  if (request.mass_exact) job["mass-exact"] = true;
   if (request.method == "fem") {
     job["quality"] = request.quality;
     job["steps"] = kSteps;
@@ -138,7 +139,7 @@ Edit resample_in_worker(Request& request, std::shared_ptr<std::string>& name, Pr
   result->from_weights = request.from.weights;
   result->from_pose = request.from.pose;
   if (request.feed) result->solved = read_solved(folder / kSteps);
-  const std::string wanted = name_of_pose(*request.from.armature, *request.from.pose) + ", " + method_name(result->method);
+  const std::string wanted = name_of_pose(*request.from.armature, *request.from.pose) + ", " + method_name(result->method) + (request.mass_exact ? ", mass-exact" : "");
   return [result, wanted, name](const Document& now) {
     Document next = now;
     result->name = *name = unique_name(now.results, wanted);
@@ -172,7 +173,7 @@ std::string why_no_resampling(const Editor& editor) {
 }
 
 void start_resampling(Editor& editor) {
-  Request request{editor.document(), editor.resampling.method, editor.resampling.spacing, editor.resampling.fit_joints, editor.resampling.contact, editor.resampling.quality,
+  Request request{editor.document(), editor.resampling.method, editor.resampling.spacing, editor.resampling.fit_joints, editor.resampling.mass_exact, editor.resampling.contact, editor.resampling.quality,
                   editor.preferences.scratch_folder, {}, {}};
   if (!request.from.pose) request.from.pose = std::make_shared<const Pose>(rest_pose(*request.from.armature));
   if (request.method == "fem") request.feed = std::make_shared<SolveFeed>();

@@ -2,7 +2,9 @@
 #include "editor/results.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
@@ -24,12 +26,51 @@ std::string in_words_of_the_editor(std::string warning) {
   return warning;
 }
 
-
 using Json = nlohmann::json;
 
 std::optional<double> number(const Json& json, const char* key) {
   if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return std::nullopt;
   return json[key].get<double>();
+}
+
+std::string in_words(const Json& value) {
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_integer()) return value.dump();
+  if (value.is_number()) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value.get<double>());
+    return text;
+  }
+  std::string all;
+  for (const Json& one : value) all += (all.empty() ? "" : ", ") + in_words(one);
+  return all.empty() ? "none" : all;
+}
+
+// "fit_joints" -> "Fit joints"
+std::string label_of_key(std::string key) {
+  std::replace(key.begin(), key.end(), '_', ' ');
+  if (!key.empty()) key[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(key[0])));
+  return key;
+}
+
+void take_provenance(const Json& json, ResultFacts& facts) {
+  if (const auto settings = json.find("settings"); settings != json.end() && settings->is_object())
+    for (const auto& [key, value] : settings->items())
+      if (key != "method") facts.settings.push_back({label_of_key(key), in_words(value), in_words(value)});
+  if (const auto inputs = json.find("inputs"); inputs != json.end() && inputs->is_array())
+    for (const Json& input : *inputs) {
+      if (!input.is_object()) continue;
+      const std::string hash = in_words(input.value("sha256", Json(""))), file = Path(in_words(input.value("path", Json("")))).filename().string();
+      facts.inputs.push_back({file, hash.substr(0, 16), hash});
+    }
+  if (const auto seconds = json.find("seconds"); seconds != json.end() && seconds->is_object())
+    for (const auto& [key, value] : seconds->items())
+      if (value.is_number()) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.2f s", value.get<double>());
+        facts.stages.push_back({label_of_key(key), text, ""});
+      }
 }
 
 std::int64_t count(const Json& json, const char* key) { return static_cast<std::int64_t>(number(json, key).value_or(0)); }
@@ -58,6 +99,7 @@ std::array<glm::dvec3, 2> in_grid(const std::array<glm::dvec3, 2>& box, const Gr
 
 ResultFacts facts_of_report(const std::string& text) {
   ResultFacts facts;
+  facts.gates = quality_gates(text);
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return facts;
   if (json.contains("seconds")) facts.seconds = number(json["seconds"], "total").value_or(0);
@@ -78,6 +120,10 @@ ResultFacts facts_of_report(const std::string& text) {
   if (json.contains("warnings") && json["warnings"].is_array())
     for (const Json& warning : json["warnings"])
       if (warning.is_string()) facts.warnings.push_back(in_words_of_the_editor(warning));
+  if (json.contains("mesh") && number(json["mesh"], "inverted")) facts.inverted = count(json["mesh"], "inverted");
+  facts.version = json.value("version", Json()).is_string() ? json["version"].get<std::string>() : "";
+  facts.peak_memory_mb = number(json, "peak_memory_mb");
+  take_provenance(json, facts);
   return facts;
 }
 
@@ -86,8 +132,38 @@ std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_pt
   std::erase_if(known, [](const KnownResult& one) { return one.result.expired(); });
   const auto found = std::find_if(known.begin(), known.end(), [&](const KnownResult& one) { return one.result.lock() == result; });
   if (found != known.end()) return found->facts;
-  known.push_back({result, std::make_shared<const ResultFacts>(facts_of_report(result->report))});
+  ResultFacts facts = facts_of_report(result->report);
+  // Reports may be without their joints; what the result was made from is at hand.
+  if (result->from_armature && result->from_pose) facts.gates.back() = judge_joint_limits(*result->from_armature, *result->from_pose);
+  known.push_back({result, std::make_shared<const ResultFacts>(std::move(facts))});
   return known.back().facts;
+}
+
+std::string text_of_report(const std::string& name, const ResultFacts& facts) {
+  std::string text = name + "\n\n";
+  char line[256];
+  const auto add = [&](const char* format, const auto&... values) {
+    std::snprintf(line, sizeof line, format, values...);
+    text += std::string(line) + "\n";
+  };
+  for (const QualityGate& gate : facts.gates)
+    add("%-8s %-26s %18s  %s", gate.state == GateState::Passed ? "passed" : gate.state == GateState::Failed ? "FAILED" : "-", gate.name.c_str(), gate.state == GateState::NotMeasured ? "not measured" : gate.figure.c_str(), gate.worst.c_str());
+  text += "\n";
+  add("%-32s %12s %12s %10s %12s", "tissue", "cm3 at rest", "cm3 posed", "change %", "overlap");
+  for (const ResultTissue& tissue : facts.tissues) {
+    char change[24] = "-";
+    if (tissue.change_percent) std::snprintf(change, sizeof change, "%+.2f", *tissue.change_percent);
+    add("%-32.32s %12.2f %12.2f %10s %12lld", tissue.name.c_str(), tissue.mm3_before / 1000, tissue.mm3_after / 1000, change, static_cast<long long>(tissue.overlap_voxels));
+  }
+  if (facts.change_percent) add("%-32s %12s %12s %+10.2f %12lld", "all tissue", "", "", *facts.change_percent, static_cast<long long>(facts.overlap_voxels));
+  text += "\n";
+  for (const std::string& warning : facts.warnings) text += "warning: " + warning + "\n";
+  if (!facts.version.empty()) add("%-20s %s", "Limber", facts.version.c_str());
+  for (const auto& one : facts.settings) text += one.name + std::string(one.name.size() < 20 ? 20 - one.name.size() : 1, ' ') + " " + one.value + "\n";
+  for (const auto& one : facts.inputs) text += one.name + std::string(one.name.size() < 20 ? 20 - one.name.size() : 1, ' ') + " " + one.whole + "\n";
+  for (const auto& one : facts.stages) add("%-20s %s", one.name.c_str(), one.value.c_str());
+  if (facts.peak_memory_mb) add("%-20s %.0f MB", "Memory", *facts.peak_memory_mb);
+  return text;
 }
 
 std::string method_name(const std::string& method) {
@@ -136,7 +212,7 @@ std::shared_ptr<const Result> result_named(const Document& document, const std::
 std::shared_ptr<const Result> shown_result(const Editor& editor) {
   if (watched_solve(editor)) return nullptr;
   const Comparison& comparison = editor.comparison;
-  auto result = result_named(editor.document(), comparison.shows_a && !wiping(editor) ? comparison.a : comparison.b);
+  auto result = result_named(editor.document(), comparison.shows_a && !comparing(editor) ? comparison.a : comparison.b);
   if (result && editor.workspace == Workspace::Pose && !(result->from_pose && *result->from_pose == shown_pose(editor))) return nullptr;
   return result;
 }
@@ -171,7 +247,13 @@ std::string why_no_comparison(const Editor& editor) {
   return same ? "Choose two results: a click makes one B, Shift and a click A" : "";
 }
 
-bool wiping(const Editor& editor) { return editor.comparison.wipe && why_no_comparison(editor).empty(); }
+bool wiping(const Editor& editor) { return editor.comparison.views == Comparison::Views::Wipe && why_no_comparison(editor).empty(); }
+
+bool side_by_side(const Editor& editor) {
+  return editor.comparison.views == Comparison::Views::SideBySide && editor.workspace == Workspace::Resample && why_no_comparison(editor).empty();
+}
+
+bool comparing(const Editor& editor) { return wiping(editor) || side_by_side(editor); }
 
 std::string name_of_side(const Editor& editor, const std::string& result) { return result_named(editor.document(), result) ? result : "At rest"; }
 
@@ -228,7 +310,7 @@ void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<
 
 void show_posed(Editor& editor) {
   Views& views = *editor.views;
-  if (wiping(editor)) {
+  if (comparing(editor)) {
     views.other_scene = views.scene;
     put_into(*views.other_scene, editor, result_named(editor.document(), editor.comparison.a));
   } else {

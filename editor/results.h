@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/project/document.h"
+#include "core/report/quality_gates.h"
 
 namespace limber::editor {
 
@@ -23,8 +24,17 @@ struct ResultFacts {
   double seconds = 0;
   std::optional<double> change_percent;  // of all tissue
   std::int64_t overlap_voxels = 0, hole_voxels = 0, dropped_voxels = 0, trapped_air_voxels = 0;
+  std::optional<std::int64_t> inverted;  // cells of a mesh, by finite elements
   std::vector<ResultTissue> tissues;
   std::vector<std::string> warnings;
+  std::vector<QualityGate> gates;
+  // Where it comes from, as words: sections with their lines.
+  struct Line {
+    std::string name, value, whole;  // `whole`: the value in full, where it is shortened
+  };
+  std::vector<Line> settings, inputs, stages;
+  std::string version;
+  std::optional<double> peak_memory_mb;
 };
 ResultFacts facts_of_report(const std::string& json);  // what is missing there stays empty
 
@@ -34,6 +44,8 @@ struct KnownResult {
   std::shared_ptr<const ResultFacts> facts;
 };
 std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_ptr<const Result>& result);
+// For people: gates, tissues, provenance, 100 columns wide.
+std::string text_of_report(const std::string& name, const ResultFacts& facts);
 
 // "lbs" -> "LBS"
 std::string method_name(const std::string& method);
@@ -51,13 +63,21 @@ std::string unique_name(const std::vector<std::shared_ptr<const Result>>& result
 struct Comparison {
   std::string a, b;
   bool shows_a = false;  // else b
-  bool wipe = false;     // a left of a line that is dragged, b right of it
+  enum class Views {
+    One,         // a or b
+    Wipe,        // a left of a line that is dragged, b right of it, in one picture
+    SideBySide,  // each view twice, a left and b right, with one camera
+  } views = Views::One;
   float share = 0.5f;    // of the view that a takes
 };
+// Where it is told by colour who is who, always with its letter.
+inline constexpr std::uint32_t kColourOfA = 0xFFD97AB0, kColourOfB = 0xFFA8B63F;  // B07AD9, 3FB6A8, as ImGui packs them
 std::shared_ptr<const Result> result_named(const Document& document, const std::string& name);  // null for none
 // Why there is nothing to compare; "" when there is.
 std::string why_no_comparison(const Editor& editor);
 bool wiping(const Editor& editor);
+bool side_by_side(const Editor& editor);  // in the Resample workspace
+bool comparing(const Editor& editor);     // either
 // Name of a side as the views show it: "Fore 30°, DQ", "At rest".
 std::string name_of_side(const Editor& editor, const std::string& result);
 
@@ -73,7 +93,7 @@ void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, 
 std::shared_ptr<const LabelVolume> shown_volume(const Editor& editor);
 // The document with that volume in place of its own.
 Document shown_document(const Editor& editor);
-// Puts the shown result, or the pose of the moment, into the scene of this frame, and side a of a wipe into the other one.
+// Puts the shown result, or the pose of the moment, into the scene of this frame, and side a of a comparison into the other one.
 void show_posed(Editor& editor);
 
 }  // namespace limber::editor

@@ -7,7 +7,12 @@ namespace limber::editor {
 
 float wipe_line(const Editor& editor, const Rect& rect) { return std::round(glm::mix(rect.low.x, rect.high.x, editor.comparison.share)); }
 
-bool over_side_a(const Editor& editor, const ViewPlace& place) { return editor.views->other_scene && editor.input.pointer.x < wipe_line(editor, place.rect); }
+bool over_side_a(const Editor& editor, const ViewPlace& place) {
+  if (!editor.views->other_scene) return false;
+  return editor.layout.by_sides ? place.side_a : editor.input.pointer.x < wipe_line(editor, place.rect);
+}
+
+const render::Scene& scene_of(const Editor& editor, const ViewPlace& place) { return place.side_a && editor.views->other_scene ? *editor.views->other_scene : editor.views->scene; }
 
 const render::Scene& scene_at_pointer(const Editor& editor, const ViewPlace& place) { return over_side_a(editor, place) ? *editor.views->other_scene : editor.views->scene; }
 

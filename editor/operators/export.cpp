@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Parts of the project, and pictures of it, into files.
+// Parts of the project, results and their reports, and pictures into files.
+#include <algorithm>
+
 #include "editor/exporting.h"
 #include "editor/icons.h"
+#include "editor/operators/files.h"
 #include "editor/operators/polls.h"
 #include "editor/panels/file_browser.h"
+#include "editor/results.h"
 
 namespace limber::editor {
 
@@ -51,12 +55,33 @@ Operator picture_operator(const char* id, const char* label, const char* sentenc
           needs_volume};
 }
 
+// A name that files can have: "Fore 30°, DQ" -> "limb, Fore 30°, DQ".
+std::string file_name_of(const Editor& editor, const Result& result) {
+  std::string name = stem_of(editor) + ", " + result.name;
+  std::replace(name.begin(), name.end(), '/', '-');
+  return name;
+}
+
+// Of the result that the table is about, whatever is shown when the file is chosen.
+void browse_for_result(Editor& editor, const char* what, const char* purpose, const std::vector<FileFilter>& filters, void (*write)(Editor&, const std::shared_ptr<const Result>&, const Path&)) {
+  const auto result = chosen_result(editor);
+  browse(editor, {.purpose = purpose,
+                  .title = what + result->name,
+                  .action = "Write",
+                  .kind = FileRequest::Kind::Save,
+                  .filters = filters,
+                  .name = file_name_of(editor, *result) + filters[0].ends[0],
+                  .folder = editor.project_path.parent_path(),
+                  .chosen = [result, write](Editor& e, const Path& path) { write(e, result, path); }});
+}
+
+std::string needs_result(const Editor& editor) { return editor.document().results.empty() ? "Nothing was resampled yet" : ""; }
+
 }  // namespace
 
 std::vector<Operator> export_operators() {
   return {
-      export_operator({"file.export_volume", "Volume...", "Writes the labelled voxels.", ExportKind::Volume,
-                       {{"NRRD", {".nrrd", ".nhdr"}}, {"MetaImage", {".mha", ".mhd"}}, {"NIfTI", {".nii.gz", ".nii"}}}, ""}),
+      export_operator({"file.export_volume", "Volume...", "Writes the labelled voxels.", ExportKind::Volume, writable_volumes(), ""}),
       export_operator({"file.export_tissues", "Tissues...", "Writes names, colours and kinds of the tissues.", ExportKind::Tissues,
                        {{"Limber tissues", {".json"}}, {"Slicer colour table", {".ctbl"}}, {"ITK-SNAP labels", {".txt"}}}, "-tissues"}),
       export_operator({"file.export_rig", "Rig...", "Writes the skeleton at rest.", ExportKind::Rig,
@@ -65,6 +90,10 @@ std::vector<Operator> export_operators() {
       export_operator({"file.export_pose", "Pose...", "Writes the pose of the rig.", ExportKind::Pose, {{"Limber pose", {".json"}}}, "-pose"}),
       export_operator({"file.export_motion", "Motion...", "Writes the motion as BVH.", ExportKind::Motion, {{"BVH", {".bvh"}}}, "-motion"}),
       export_operator({"file.export_gltf", "glTF...", "Writes the surface, the skeleton, the weights and every clip for other programs.", ExportKind::Gltf, {{"glTF", {".glb"}}}, ""}),
+      {"file.export", "Export...", icon::kExport, "Result", "Writes the posed voxels of the chosen result.",
+       [](Editor& e) { browse_for_result(e, "Export ", "export", writable_volumes(), export_result); }, needs_result},
+      {"report.open", "Report...", icon::kReport, "Result", "Writes the report of the chosen result: what was asked, from which files, what changed, which gates it passes.",
+       [](Editor& e) { browse_for_result(e, "Report of ", "report", {{"Text", {".txt"}}, {"JSON", {".json"}}}, export_report); }, needs_result},
       picture_operator("view.screenshot", "Picture...", "Writes the active view as a PNG.", "", export_picture),
       picture_operator("view.turntable", "Turntable...", "Writes 36 pictures all around the body.", "-turn", [](Editor& e, const Path& path) { export_turntable(e, path); }),
   };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <utility>
 
+#include "editor/difference.h"
 #include "editor/dispatch.h"
 #include "editor/fem_view.h"
 #include "editor/icons.h"
@@ -29,8 +30,11 @@ void toggle_watching(Editor& editor) {
 }
 
 Operator colours_operator(const char* id, const char* label, const char* sentence, std::optional<FemMeasure> measure) {
-  return {id, label, "", "Finite elements", sentence, [measure](Editor& e) { e.fem->overlay.measure = measure; }, measure ? why_no_fem_overlay : nullptr,
-          [measure](const Editor& e) { return e.fem->overlay.measure == measure; }};
+  return {id, label, "", "Finite elements", sentence, [measure](Editor& e) {
+            show_difference_overlay(e, false);
+            e.fem->overlay.measure = measure;
+          },
+          measure ? why_no_fem_overlay : nullptr, [measure](const Editor& e) { return e.fem->overlay.measure == measure && !e.difference->shown; }};
 }
 
 void toggle_posed(Editor& editor) { show_result(editor, shown_result(editor) ? "" : chosen_result(editor)->name); }
@@ -45,25 +49,42 @@ void choose_sides(Editor& editor) {
 void show_side(Editor& editor, bool a) {
   stop_watching(editor);
   choose_sides(editor);
-  editor.comparison.wipe = false;
+  editor.comparison.views = Comparison::Views::One;
   editor.comparison.shows_a = a;
 }
 
-void toggle_wipe(Editor& editor) {
-  const bool on = !wiping(editor);
+// Both sides, or side B alone again.
+void show_sides(Editor& editor, Comparison::Views views) {
   stop_watching(editor);
   choose_sides(editor);
-  editor.comparison.wipe = on;
+  editor.comparison.views = views;
   editor.comparison.shows_a = false;
 }
 
-// The other side, for as long as the key is held.
+void toggle_wipe(Editor& editor) { show_sides(editor, wiping(editor) ? Comparison::Views::One : Comparison::Views::Wipe); }
+
+void toggle_side_by_side(Editor& editor) {
+  show_sides(editor, side_by_side(editor) ? Comparison::Views::One : Comparison::Views::SideBySide);
+  editor.workspace = Workspace::Resample;
+}
+
+void toggle_difference(Editor& editor) {
+  const bool on = !shows_difference(editor);
+  editor.workspace = Workspace::Resample;
+  stop_watching(editor);
+  choose_sides(editor);
+  show_difference_overlay(editor, on);
+}
+
+// The other side, for as long as the key is held; of two views each shows what the other one did.
 class Flicker final : public Modal {
  public:
-  explicit Flicker(Editor& editor) : before_(editor.comparison), key_(Key::F) {
+  explicit Flicker(Editor& editor) : key_(Key::F) {
     if (const auto chord = editor.keymap.chord_of("compare.flicker", contexts(editor))) key_ = chord->key;
-    const bool showed_a = before_.shows_a;
-    show_side(editor, !showed_a);
+    choose_sides(editor);
+    before_ = editor.comparison;
+    if (side_by_side(editor)) std::swap(editor.comparison.a, editor.comparison.b);
+    else show_side(editor, !before_.shows_a);
   }
   bool key(Editor& editor, const KeyChanged& event) override {
     if (event.key != key_ || event.down) return true;
@@ -71,9 +92,9 @@ class Flicker final : public Modal {
     return false;
   }
   void cancel(Editor& editor) override {
-    const std::string b = editor.comparison.b;
+    const float share = editor.comparison.share;
     editor.comparison = before_;
-    editor.comparison.b = b;
+    editor.comparison.share = share;
   }
   std::vector<KeyHint> hints(const Editor&) const override { return {{{std::string(name_of(key_))}, "Let go: back"}}; }
 
@@ -134,10 +155,13 @@ std::vector<Operator> resample_operators() {
       {"result.copy_report", "Copy report", icon::kCopy, "Result", "Puts the chosen result's report on the clipboard, as JSON.",
        [](Editor& e) { e.host.set_clipboard(chosen_result(e)->report); }, needs_result},
       {"compare.show_a", "Show A", icon::kVisible, "Result", "The views show side A of the comparison.", [](Editor& e) { show_side(e, true); }, needs_result,
-       [](const Editor& e) { return !wiping(e) && e.comparison.shows_a; }},
+       [](const Editor& e) { return !comparing(e) && e.comparison.shows_a; }},
       {"compare.show_b", "Show B", icon::kVisible, "Result", "The views show side B of the comparison.", [](Editor& e) { show_side(e, false); }, needs_result,
-       [](const Editor& e) { return !wiping(e) && !e.comparison.shows_a; }},
-      {"compare.wipe", "Wipe", icon::kSplitViews, "Result", "Shows A left and B right of a line that can be dragged, in every view.", toggle_wipe, needs_result, wiping},
+       [](const Editor& e) { return !comparing(e) && !e.comparison.shows_a; }},
+      {"compare.wipe", "Wipe", icon::kWipe, "Result", "Shows A left and B right of a line that can be dragged, in every view.", toggle_wipe, needs_result, wiping},
+      {"compare.side_by_side", "Side by side", icon::kSplitViews, "Result", "Shows A and B beside one another, each view twice, seen by one camera; the line between them can be dragged.", toggle_side_by_side, needs_result,
+       side_by_side},
+      {"compare.difference", "Difference", icon::kDifference, "Result", "Marks the voxels whose tissue differs between A and B, and counts them.", toggle_difference, needs_result, shows_difference},
       {"compare.flicker", "Flicker", "", "Result", "Shows the other side while the key is held.", [](Editor& e) { e.modal = std::make_unique<Flicker>(e); }, needs_result},
       {"compare.swap", "Swap A and B", icon::kMirror, "Result", "Makes A B, and B A.", [](Editor& e) { std::swap(e.comparison.a, e.comparison.b); }, needs_result},
       colours_operator("fem.show_tissues", "Tissue colours", "Shows the tissues of a result by finite elements as elsewhere.", std::nullopt),

@@ -80,7 +80,7 @@ std::string state_of(const Editor& editor) {
   if (editor.views->scene.weights && editor.views->scene.weights->weights) return std::string(name_of(editor.skin->display)) + " \u00b7 " + grouped(editor.views->scene.weights->weights->size()) + " tissue voxels" + (painted_region(editor) ? " \u00b7 region of " + grouped(painted_region_voxels(editor)) : "");
   if (const ProposedJoint* proposed = proposed_joint(editor)) return std::string("X-ray \u00b7 bone in bone about the axis ") + (proposed->shows_after ? "as fitted" : "as it is");
   std::string state = editor.views->display == render::Display::Solid ? "Solid" : editor.views->display == render::Display::XRay ? "X-ray" : "Tissue";
-  if (const auto posed = shown_result(editor); posed && !wiping(editor)) state += " \u00b7 " + posed->name;
+  if (const auto posed = shown_result(editor); posed && !comparing(editor)) state += " \u00b7 " + posed->name;
   if (const Solve* solve = watched_solve(editor)) state += " \u00b7 settling, " + progress_text(*solve);
   else if (const PreviewMap* map = editor.views->scene.pose.get())
     state += std::string(preview_blend(editor) == Blend::Linear ? " \u00b7 LBS" : " \u00b7 DQ") + " preview, " + std::to_string(map->step) + "-voxel lattice";
@@ -91,12 +91,19 @@ std::string state_of(const Editor& editor) {
 
 }  // namespace
 
-void draw_body_overlay(Editor& editor, const Rect& rect) {
+void draw_body_overlay(Editor& editor, const ViewPlace& place) {
+  const Rect& rect = place.rect;
   const BodyView& body = editor.views->body;
+  const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
+  if (editor.layout.by_sides) draw_side_chip(editor, place);
+  if (place.side_a) {  // what belongs to both stands on the other side
+    draw_clip_handles(editor, rect);
+    return draw_scale_bar(editor, rect, visible_height / rect.height());
+  }
   const std::string projection = body.camera.projection == render::Projection::Perspective ? "Perspective" : "Parallel";
   std::string title = body.name.empty() ? projection : body.name + " \u00b7 " + projection;
   if (!editor.name.empty()) title += " \u00b7 " + editor.name;
-  draw_view_title(editor, rect, title, state_of(editor));
+  if (!editor.layout.by_sides) draw_view_title(editor, rect, title, state_of(editor));
   draw_onion_skin(editor);
   draw_axis_ball(editor, rect);
   if (!editor.document().volume) return draw_empty_view(editor, rect);
@@ -104,8 +111,8 @@ void draw_body_overlay(Editor& editor, const Rect& rect) {
   draw_proposed_joint(editor, rect);
   Rect above = rect;  // what is in the corner already
   if (draw_weight_legend(editor, rect) || draw_fem_legend(editor, rect)) above.high.y -= editor.look.px(60);
+  if (draw_difference_legend(editor, rect)) above.high.y -= editor.look.px(104);
   if (!proposed_joint(editor)) draw_last_operation(editor, above);
-  const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
   draw_scale_bar(editor, rect, visible_height / rect.height());
 }
 

@@ -21,10 +21,13 @@ void draw_start_screen(Editor& editor);
 void draw_tour(Editor& editor);
 
 // In the views
-void draw_body_overlay(Editor& editor, const Rect& rect);
-void draw_slice_overlay(Editor& editor, ViewId id, const Rect& rect);
+void draw_body_overlay(Editor& editor, const ViewPlace& place);
+void draw_slice_overlay(Editor& editor, const ViewPlace& place);
 bool draw_weight_legend(Editor& editor, const Rect& view);  // true where there is one
 bool draw_fem_legend(Editor& editor, const Rect& view);  // the same of finite elements
+bool draw_difference_legend(Editor& editor, const Rect& view);  // and of two volumes that are compared
+void draw_side_chip(Editor& editor, const ViewPlace& place);  // in a title's place: whose side it is
+void put_swatch(const Look& look, const glm::vec2& corner, Colour colour);
 void draw_weights_at_pointer(Editor& editor);
 void draw_empty_view(Editor& editor, const Rect& rect);
 void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel);
@@ -51,10 +54,13 @@ void draw_live_volume(Editor& editor, Column& column);
 void draw_steps(Editor& editor, Column& column);
 void draw_running(Editor& editor, Column& column);
 void draw_resample(Editor& editor, Column& column);
+void draw_gates(Editor& editor, Column& column);
+void draw_provenance(Editor& editor, Column& column);
 
 // In the bottom area
 void draw_console(Editor& editor, const Rect& rect);
 void draw_results(Editor& editor, const Rect& rect);
+void draw_change_plot(Editor& editor, const Rect& rect);
 void draw_timeline(Editor& editor, const Rect& rect);
 
 // In the status bar: the job at work takes its place left of `right`; returns what is left.

@@ -49,6 +49,9 @@ void draw_resample(Editor& editor, Column& column) {
     const Rect fit = column.property("Joints");
     checkbox(editor, "Fit joints", fit, "Keep bones apart", settings.fit_joints);
     if (ImGui::IsItemHovered()) tooltip(editor, fit, "Keep bones apart", "First moves each bent joint so that its bones do not collide.");
+    const Rect exact = column.property("Volumes");
+    checkbox(editor, "Mass-exact", exact, "Mass-exact", settings.mass_exact);
+    if (ImGui::IsItemHovered()) tooltip(editor, exact, "Mass-exact", "Afterwards soft tissues get their volumes at rest back: borders between them move by the fewest and least sure voxels. Bones stay as they are.");
     column.space(6);
     const Rect row = column.row(30);
     const Rect place{{row.low.x + look.px(10), row.low.y}, {row.high.x - look.px(10), row.low.y + look.px(28)}};

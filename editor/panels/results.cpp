@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Below the views: every result in a row, and beside them what the chosen one did to each tissue.
+// Below the views: every result in a row, and beside them what they did to each tissue.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -19,16 +19,17 @@ namespace {
 
 constexpr char kList[] = "results";
 constexpr float kHead = 30, kTableHead = 26;
-constexpr float kColumns[] = {60, 84, 70};  // of time, volume and overlap
-constexpr float kState = 190, kNarrowState = 116, kNarrow = 640;
+constexpr float kColumns[] = {60, 84, 70, 64};  // of time, volume, overlap and inverted cells
+constexpr float kState = 190, kNarrowState = 116, kNarrow = 640, kRoomy = 780;
 
-void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 6>& words, const std::array<Colour, 6>& colours, ImFont* first, ImFont* digits) {
+// Name, method, numbers, state. Inverted cells are left out where there is no room.
+void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 7>& words, const std::array<Colour, 7>& colours, ImFont* first, ImFont* digits) {
   const Look& look = editor.look;
   float right = row.high.x - look.px(10);
   const float state = look.px(row.width() > look.px(kNarrow) ? kState : kNarrowState);
-  put_text(editor, look.fonts.regular, colours[5], Rect{{right - state + look.px(14), row.low.y}, {right, row.high.y}}, words[5]);
+  put_text(editor, look.fonts.regular, colours[6], Rect{{right - state + look.px(14), row.low.y}, {right, row.high.y}}, words[6]);
   right -= state;
-  for (int i = 4; i >= 2; --i) {
+  for (int i = row.width() > look.px(kRoomy) ? 5 : 4; i >= 2; --i) {
     const float width = look.px(kColumns[i - 2]);
     put_text(editor, digits, colours[i], Rect{{right - width, row.low.y}, {right, row.high.y}}, words[i], Align::Right);
     right -= width;
@@ -44,6 +45,10 @@ std::string side_of(const Editor& editor, const std::shared_ptr<const Result>& r
   if (a && b) return "";
   return a ? "A" : b ? "B" : "";
 }
+
+Colour colour_of_side(const Theme& theme, const std::string& side, bool shown) { return side == "A" ? kColourOfA : side == "B" ? kColourOfB : shown ? theme.accent_text : theme.text2; }
+
+std::string state_of(const std::string& side, bool shown) { return side + (shown ? std::string(side.empty() ? "" : ", ") + "shown" : ""); }
 
 // A click makes it side B, Shift and a click side A.
 void choose_side(Editor& editor, const std::string& name) {
@@ -76,9 +81,9 @@ void draw_rest_row(Editor& editor, Column& column, int index) {
   const PathScope path(editor, "At rest");
   const Pressed pressed = press_area(editor, "row", row);
   const std::string side = side_of(editor, nullptr);
-  put_icon(look.fonts.regular, shown ? look.theme.accent_text : look.theme.text2, Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}}, icon::kVolume);
+  put_icon(look.fonts.regular, colour_of_side(look.theme, side, shown), Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}}, icon::kVolume);
   const Colour plain = look.theme.text, second = look.theme.text2;
-  put_cells(editor, row, {"At rest", "", "", "", "", side}, {plain, second, second, second, second, plain}, shown ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
+  put_cells(editor, row, {"At rest", "", "", "", "", "", state_of(side, shown)}, {plain, second, second, second, second, second, second}, shown ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
   if (pressed.hovered) tooltip(editor, row, "At rest", "The volume that was opened. A click shows it; Shift and a click makes it side A of the comparison.");
   if (!pressed.clicked) return;
   focus_list(editor, kList, index);
@@ -97,14 +102,15 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
   const Pressed pressed = press_area(editor, "row", row);
   const std::string reason = stale_reason(editor.document(), *result);
   const auto facts = facts_of(editor, result);
-  put_icon(look.fonts.regular, !reason.empty() ? theme.warn : shown ? theme.accent_text : theme.text2, Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}},
+  put_icon(look.fonts.regular, !reason.empty() ? theme.warn : colour_of_side(theme, side, shown), Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}},
            reason.empty() ? icon::kResample : icon::kWaiting);
   char seconds[24];
   std::snprintf(seconds, sizeof seconds, "%.1f s", facts->seconds);
   const Colour plain = theme.text, second = theme.text2;
-  const std::string state = reason.empty() ? side + (shown ? std::string(side.empty() ? "" : ", ") + "shown" : "") : "stale: " + reason;
-  put_cells(editor, row, {result->name, method_name(result->method), seconds, percent(facts->change_percent), grouped(facts->overlap_voxels), state},
-            {plain, second, plain, colour_of_change(theme, facts->change_percent), facts->overlap_voxels ? theme.warn : theme.ok, reason.empty() ? second : theme.warn},
+  const std::string state = reason.empty() ? state_of(side, shown) : (side.empty() ? "" : side + ", ") + "stale: " + reason;
+  put_cells(editor, row, {result->name, method_name(result->method), seconds, percent(facts->change_percent), grouped(facts->overlap_voxels), facts->inverted ? grouped(*facts->inverted) : "-", state},
+            {plain, second, plain, colour_of_change(theme, facts->change_percent), facts->overlap_voxels ? theme.warn : theme.ok,
+             !facts->inverted ? second : *facts->inverted ? theme.error : theme.ok, reason.empty() ? second : theme.warn},
             shown || !side.empty() ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
   if (pressed.hovered)
     tooltip(editor, row, result->name,
@@ -121,34 +127,6 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
     editor.comparison.b = result->name;
     editor.comparison.shows_a = false;
     open_menu = true;
-  }
-}
-
-void draw_tissue_changes(Editor& editor, const Rect& rect) {
-  const auto result = chosen_result(editor);
-  if (!result) return;
-  const Look& look = editor.look;
-  const auto facts = facts_of(editor, result);
-  const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kTableHead)}};
-  const float bar_width = look.px(90), percent_width = look.px(76), volume_width = look.px(84), right = rect.high.x - look.px(12);
-  const float bar_left = right - percent_width - bar_width - look.px(8);
-  put_text(editor, look.fonts.small, look.theme.text2, Rect{{head.low.x + look.px(12), head.low.y}, {bar_left - volume_width, head.high.y}}, "Volume change of " + result->name);
-  put_text(editor, look.fonts.small, look.theme.text2, Rect{{bar_left - volume_width - look.px(8), head.low.y}, {bar_left - look.px(8), head.high.y}}, "cm\u00b3 after", Align::Right);
-  double largest = 1;
-  for (const ResultTissue& tissue : facts->tissues) largest = std::max(largest, std::abs(tissue.change_percent.value_or(0)));
-  Column column(editor, "changes", {{rect.low.x, head.high.y}, rect.high});
-  int index = 0;
-  for (const ResultTissue& tissue : facts->tissues) {
-    Rect row;
-    if (!column.list_row(row, index++, false)) continue;
-    char volume[24];
-    std::snprintf(volume, sizeof volume, "%.1f", tissue.mm3_after / 1000);
-    put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(12), row.low.y}, {bar_left - volume_width - look.px(8), row.high.y}}, tissue.name);
-    put_text(editor, look.fonts.mono, look.theme.text, Rect{{bar_left - volume_width, row.low.y}, {bar_left - look.px(8), row.high.y}}, volume, Align::Right);
-    const float zero = bar_left + bar_width / 2, y = row.centre().y, change = static_cast<float>(tissue.change_percent.value_or(0) / largest) * bar_width / 2;
-    fill({{zero, row.low.y}, {zero + look.line(), row.high.y}}, look.theme.line2);
-    if (std::abs(change) >= 0.5f) fill({{std::min(zero, zero + change), y - look.px(4)}, {std::max(zero, zero + change) + look.line(), y + look.px(4)}}, colour_of_change(look.theme, tissue.change_percent));
-    put_text(editor, look.fonts.mono, colour_of_change(look.theme, tissue.change_percent), Rect{{right - percent_width, row.low.y}, {right, row.high.y}}, percent(tissue.change_percent), Align::Right);
   }
 }
 
@@ -176,7 +154,7 @@ void draw_results(Editor& editor, const Rect& rect) {
     right = place.low.x - look.px(4);
   }
   right -= look.px(6);
-  for (const char* id : {"compare.wipe", "compare.show_b", "compare.show_a"}) {
+  for (const char* id : {"compare.show_b", "compare.show_a"}) {
     const Operator* op = find_operator(editor, id);
     const float width = width_of_button(editor, {op->icon, op->label, ButtonStyle::Chosen});  // it does not move when it is
     operator_button(editor, id, {{right - width, top}, {right, bottom}}, op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
@@ -197,7 +175,7 @@ void draw_results(Editor& editor, const Rect& rect) {
   const float middle = wide ? body.high.x - look.px(430) : body.high.x;
   const Rect table_head{body.low, {middle, body.low.y + look.px(kTableHead)}};
   const Colour grey = look.theme.text2;
-  put_cells(editor, table_head, {"Result", "Method", "Time", "Volume", "Overlap", "State"}, {grey, grey, grey, grey, grey, grey}, look.fonts.small, look.fonts.small);
+  put_cells(editor, table_head, {"Result", "Method", "Time", "Volume", "Overlap", "Inverted", "State"}, {grey, grey, grey, grey, grey, grey, grey}, look.fonts.small, look.fonts.small);
   bool open_menu = false;
   {
     Column column(editor, "results", {{body.low.x, table_head.high.y}, {middle, body.high.y}});
@@ -218,14 +196,16 @@ void draw_results(Editor& editor, const Rect& rect) {
     put_text(editor, look.fonts.semibold, look.theme.text2, from_im(ImGui::GetCursorScreenPos()) + glm::vec2(look.px(8), look.px(2)), chosen_result(editor) ? chosen_result(editor)->name : "Result");
     ImGui::Dummy({look.px(190), look.px(22)});
     ImGui::Separator();
-    for (const char* id : {"result.toggle", "compare.wipe", "result.rename", "result.copy_report", "result.delete", "result.delete_stale"}) operator_menu_item(editor, id);
+    for (const char* id : {"result.toggle", "compare.side_by_side", "compare.wipe", "compare.difference", "-", "report.open", "file.export", "result.copy_report", "-", "result.rename", "result.delete", "result.delete_stale"})
+      if (*id == '-') ImGui::Separator();
+      else operator_menu_item(editor, id);
     pop_path(editor);
     editor.place.region = Region::Bottom;
     ImGui::EndPopup();
   }
   if (!wide) return;
   fill({{middle, body.low.y}, {middle + look.line(), body.high.y}}, look.theme.void_);
-  draw_tissue_changes(editor, {{middle + look.line(), body.low.y}, body.high});
+  draw_change_plot(editor, {{middle + look.line(), body.low.y}, body.high});
 }
 
 }  // namespace limber::editor

@@ -38,6 +38,8 @@ void draw_sidebar(Editor& editor) {
     if (editor.workspace == Workspace::Resample) {
       draw_running(editor, column);
       draw_resample(editor, column);
+      draw_gates(editor, column);
+      draw_provenance(editor, column);
     }
     if (editor.workspace == Workspace::Skin && editor.document().weights) {
       draw_layers(editor, column);

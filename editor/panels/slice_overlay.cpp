@@ -4,6 +4,7 @@
 
 #include "editor/panels/panels.h"
 #include "editor/results.h"
+#include "editor/wipe.h"
 
 namespace limber::editor {
 
@@ -53,10 +54,8 @@ int grid_axis_of(const Grid& grid, const glm::dvec3& normal) {
   return nearest;
 }
 
-void draw_slice_bar(Editor& editor, int axis, const Rect& rect) {
+void draw_slice_bar(Editor& editor, const Grid& grid, int axis, const Rect& rect) {
   const Look& look = editor.look;
-  const auto volume = shown_volume(editor);
-  const Grid& grid = volume->grid;
   const float height = std::min(look.px(280), rect.height() - look.px(120));
   if (height < look.px(60)) return;
   const float x = rect.high.x - look.px(20), top = std::round(rect.centre().y - height / 2);
@@ -80,20 +79,23 @@ void draw_slice_bar(Editor& editor, int axis, const Rect& rect) {
 
 }  // namespace
 
-void draw_slice_overlay(Editor& editor, ViewId id, const Rect& rect) {
+void draw_slice_overlay(Editor& editor, const ViewPlace& place) {
+  const auto& [id, rect, side_a] = place;
   const render::SliceCamera& camera = slice_of(*editor.views, id).camera;
   const render::SliceFrame frame = render::frame_of(camera.axis);
   if (!editor.document().volume) return draw_view_title(editor, rect, name_of(id), "");
-  const auto volume = shown_volume(editor);
-  const Grid& grid = volume->grid;
+  const render::Scene& scene = scene_of(editor, place);
+  const Grid& grid = scene.volume->grid;
   const int axis = grid_axis_of(grid, frame.normal);
   const int slice = static_cast<int>(std::lround((voxel_from_world(grid) * editor.views->cross_hair)[axis]));
   draw_cross_hair(editor, camera, frame, rect);
-  draw_view_title(editor, rect, name_of(id), std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]) + (shown_result(editor) || editor.views->scene.pose ? " \u00b7 posed" : ""));
+  draw_view_title(editor, rect, (editor.layout.by_sides ? side_a ? "A \u00b7 " : "B \u00b7 " : "") + name_of(id), std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]) + (scene.volume != editor.document().volume || scene.pose ? " \u00b7 posed" : ""));
   draw_letters(editor, frame, rect);
-  draw_slice_bar(editor, axis, rect);
+  draw_slice_bar(editor, grid, axis, rect);
   draw_scale_bar(editor, rect, camera.millimetres_per_pixel);
-  if (!editor.layout.place_of(ViewId::Body)) draw_fem_legend(editor, rect);
+  if (editor.layout.place_of(ViewId::Body) || side_a) return;
+  draw_fem_legend(editor, rect);
+  draw_difference_legend(editor, rect);
 }
 
 }  // namespace limber::editor

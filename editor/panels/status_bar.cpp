@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ctime>
 
+#include "editor/difference.h"
 #include "editor/dispatch.h"
 #include "editor/fem_overlay.h"
 #include "editor/icons.h"
@@ -58,6 +59,9 @@ std::vector<KeyHint> hints(const Editor& editor) {
                  {"view.place_cross_hair", "Cross-hair"}, {"slice.outline", "Outline"}, {"view.maximize", "Maximize"}};
   else if (!editor.document().volume || editor.start_screen)
     operators = {{"file.open", "Open"}, {"file.new", "New"}, {"search.commands", "Search"}, {"help.guide", "Help"}, {"file.quit", "Quit"}};
+  else if (editor.workspace == Workspace::Resample && !editor.document().results.empty())
+    operators = {{"compare.flicker", "Flicker A / B"}, {"compare.show_a", "A"}, {"compare.show_b", "B"}, {"compare.side_by_side", "Side by side"}, {"compare.wipe", "Wipe"}, {"compare.difference", "Difference"},
+                 {"resample.run", "Resample"}, {"report.open", "Report"}};
   else if (editor.workspace == Workspace::Rig && editor.selection.bone)
     operators = {{"rig.move", "Move"}, {"rig.rotate", "Rotate"}, {"rig.extrude", "Extrude"}, {"rig.delete", "Delete"}, {"view.orbit", "Turn"}, {"view.xray", "X-ray"}, {"select.all", "All bones"}};
   else if (editor.workspace == Workspace::Pose && editor.selection.bone)
@@ -139,6 +143,7 @@ float draw_hover(Editor& editor, const Rect& bar, float right) {
   }
   const std::string measured = hover.inside ? measure_text_at(editor, hover.voxel) : "";
   if (!measured.empty()) words += " \u00b7 " + measured;
+  if (const std::string there = hover.inside ? other_side_text_at(editor, hover.voxel) : ""; !there.empty()) words += " \u00b7 " + there;
   const float mono = *place ? look.px(170) : 0, width = std::min(text_size(look.fonts.small, words).x + 1, look.px(hover.weights.empty() && measured.empty() ? 220 : 320));
   const float left = right - mono - width;
   if (*place) put_text(editor, look.fonts.small_mono, look.theme.text2, Rect{{right - mono, bar.low.y}, {right, bar.high.y}}, place, Align::Right);

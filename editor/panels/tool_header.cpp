@@ -17,10 +17,12 @@ class Header {
   Header(Editor& editor, bool drawn, bool short_labels) : editor_(editor), bar_(editor.layout.tool_header), x_(editor.look.px(8)), drawn_(drawn), short_labels_(short_labels) {}
 
   // Operators of which one is on, as one bar.
-  void segments(std::initializer_list<const char*> ids) {
+  //   words  they stand there as words, as long as words beside icons have room
+  void segments(std::initializer_list<const char*> ids, bool words = false) {
     for (const char* id : ids) {
       const Operator* op = find_operator(editor_, id);
-      const ButtonLook face = face_of(*op, true);
+      ButtonLook face = face_of(*op, !words);
+      if (words && !face.label.empty()) face.icon = "";
       const float width = *face.icon && face.label.empty() ? px(36) : std::round(text_size(editor_.look.fonts.regular, face.label).x + px(20));
       place(id, face.label, width, op->checked(editor_) ? ButtonStyle::Chosen : ButtonStyle::Plain);
       x_ += px(1);
@@ -33,13 +35,13 @@ class Header {
     ButtonLook face = face_of(*op, false);
     if (*label) face.label = label;
     const float width = face.label.empty() ? px(30) : width_of_button(editor_, face);
-    place(id, face.label, width, op->checked(editor_) ? ButtonStyle::Soft : ButtonStyle::Plain);
+    place(id, face.label, width, op->checked && op->checked(editor_) ? ButtonStyle::Soft : ButtonStyle::Plain);
     x_ += px(6);
   }
 
   // One of several, behind a button as wide as the longest of their names.
   void choice(const char* name, std::initializer_list<const char*> ids) {
-    const Operator* chosen = nullptr;
+    const Operator* chosen = find_operator(editor_, *ids.begin());  // where none is on: what is on instead has another button
     float width = 0;
     for (const char* id : ids) {
       const Operator* op = find_operator(editor_, id);
@@ -205,9 +207,14 @@ void put_options(Editor& editor, Header& header) {
     header.line();
   }
   if (editor.workspace == Workspace::Resample) {
+    const auto kCompared = {"compare.side_by_side", "compare.wipe", "compare.difference"};
+    if (header.fits(3 * header.toggle_width(88), kCompared)) header.segments(kCompared, true);
     const auto kColours = {"fem.show_tissues", "fem.show_volume_ratio", "fem.show_energy", "fem.show_gap"};
     if (header.fits(150, kColours)) header.choice("Colours", kColours);
     if (header.fits(header.toggle_width(120), {"fem.tets"})) header.toggle("fem.tets");
+    header.line();
+    for (const char* id : {"report.open", "file.export"})
+      if (header.fits(header.toggle_width(100), {id})) header.toggle(id);
     header.line();
   }
   if (editor.workspace == Workspace::Pose) {
@@ -236,7 +243,7 @@ void draw_tool_header(Editor& editor) {
   put_options(editor, measured);
   Header header(editor, true, editor.layout.short_labels || measured.dropped_any());
   put_options(editor, header);
-  if (editor.layout.view_places.size() > 1) {
+  if (editor.layout.several()) {
     if (header.fits(210, {"slice.show_labels", "slice.show_outlines"})) {
       header.label("Slices");
       header.segments({"slice.show_labels", "slice.show_outlines"});

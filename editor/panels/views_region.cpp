@@ -2,6 +2,7 @@
 // The pictures of the body, what is drawn over them, and what the pointer is over.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "editor/adjust.h"
@@ -27,37 +28,61 @@ void put_picture(unsigned texture, const Rect& rect) {
 void draw_picture(Editor& editor, const ViewPlace& place) {
   Views& views = *editor.views;
   const bool body = place.id == ViewId::Body;
+  const unsigned other = body ? (views.body.other ? views.body.other->texture() : 0) : slice_of(views, place.id).other ? slice_of(views, place.id).other->texture() : 0;
+  if (place.side_a) return put_picture(other, place.rect);
   put_picture(body ? views.body.picture->texture() : slice_of(views, place.id).picture->texture(), place.rect);
-  const bool both = body ? views.body.other != nullptr : slice_of(views, place.id).other != nullptr;
-  if (!both) return;
+  if (!other || editor.layout.by_sides) return;
   ImGui::PushClipRect(im(place.rect.low), {wipe_line(editor, place.rect), place.rect.high.y}, true);
-  put_picture(body ? views.body.other->texture() : slice_of(views, place.id).other->texture(), place.rect);
+  put_picture(other, place.rect);
   ImGui::PopClipRect();
+}
+
+// What divides a from b can be dragged to between those shares of the view.
+Pressed press_divider(Editor& editor, const std::string& name, float x, const Rect& rect, float least) {
+  Comparison& comparison = editor.comparison;
+  const float half = editor.look.px(4);
+  const Pressed pressed = press_area(editor, name, {{x - half, rect.low.y}, {x + half, rect.high.y}});
+  if (pressed.hovered || pressed.held) editor.cursor = Cursor::ResizeX;
+  if (pressed.held && !pressed.activated) comparison.share = std::clamp((editor.input.pointer.x - rect.low.x) / std::max(1.0f, rect.width()), least, 1 - least);
+  if (pressed.double_clicked) comparison.share = 0.5f;
+  return pressed;
+}
+
+// Upon the gap between two views side by side.
+void draw_divider(Editor& editor, const Rect& a, const Rect& b) {
+  const Look& look = editor.look;
+  const Rect both{a.low, b.high};
+  const float x = (a.high.x + b.low.x) / 2;
+  const Pressed pressed = press_divider(editor, "divider", x, both, 0.2f);
+  const Colour colour = pressed.hovered || pressed.held ? look.theme.accent : look.theme.void_;
+  fill({{a.high.x, both.low.y}, {b.low.x, both.high.y}}, colour);
+  const Rect grip{{x - look.px(8), std::round(both.centre().y) - look.px(20)}, {x + look.px(8), std::round(both.centre().y) + look.px(20)}};
+  fill(grip, look.theme.view_plate, look.px(4));
+  outline(grip, pressed.hovered || pressed.held ? colour : look.theme.view_text2, look.px(4), look.line());
+  put_icon(look.fonts.small, look.theme.view_text, grip, icon::kWipe);
 }
 
 // The line between a and b, with their names at its sides.
 void draw_wipe(Editor& editor, const Rect& rect) {
-  if (!editor.views->other_scene) return;
+  if (!editor.views->other_scene || editor.layout.by_sides) return;
   const Look& look = editor.look;
   Comparison& comparison = editor.comparison;
-  const float x = wipe_line(editor, rect), y = std::round(rect.high.y - look.px(72)), half = look.px(4);
-  const Pressed pressed = press_area(editor, "wipe", {{x - half, rect.low.y}, {x + half, rect.high.y}});
-  if (pressed.hovered || pressed.held) editor.cursor = Cursor::ResizeX;
-  if (pressed.held && !pressed.activated) comparison.share = std::clamp((editor.input.pointer.x - rect.low.x) / std::max(1.0f, rect.width()), 0.02f, 0.98f);
-  if (pressed.double_clicked) comparison.share = 0.5f;
+  const float x = wipe_line(editor, rect), y = std::round(rect.high.y - look.px(72));
+  const Pressed pressed = press_divider(editor, "wipe", x, rect, 0.02f);
   const Colour colour = pressed.hovered || pressed.held ? look.theme.accent : look.theme.view_text;
   fill({{x - look.line(), rect.low.y}, {x + look.line(), rect.high.y}}, colour);
   const Rect grip{{x - look.px(9), y - look.px(16)}, {x + look.px(9), y + look.px(16)}};
   fill(grip, look.theme.view_plate, look.px(4));
   outline(grip, colour, look.px(4), look.line());
-  put_icon(look.fonts.small, look.theme.view_text, grip, icon::kMeasure);
+  put_icon(look.fonts.small, look.theme.view_text, grip, icon::kWipe);
   const auto chip = [&](const std::string& letter, const std::string& name, bool left) {
     const std::string text = letter + "  " + name;
-    const float width = std::min(text_size(look.fonts.regular, text).x + look.px(20), (left ? x - rect.low.x : rect.high.x - x) - look.px(32));
-    if (width < look.px(40)) return;
+    const float width = std::min(text_size(look.fonts.regular, text).x + look.px(42), (left ? x - rect.low.x : rect.high.x - x) - look.px(32));
+    if (width < look.px(60)) return;
     const Rect place = left ? Rect{{x - look.px(16) - width, y - look.px(13)}, {x - look.px(16), y + look.px(13)}} : Rect{{x + look.px(16), y - look.px(13)}, {x + look.px(16) + width, y + look.px(13)}};
     fill(place, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
-    put_text(editor, look.fonts.regular, look.theme.view_text, Rect{{place.low.x + look.px(10), place.low.y}, {place.high.x - look.px(9), place.high.y}}, text);
+    put_swatch(look, {place.low.x + look.px(10), place.centre().y - look.px(7)}, left ? kColourOfA : kColourOfB);
+    put_text(editor, look.fonts.regular, look.theme.view_text, Rect{{place.low.x + look.px(32), place.low.y}, {place.high.x - look.px(9), place.high.y}}, text);
   };
   chip("A", name_of_side(editor, comparison.a), true);
   chip("B", name_of_side(editor, comparison.b), false);
@@ -170,6 +195,32 @@ void hover_views(Editor& editor) {
   if (hover.inside && is_of_document(editor, scene_at_pointer(editor, *place).volume)) hover.weights = weights_at(*editor.views, editor.document(), hover.voxel);
 }
 
+void put_swatch(const Look& look, const glm::vec2& corner, Colour colour) {
+  const glm::vec2 low = glm::round(corner);
+  fill({low, low + look.px(14)}, colour, look.px(3));
+}
+
+void draw_side_chip(Editor& editor, const ViewPlace& place) {
+  const Look& look = editor.look;
+  const std::string& name = place.side_a ? editor.comparison.a : editor.comparison.b;
+  const auto result = result_named(editor.document(), name);
+  const std::string letter = place.side_a ? "A" : "B", title = name_of_side(editor, name);
+  char words[64] = "";
+  if (const auto facts = result ? facts_of(editor, result) : nullptr; facts && facts->seconds > 0) std::snprintf(words, sizeof words, facts->seconds < 10 ? "%.1f s" : "%.0f s", facts->seconds);
+  const float high = look.px(26), text_left = look.px(54), seconds = *words ? text_size(look.fonts.regular, words).x + look.px(10) : 0;
+  const float room = place.rect.width() - look.px(24) - (place.side_a ? 0 : look.px(100));  // the axis ball
+  const float width = std::min(text_left + text_size(look.fonts.semibold, title).x + seconds + look.px(12), room);
+  if (width < look.px(80)) return;
+  const glm::vec2 low = place.rect.low + glm::vec2(look.px(12), look.px(10));
+  const Rect chip{low, low + glm::vec2(width, high)};
+  fill(chip, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
+  put_swatch(look, {chip.low.x + look.px(10), chip.centre().y - look.px(7)}, place.side_a ? kColourOfA : kColourOfB);
+  put_text(editor, look.fonts.semibold, look.theme.view_text, Rect{{chip.low.x + look.px(34), chip.low.y}, {chip.low.x + text_left, chip.high.y}}, letter);
+  const bool short_of_room = width < text_left + text_size(look.fonts.semibold, title).x + seconds + look.px(12);
+  put_text(editor, look.fonts.semibold, look.theme.view_text, Rect{{chip.low.x + text_left, chip.low.y}, {chip.high.x - look.px(10) - (short_of_room ? 0 : seconds), chip.high.y}}, title);
+  if (!short_of_room && *words) put_text(editor, look.fonts.regular, look.theme.view_text2, Rect{{chip.high.x - seconds - look.px(10), chip.low.y}, {chip.high.x - look.px(10), chip.high.y}}, words, Align::Right);
+}
+
 void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state) {
   const Look& look = editor.look;
   const glm::vec2 corner = rect.low + glm::vec2(look.px(12), look.px(10));
@@ -216,17 +267,22 @@ void draw_views_region(Editor& editor) {
   const Look& look = editor.look;
   begin_region(editor, Region::Views, "views", editor.layout.views, look.theme.void_);
   for (const ViewPlace& place : editor.layout.view_places) {
-    const PathScope path(editor, name_of(place.id));
+    const PathScope path(editor, name_of(place.id) + (place.side_a ? " A" : ""));
     register_widget(editor, "view", place.rect);
     draw_picture(editor, place);
     ImGui::PushClipRect(im(place.rect.low), im(place.rect.high), true);
-    if (place.id == ViewId::Body) draw_body_overlay(editor, place.rect);
-    else draw_slice_overlay(editor, place.id, place.rect);
+    if (place.id == ViewId::Body) draw_body_overlay(editor, place);
+    else draw_slice_overlay(editor, place);
     draw_gizmo(editor, place);
     draw_brush(editor, place);
     draw_wipe(editor, place.rect);
-    if (editor.layout.view_places.size() > 1 && place.id == editor.views->active) outline(place.rect, look.theme.accent, 0, 2 * look.line());
+    if (editor.layout.several() && place.id == editor.views->active) outline(place.rect, look.theme.accent, 0, 2 * look.line());
     ImGui::PopClipRect();
+  }
+  for (std::size_t i = 0; editor.layout.by_sides && i + 1 < editor.layout.view_places.size(); i += 2) {
+    const ViewPlace &b = editor.layout.view_places[i], &a = editor.layout.view_places[i + 1];
+    const PathScope path(editor, name_of(b.id));
+    draw_divider(editor, a.rect, b.rect);
   }
   draw_weights_at_pointer(editor);
   draw_pointer_menu(editor);

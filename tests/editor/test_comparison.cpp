@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Results beside the volume at rest: chosen, renamed, deleted, compared.
+#include "editor/difference.h"
+#include "editor/fem_view.h"
 #include "editor/results.h"
+#include "editor/wipe.h"
 #include "tests/editor/small_limb.h"
 
 using namespace limber;
@@ -123,6 +126,133 @@ TEST_CASE("results: A and B are shown in turn, held against one another, and wip
   CHECK(test.shown().get() == test.volume(0));
   test.play("key 4");
   CHECK_FALSE(test.editor->views->other_scene);
+}
+
+TEST_CASE("results: A and B stand side by side, one camera sees both, and what the pointer is on belongs to its side") {
+  Compared test;
+  test.play("click Two/row\n click One/row Shift\n move \"3D view/view\"\n key 3\n wait-idle\n expect \"text:One\"\n expect \"text:Two\"");
+  CHECK(side_by_side(*test.editor));
+  const Layout& layout = test.editor->layout;
+  REQUIRE(layout.view_places.size() == 2);
+  const Rect b = *layout.place_of(ViewId::Body), a = layout.view_places[1].rect;
+  CHECK(layout.view_places[1].side_a);
+  CHECK(a.high.x < b.low.x);
+  CHECK(a.size() == b.size());
+  // The smaller ball stands on the right; 25 mm off its middle only A has tissue.
+  const auto label_at = [&](const Rect& view, double millimetres) -> int {
+    const render::Camera& camera = test.editor->views->body.camera;
+    glm::dvec2 pixel;
+    REQUIRE(render::project(camera, camera.world_from_view * glm::dvec3(millimetres, 0, 0), glm::ivec2(view.size()), pixel));
+    test.host->events.push(PointerMoved{view.low + glm::vec2(pixel)});
+    test.player.settle();
+    return test.editor->views->hover.inside ? test.editor->views->hover.label : 0;
+  };
+  CHECK(label_at(a, 25) == 17);
+  CHECK(label_at(b, 25) == 0);
+  CHECK(label_at(b, 5) == 17);
+
+  const glm::dquat before = test.editor->views->body.camera.world_from_view;
+  test.play("drag \"3D view A/view\" 60 10 MMB\n wait-idle");
+  CHECK(test.editor->views->body.camera.world_from_view != before);
+  CHECK(label_at(a, 25) == 17);
+  CHECK(label_at(b, 25) == 0);
+
+  test.play("drag \"3D view/divider\" 120 0\n wait-idle");
+  CHECK(test.editor->comparison.share > 0.55f);
+  CHECK(layout.view_places[1].rect.width() > a.width() + 100);
+  test.play("drag \"3D view/divider\" 900 0\n wait-idle");
+  CHECK(layout.view_places[0].rect.width() > 0.19f * layout.views.width());
+  test.play("double-click \"3D view/divider\"");
+  CHECK(test.editor->comparison.share == 0.5f);
+
+  // Slices stand twice as well; a box cuts both.
+  test.play("key Ctrl+Alt+Q\n wait-idle");
+  CHECK(layout.view_places.size() == 8);
+  test.play("move \"Axial A/view\"");
+  CHECK(test.editor->views->hover.view == ViewId::Axial);
+  CHECK(scene_at_pointer(*test.editor, *layout.view_at(test.editor->input.pointer)).volume.get() == test.volume(0));
+  run(*test.editor, "view.one");
+  test.play("wait-idle\n move \"3D view/view\"\n key Alt+B\n wait-idle");
+  CHECK(test.editor->views->scene.clip.box);
+  CHECK(test.editor->views->other_scene->clip.box);
+  // Elsewhere there is one view, and here again two.
+  test.play("key Ctrl+3\n wait-idle");
+  CHECK(layout.view_places.size() == 1);
+  test.play("key Ctrl+4\n wait-idle\n move \"3D view/view\"");
+  CHECK(layout.view_places.size() == 2);
+  test.play("key 3\n wait-idle");
+  CHECK(layout.view_places.size() == 1);
+  CHECK_FALSE(test.editor->views->other_scene);
+  CHECK(test.shown().get() == test.volume(1));
+}
+
+TEST_CASE("results: where A and B differ is marked on both sides and counted by tissue") {
+  Compared test;
+  test.play("click Two/row\n move \"3D view/view\"\n key 3\n key D\n wait-idle\n expect \"text:Voxels that differ\"");
+  const ComparedVolumes* found = compared_volumes(*test.editor);
+  REQUIRE(found);
+  CHECK(found->a.volume == test.editor->document().volume);
+  CHECK(found->b.volume.get() == test.volume(1));
+  const LabelVolume &rest = *found->a.volume, &two = *found->b.volume;
+  // In whole voxels: Two lies two of them higher.
+  DifferingSide::Count skin, muscle;
+  for (int z = 0; z < rest.grid.size.z; ++z)
+    for (int y = 0; y < rest.grid.size.y; ++y)
+      for (int x = 0; x < rest.grid.size.x; ++x) {
+        const Label here = rest.at({x, y, z}), there = two.at_or_air({x, y, z - 2});
+        if (here == 143) ++(there == 0 ? skin.air : skin.other_tissue);
+        if (here == 17 && there == 0) ++muscle.air;
+      }
+  CHECK(found->a.differing.counts.at(143) == skin);
+  CHECK(found->a.differing.counts.at(17) == muscle);
+  CHECK(found->a.differing.counts.at(111).air == 0);
+  CHECK(found->b.differing.counts.at(17).air == 0);
+  const auto& views = *test.editor->views;
+  REQUIRE(views.scene.weights);
+  REQUIRE(views.other_scene->weights);
+  CHECK(views.scene.weights->field == found->b.field);
+  CHECK(views.other_scene->weights->field == found->a.field);
+
+  // What lies at the same place on the other side is told beside the pointer.
+  test.play("move \"3D view A/view\"\n wait-idle\n expect \"text:in B: \"\n expect \"text:Skin, A and B\"");
+  test.play("key 2\n wait-idle");  // B alone keeps its marks
+  CHECK(views.scene.weights->field == found->b.field);
+  test.play("key 1\n wait-idle");
+  CHECK(views.scene.weights->field == found->a.field);
+  run(*test.editor, "fem.show_tissues");
+  test.player.settle();
+  CHECK_FALSE(views.scene.weights);
+  CHECK_FALSE(shows_difference(*test.editor));
+}
+
+TEST_CASE("results: gates, changes and provenance are read from the report of the result that is shown") {
+  Compared test;
+  Document next = test.editor->document();
+  auto judged = std::make_shared<Result>(*next.results[0]);
+  judged->report = R"({"version": "9.8", "settings": {"fit_joints": true, "quality": "fine", "method": "fem"}, "inputs": [{"path": "/tmp/x/rig.json", "sha256": "0123456789abcdef0123456789abcdef"}],
+    "seconds": {"solve": 3.25, "total": 4}, "peak_memory_mb": 123.4, "mesh": {"inverted": 3}, "bones": [{"name": "Fore", "rigid_residual_mm": 0.25}], "total": {"overlap_voxels": 7},
+    "tissues": [{"name": "Skin", "label": 143, "voxels_before": 6000, "mm3_before": 1000, "mm3_after": 900, "volume_change_percent": -10}]})";
+  judged->from_pose = std::make_shared<const Pose>(rest_pose(*next.armature));
+  next.results[0] = judged;
+  test.editor->history.commit("Report", next);
+  test.editor->open_sections["Provenance"] = true;
+  for (const char* folded : {"Outliner", "Tissues", "Running", "Resample"}) test.editor->open_sections[folded] = false;
+  test.play("click One/row\n wait-idle");
+  for (const char* text : {"-10.00 %", "0.250 mm", "7 voxels", "not measured", "within", "9.8", "fine", "rig.json", "0123456789abcdef", "3.25 s", "123 MB"}) {
+    INFO(std::string(text));
+    CHECK(test.fact(std::string("text:") + text) == "shown");
+  }
+  test.play("click \"Bones rigid\"");
+  CHECK(test.editor->selection.bone == 1);
+  test.play("click \"Each tissue within 1 %\"");
+  CHECK(test.editor->selection.tissue == 143);
+  test.play("click \"Quality gates/fold\"\n wait-idle\n click rig.json");
+  CHECK(test.host->clipboard() == "0123456789abcdef0123456789abcdef");
+  const std::string text = text_of_report("One", *facts_of(*test.editor, test.editor->document().results[0]));
+  for (const char* part : {"FAILED   Each tissue within 1 %", "-10.00 %  Skin", "passed   Joint limits", "Quality", "0123456789abcdef0123456789abcdef"}) {
+    INFO(text);
+    CHECK(text.find(part) != std::string::npos);
+  }
 }
 
 TEST_CASE("results: without a choice the comparison is of the volume at rest and the last result") {

@@ -36,6 +36,31 @@ TEST_CASE("layout: regions lie in the window and never overlap, at any size, sca
       }
 }
 
+TEST_CASE("layout: in sides each view stands twice, side A at the left, and nothing overlaps") {
+  for (const float scale : {0.75f, 1.0f, 2.0f})
+    for (const ViewLayout views : {ViewLayout::One, ViewLayout::Split, ViewLayout::Four})
+      for (const float share : {0.2f, 0.5f, 0.8f}) {
+        Arrangement arrangement;
+        arrangement.views = views;
+        const Layout one = arrange({1600, 900}, scale, arrangement), two = in_sides(one, share, scale);
+        REQUIRE(two.view_places.size() == 2 * one.view_places.size());
+        CHECK(two.several() == one.several());
+        for (std::size_t i = 0; i < one.view_places.size(); ++i) {
+          const ViewPlace &b = two.view_places[2 * i], &a = two.view_places[2 * i + 1];
+          CHECK(a.side_a);
+          CHECK_FALSE(b.side_a);
+          CHECK(a.id == one.view_places[i].id);
+          CHECK(b.id == a.id);
+          CHECK(a.rect.low == one.view_places[i].rect.low);
+          CHECK(b.rect.high == one.view_places[i].rect.high);
+          CHECK(a.rect.high.x < b.rect.low.x);
+          CHECK_FALSE(a.rect.empty());
+          CHECK_FALSE(b.rect.empty());
+          CHECK(two.place_of(b.id)->low == b.rect.low);
+        }
+      }
+}
+
 TEST_CASE("layout: at 1600x900 the regions have the sizes of the drawing") {
   Arrangement arrangement;
   arrangement.views = ViewLayout::Four;

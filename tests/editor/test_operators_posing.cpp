@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Bones are chosen and posed, results compared.
+#include "editor/difference.h"
 #include "editor/posing.h"
 #include "editor/results.h"
 #include "tests/editor/operator_proofs.h"
@@ -118,8 +119,12 @@ std::vector<Proof> proofs_of_comparing() {
       {"compare.flicker", "key-down F\n wait-idle", [](Stage& s, const Seen&) { return seen_volume(s) == s.document().volume; }, Shows::InBody},
       {"compare.wipe", "key 4", [](Stage& s, const Seen&) { return wiping(s.editor()) && s.editor().views->other_scene; }, Shows::Nothing, "key-up F\n wait-idle"},
       {"compare.swap", "click \"Edit/Resample/Swap A and B\"", [](Stage& s, const Seen&) { return s.editor().comparison.a == "Bare"; }},
+      {"compare.side_by_side", "key 3", [](Stage& s, const Seen&) { return side_by_side(s.editor()) && s.editor().layout.view_places.size() == 2; }, Shows::Nothing, "move \"3D view/view\"\n key 4\n wait-idle"},
+      {"compare.difference", "key D\n wait-idle", [](Stage& s, const Seen&) { return shows_difference(s.editor()) && s.editor().views->scene.weights.has_value(); }, Shows::InBody},
       {"result.rename", "click \"Edit/Resample/Rename result...\"\n wait-idle\n key Ctrl+A\n type \"Skinless\"\n key Return",
        [](Stage& s, const Seen&) { return s.document().results.back()->name == "Skinless"; }},
+      {"file.export", "key Ctrl+E\n type posed\n key Return\n wait-job", [](Stage& s, const Seen& b) { return std::filesystem::exists(s.home / "posed.nrrd") && read_volume(s.home / "posed.nrrd").volume.voxels == b.document.results.back()->volume->voxels; }},
+      {"report.open", "key Shift+Ctrl+R\n type judged\n key Return\n wait-job", [](Stage& s, const Seen&) { return std::filesystem::exists(s.home / "judged.txt") && read_file(s.home / "judged.txt").find("Joint limits") != std::string::npos; }},
   };
 }
 

@@ -123,6 +123,17 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   CHECK(test.editor->document().results.size() == 2);
   run(*test.editor, "edit.undo");
   CHECK(test.editor->document().results.size() == 1);
+
+  // Mass-exact, the same; and it is said in its name and its report.
+  run(*test.editor, "resample.dqs");
+  test.play("key Ctrl+4\n click Resample/Mass-exact\n key Ctrl+Return\n wait-job");
+  REQUIRE(test.editor->document().results.size() == 2);
+  const Document now = test.editor->document();
+  const auto exact = now.results[1];
+  CHECK(exact->name == "Fore 30\u00b0, DQ, mass-exact");
+  CHECK(exact->volume->voxels == resample(*now.volume, *now.tissues, *now.armature, *now.weights, *now.pose, DualQuaternion{}, {.mass_exact = true}).volume.voxels);
+  const auto& settings = facts_of(*test.editor, exact)->settings;
+  CHECK(std::any_of(settings.begin(), settings.end(), [](const auto& line) { return line.name == "Mass exact" && line.value == "yes"; }));
 }
 
 TEST_CASE("resample: a result becomes stale when what it was made from changes, and says why") {

@@ -346,7 +346,7 @@ TEST_CASE("settling: measures of the mesh and its tets are shown while it settle
   // On the left of a wipe, with the volume at rest on the right; then the other way round.
   test.editor->comparison.a = result->name;
   test.editor->comparison.b = "";
-  test.editor->comparison.wipe = true;
+  test.editor->comparison.views = Comparison::Views::Wipe;
   test.play("wait-idle");
   REQUIRE(test.editor->views->other_scene);
   CHECK(test.editor->views->other_scene->weights);

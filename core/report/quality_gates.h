@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What a posed volume must pass before it is believed, judged from its report. A gate that the report has no figures for (a mesh,
+// where nothing was meshed) is neither passed nor failed. By their ids:
+//   tissues    the volume of each; where no tissue is large enough, all are judged
+//   bones      how far from a rigid motion
+//   skin       its share of the surface, against that at rest, where cut limbs show flesh
+//   islands    no tissue in more pieces than at rest, no voxel without a label inside the image of tissue
+//   inverted   no cell of the mesh turned inside out
+//   crossings  no triangles of the skin cross, no voxel is claimed twice
+//   limits     no joint further than its limits allow
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/rig/armature.h"
+
+namespace limber {
+
+struct Pose;
+struct Report;
+
+struct QualityLimits {
+  double tissue_percent = 1;
+  std::int64_t least_voxels = 5000;   // of a tissue at rest: fewer change by up to 2 % when a rigid part alone is sampled anew
+  double bone_residual_mm = 0.05;     // a fortieth of a voxel of 2 mm
+  double skin_share_percent = 0.2;    // of the surface, that is no longer skin
+  double joint_excess_degrees = 0.1;
+};
+
+enum class GateState { Passed, Failed, NotMeasured };
+
+struct QualityGate {
+  std::string id;      // as above
+  std::string name;    // "Each tissue within 1 %"
+  GateState state = GateState::NotMeasured;
+  std::string figure;  // "-0.30 %", "3 286 voxels"; empty where nothing was measured
+  std::string worst;   // the tissue or bone whose figure that is; empty for none
+  std::string meaning;  // a sentence
+};
+
+// In the order above.
+//   report  limber-report/1, JSON; from text that is none nothing is measured
+std::vector<QualityGate> quality_gates(const std::string& report, const QualityLimits& limits = {});
+std::vector<QualityGate> quality_gates(const Report& report, const QualityLimits& limits = {});
+
+// The last of them, of a rig and a pose at hand.
+QualityGate judge_joint_limits(const Armature& armature, const Pose& pose, const QualityLimits& limits = {});
+
+}  // namespace limber

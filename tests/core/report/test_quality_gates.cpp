@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/report/quality_gates.h"
+
+#include <doctest/doctest.h>
+
+#include "core/pose/pose.h"
+#include "core/report/report.h"
+
+using namespace limber;
+
+namespace {
+
+QualityGate gate(const std::string& report, const std::string& id) {
+  for (const QualityGate& one : quality_gates(report))
+    if (one.id == id) return one;
+  FAIL("no gate " << id);
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("quality gates: what a report has no figures for is neither passed nor failed") {
+  for (const char* report : {"", "no report", "[1, 2]", "{}", R"({"tissues": 3, "bones": {"a": 1}, "mesh": [], "total": null, "joints": "x"})"}) {
+    INFO(std::string(report));
+    const auto gates = quality_gates(report);
+    CHECK(gates.size() == 7);
+    for (const QualityGate& one : gates) {
+      CHECK(one.state == GateState::NotMeasured);
+      CHECK(one.figure.empty());
+      CHECK_FALSE(one.name.empty());
+      CHECK_FALSE(one.meaning.empty());
+    }
+  }
+}
+
+TEST_CASE("quality gates: tissues are judged by the one of 5 000 voxels or more that changed most, and small ones where none is large") {
+  const std::string report = R"({"tissues": [{"name": "Nerve", "label": 1, "voxels_before": 900, "volume_change_percent": 7.5},
+    {"name": "Fat", "label": 2, "voxels_before": 50000, "volume_change_percent": 0.2}, {"name": "Skin", "label": 3, "voxels_before": 5000, "volume_change_percent": CHANGE}]})";
+  const auto with = [&](const char* change) { return gate(std::string(report).replace(report.find("CHANGE"), 6, change), "tissues"); };
+  CHECK(with("-0.99").state == GateState::Passed);
+  CHECK(with("-0.99").worst == "Skin");
+  CHECK(with("-1.01").state == GateState::Failed);
+  CHECK(with("-1.01").figure == "-1.01 %");
+  CHECK(with("0.1").worst == "Fat");
+  const QualityGate small = gate(R"({"tissues": [{"name": "Nerve", "voxels_before": 900, "volume_change_percent": 7.5}, {"name": "Nail", "voxels_before": 9, "volume_change_percent": -8}]})", "tissues");
+  CHECK(small.state == GateState::Failed);
+  CHECK(small.worst == "Nail");
+}
+
+TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
+  struct Case {
+    const char *id, *passing, *failing, *figure;
+  };
+  const Case kCases[] = {
+      {"bones", R"({"bones": [{"name": "Fore", "rigid_residual_mm": 0.05}]})", R"({"bones": [{"name": "Up", "rigid_residual_mm": 0}, {"name": "Fore", "rigid_residual_mm": 0.051}]})", "0.051 mm"},
+      {"skin", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.8681}})", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.866}})", "86.6 %"},
+      {"islands", R"({"total": {"new_hole_voxels": 0}, "tissues": [{"name": "Fat", "components_before": 5, "components_after": 4}]})",
+       R"({"total": {"new_hole_voxels": 3286}, "tissues": [{"name": "Fat", "components_before": 1, "components_after": 2}]})", "1 island, 3 286 holes"},
+      {"inverted", R"({"mesh": {"inverted": 0}})", R"({"mesh": {"inverted": 2}})", "2"},
+      {"crossings", R"({"mesh": {"self_intersections": 0}, "total": {"overlap_voxels": 0}})", R"({"mesh": {"self_intersections": 1}})", "1 pair"},
+      {"crossings", R"({"total": {"overlap_voxels": 0}})", R"({"mesh": {"self_intersections": 1}, "total": {"overlap_voxels": 12345678}})", "12 345 678 voxels"},
+      {"limits", R"({"joints": [{"bone": "Fore", "excess_degrees": 0.09}, {"bone": "Up"}]})", R"({"joints": [{"bone": "Fore", "excess_degrees": 1.6}, {"bone": "Up", "excess_degrees": 0.4}]})", "+1.6\u00b0"},
+  };
+  for (const Case& one : kCases) {
+    INFO(one.id, ": ", one.failing);
+    CHECK(gate(one.passing, one.id).state == GateState::Passed);
+    CHECK_FALSE(gate(one.passing, one.id).figure.empty());
+    CHECK(gate(one.failing, one.id).state == GateState::Failed);
+    CHECK(gate(one.failing, one.id).figure == one.figure);
+  }
+}
+
+TEST_CASE("quality gates: a report in hand is judged as its file is, and limits of a rig as those of its report") {
+  Report report;
+  report.deform.emplace();
+  report.deform->new_hole_voxels = 2;
+  report.deform->bones = {{"Fore", 0.2, 100}};
+  const auto gates = quality_gates(report);
+  CHECK(gates[1].state == GateState::Failed);
+  CHECK(gates[1].worst == "Fore");
+  CHECK(gates[3].figure == "2 holes");
+
+  Armature rig;
+  rig.bones.push_back({.name = "Up", .parent = -1, .head = {0, 0, 0}, .tail = {0, 0, 100}});
+  rig.bones.push_back({.name = "Fore", .parent = 0, .head = {0, 0, 100}, .tail = {0, 0, 200}});
+  rig.bones[1].limits.type = JointLimits::Type::Hinge;
+  rig.bones[1].limits.axis = {1, 0, 0};
+  rig.bones[1].limits.minimum = 0;
+  rig.bones[1].limits.maximum = glm::radians(90.0);
+  Pose pose = rest_pose(rig);
+  pose.rotation[1] = glm::angleAxis(glm::radians(90.0), glm::dvec3(1, 0, 0));
+  CHECK(judge_joint_limits(rig, pose).state == GateState::Passed);
+  pose.rotation[1] = glm::angleAxis(glm::radians(92.5), glm::dvec3(1, 0, 0));
+  const QualityGate beyond = judge_joint_limits(rig, pose);
+  CHECK(beyond.state == GateState::Failed);
+  CHECK(beyond.worst == "Fore");
+  CHECK(beyond.figure == "+2.5\u00b0");
+}
