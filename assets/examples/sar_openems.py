@@ -4,11 +4,14 @@
 
   sar_openems.py deck DECK.xml [...] [--cell MM] [--polarization x|y|z] [--towards x|y|z] -o SAR.json [--plot SAR.svg]
   sar_openems.py sphere -o SPHERE.json
+  sar_openems.py study OUT [--method fem] [--spacing MM] [--poses A,B] [--frequency HZ] [--cell MM] [--limber PROGRAM]
 
 DECK.xml is what `limber convert POSED.nrrd DECK.xml --frequency HZ` writes: boxes of tissues with permittivity, conductivity and
 density. For each deck: the SAR averaged over all tissue and its largest average over 10 g, in W/kg for an incident power density
 of 1 W/m2 at the deck's frequency. `sphere` does the same for a ball of muscle-like tissue and compares the power it takes up with
-Mie's exact solution [Bohren & Huffman 1983, 4.4]; it exits with 1 where they differ by more than 10 %.
+Mie's exact solution [Bohren & Huffman 1983, 4.4]; it exits with 1 where they differ by more than 10 %. `study` does both for the
+posed bodies of a study that `limber experiment ... -o OUT` has computed, and writes OUT/sar.json (schema limber-sar/1, see
+core/study/sar_figures.h): the next `limber experiment ... -o OUT` shows it as a figure of its page.
 
 Needs openEMS (Debian: openems), h5py, numpy and scipy. Every run works in a folder of its own that is taken away again.
 """
@@ -221,6 +224,63 @@ def mie_absorption(radius, material, frequency):
     return (extinction - scattering) * np.pi * radius**2
 
 
+def result_of_ball(cell, options):
+    material = {"name": "muscle-like", "epsilon": 55.0, "kappa": 0.94, "density": 1040.0}
+    radius = 60.0
+    result = result_of(ball(radius, cell, material, options.frequency), options.polarization, options.towards, options.threads)
+    result["absorbed_by_mie_w"] = float(mie_absorption(radius / 1000, material, options.frequency))
+    result["difference_percent"] = 100 * (result["absorbed_w"] / result["absorbed_by_mie_w"] - 1)
+    return result
+
+
+def chosen_cells(out, options):
+    """A study's cells at one spacing, by one method."""
+    with open(os.path.join(out, "cells.json")) as file:
+        cells = [cell for cell in json.load(file)["cells"] if "key" in cell and cell["method"] == options.method]
+    if options.spacing is None and cells:
+        options.spacing = min(cell["spacing_mm"] or 0 for cell in cells)
+    poses = options.poses and options.poses.split(",")
+    chosen = [cell for cell in cells if (cell["spacing_mm"] or 0) == options.spacing and (not poses or cell["pose"] in poses)]
+    if not chosen or (poses and len(chosen) < len(poses)):
+        sys.exit(f"sar_openems.py: {out}: the study has no such cells: it has by {options.method} " + (", ".join(f"{c['spacing_mm']} mm {c['pose']}" for c in cells) or "none"))
+    return chosen
+
+
+def deck_of_cell(out, cell, options, folder):
+    """As `limber convert` writes it, with the study's own table of tissues."""
+    place = os.path.join(out, cell["folder"])
+    with open(os.path.join(place, "job.json")) as file:
+        tissues = json.load(file).get("tissues")
+    deck = os.path.join(folder, "deck.xml")
+    words = [options.limber, "convert", os.path.join(place, "posed.nrrd"), deck, "--frequency", str(options.frequency)]
+    done = subprocess.run(words + (["--tissues", os.path.join(place, tissues)] if tissues else []), capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(done.stderr.strip())
+    return read_deck(deck, options.cell)
+
+
+def sar_of_study(out, options):
+    cells = chosen_cells(out, options)
+    poses = []
+    for cell in cells:
+        with tempfile.TemporaryDirectory() as folder:
+            deck = deck_of_cell(out, cell, options, folder)
+        result = result_of(deck, options.polarization, options.towards, options.threads)
+        poses.append({"pose": cell["pose"], "key": cell["key"], **result})
+        print(f"{cell['pose']}: {1000 * result['sar_average_w_per_kg']:.2f} mW/kg on average, {1000 * result['sar_peak_10g_w_per_kg']:.1f} over 10 g, {result['seconds']} s", file=sys.stderr)
+    return {
+        "schema": "limber-sar/1",
+        "frequency_hz": options.frequency,
+        "cell_mm": poses[0]["cell_mm"],
+        "polarization": options.polarization,
+        "towards": options.towards,
+        "spacing_mm": options.spacing or None,
+        "method": options.method,
+        "poses": poses,
+        "sphere": result_of_ball(poses[0]["cell_mm"], options),
+    }
+
+
 def plot_of(results):
     """Bars of average and peak SAR, a pair a deck, as SVG."""
     kinds = [("sar_average_w_per_kg", "average", "#3FB6A8"), ("sar_peak_10g_w_per_kg", "largest over 10 g", "#B07AD9")]
@@ -246,36 +306,46 @@ def write(path, text):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["deck", "sphere"])
-    parser.add_argument("decks", nargs="*")
+    parser.add_argument("what", choices=["deck", "sphere", "study"])
+    parser.add_argument("decks", nargs="*", help="decks, or a study's folder")
     parser.add_argument("--cell", type=float, help="mm (default: the deck's voxels; sphere: 4)")
     parser.add_argument("--polarization", choices="xyz", default="z")
     parser.add_argument("--towards", choices="xyz", default="y")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
-    parser.add_argument("-o", "--output", required=True)
+    parser.add_argument("--method", default="fem", help="study: whose bodies (default: fem)")
+    parser.add_argument("--spacing", type=float, help="study: of which spacing, mm (default: the finest)")
+    parser.add_argument("--poses", help="study: their names, with commas between them (default: all)")
+    parser.add_argument("--frequency", type=float, default=900e6, help="study and sphere, Hz (default: 900e6)")
+    parser.add_argument("--limber", default="limber", help="study: the program that converts (default: limber)")
+    parser.add_argument("-o", "--output", help="default, for a study: OUT/sar.json")
     parser.add_argument("--plot", help="SVG of average and peak SAR by deck")
     options = parser.parse_args()
     if options.polarization == options.towards:
         parser.error("a wave is not polarized along its way")
     if options.what == "deck" and not options.decks:
         parser.error("name a deck: limber convert POSED.nrrd DECK.xml --frequency 900e6")
+    if options.what == "study" and len(options.decks) != 1:
+        parser.error("name the folder of one study")
+    if options.what == "study" and not options.output:
+        options.output = os.path.join(options.decks[0], "sar.json")
+    if not options.output:
+        parser.error("say where to: -o SAR.json")
     if options.cell is not None and not 0.5 <= options.cell <= 20:
         parser.error("--cell is from 0.5 to 20 mm")
     if shutil.which("openEMS") is None:
         sys.exit("sar_openems.py: openEMS is not installed: Debian's package is openems")
     if options.what == "sphere":
-        material = {"name": "muscle-like", "epsilon": 55.0, "kappa": 0.94, "density": 1040.0}
-        radius = 60.0
-        result = result_of(ball(radius, options.cell or 4, material, 900e6), options.polarization, options.towards, options.threads)
-        result["absorbed_by_mie_w"] = float(mie_absorption(radius / 1000, material, 900e6))
-        result["difference_percent"] = 100 * (result["absorbed_w"] / result["absorbed_by_mie_w"] - 1)
+        result = result_of_ball(options.cell or 4, options)
+    elif options.what == "study":
+        result = sar_of_study(options.decks[0], options)
     else:
         result = {os.path.splitext(os.path.basename(d))[0]: result_of(read_deck(d, options.cell), options.polarization, options.towards, options.threads) for d in options.decks}
     write(options.output, json.dumps(result, indent=1) + "\n")
     if options.plot and options.what == "deck":
         write(options.plot, plot_of(result))
     print(json.dumps(result, indent=1))
-    if options.what == "sphere" and abs(result["difference_percent"]) > 10:
+    checked = {"deck": None, "sphere": result, "study": result.get("sphere")}[options.what]
+    if checked and abs(checked["difference_percent"]) > 10:
         sys.exit(1)
 
 

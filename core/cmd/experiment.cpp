@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber experiment STUDY.json|arm [DIR] -o OUT [--shard i/n] [--threads N] [--progress json]
+// limber experiment STUDY.json|arm [DIR] [--methods M,M] -o OUT [--shard i/n] [--threads N] [--progress json]
 #include "core/cmd/experiment.h"
 
 #include <cstdio>
@@ -18,6 +18,7 @@ namespace limber::cmd {
 namespace {
 struct Options {
   std::string study, folder, out, shard;
+  std::vector<std::string> methods;
   RunOptions run;
 };
 
@@ -28,6 +29,12 @@ void read_shard(const std::string& text, StudyRun& run) {
     throw Error("this is no shard", "--shard " + text, "write i/n with i from 1 to n, as in --shard 1/4");
   run.shard = number - 1;
   run.shards = of;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
+  return text;
 }
 
 // A line on stderr, in place of the bar where one stands.
@@ -46,7 +53,8 @@ void run(const Options& options, const StartPictures& pictures) {
   CommandProgress progress(options.run.progress);
   if (options.study != "arm" && !options.folder.empty())
     throw Error("only the arm's study takes a folder", options.folder, "write: limber experiment arm " + options.folder + " -o " + options.out);
-  const Study study = options.study == "arm" ? paper_study(options.folder) : read_study(options.study);
+  Study study = options.study == "arm" ? paper_study(options.folder) : read_study(options.study);
+  if (!options.methods.empty()) study.techniques = techniques_of(options.methods, "--methods");
   StudyRun run{.out = options.out, .threads = options.run.threads};
   if (!options.shard.empty()) read_shard(options.shard, run);
   run.on_cell = [&](const CellOutcome& outcome, int done, int of, bool was_there, double left) { tell(study, outcome, done, of, was_there, left); };
@@ -55,7 +63,7 @@ void run(const Options& options, const StartPictures& pictures) {
   std::size_t failed = 0;
   for (const CellOutcome& outcome : outcomes) failed += !outcome.failure.empty();
   if (run.shards == 1) {
-    const std::string command = "limber experiment " + options.study + (options.folder.empty() ? "" : " " + options.folder) + " -o " + options.out;
+    const std::string command = "limber experiment " + options.study + (options.folder.empty() ? "" : " " + options.folder) + " -o " + options.out + (options.methods.empty() ? "" : " --methods " + joined(options.methods));
     write_results(study, outcomes, options.out, command, pictures, progress);
     std::printf("%s\n%s\n%s\n", (Path(options.out) / "report.html").c_str(), (Path(options.out) / "cells.csv").c_str(), (Path(options.out) / "cells.json").c_str());
   } else {
@@ -71,6 +79,7 @@ void add_experiment(CLI::App& app, const StartPictures& pictures) {
   command->add_option("STUDY", options->study, "description (JSON), or arm: the elbow at 2, 3, 4 mm, by every technique")->required();
   command->add_option("DIR", options->folder, "for arm: a folder with man-arm-2mm.mha and its armature (default: the procedural arm)");
   command->add_option("-o,--output", options->out, "folder for cells.csv, cells.json, report.html and all that was computed; made if absent")->required();
+  command->add_option("--methods", options->methods, "lbs, dqs, fem, fem-contact, and each with -mass-exact behind it (default: as the description says; the first four)")->delimiter(',')->type_name("M,M");
   command->add_option("--shard", options->shard, "computes every n-th cell only, from the i-th on")->type_name("i/n");
   add_run_options(*command, options->run);
   command->callback([options, pictures] { run(*options, pictures); });

@@ -32,6 +32,7 @@ void read_body(const Json& json, CellResult& result) {
   for (const auto& [key, to] : {std::pair{"overlap_voxels", &result.overlap_voxels}, {"bone_overlap_voxels", &result.bone_overlap_voxels}, {"new_hole_voxels", &result.new_hole_voxels},
                                 {"dropped_voxels", &result.dropped_voxels}, {"trapped_air_voxels", &result.trapped_air_voxels}, {"mended_voxels", &result.mended_voxels}})
     *to = total.value(key, std::int64_t{0});
+  if (json.contains("mass_exact")) result.mass_exact_voxels = json["mass_exact"].at("changed_voxels");
   if (json.contains("skin")) {
     result.skin_share_before = json["skin"].at("surface_share_before");
     result.skin_share_after = json["skin"].at("surface_share_after");

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <sstream>
 
+#include "core/study/study.h"
 #include "core/study/text.h"
 
 namespace limber {
@@ -14,6 +16,7 @@ namespace {
 
 constexpr double kLetter = 6.2;     // width of a letter of 11 px, about
 constexpr double kLineHeight = 14;  // between two labels
+constexpr int kBar = 22, kWidest = 940;  // of a bar with room for its figure; of a chart on the page
 
 std::string px(double value) { return fixed(value, 1); }
 
@@ -23,12 +26,15 @@ std::string label(double x, double y, const std::string& text, const std::string
 std::string line(double x1, double y1, double x2, double y2, const char* style) {
   return "<line x1=\"" + px(x1) + "\" y1=\"" + px(y1) + "\" x2=\"" + px(x2) + "\" y2=\"" + px(y2) + "\" class=\"" + style + "\"/>";
 }
-std::string colour_of(int technique) { return technique < 0 ? "t-none" : "t" + std::to_string(technique); }
+std::string colour_of(int technique) {
+  if (technique < 0) return "t-none";
+  return "t" + std::to_string(technique % kPlainTechniques) + (is_mass_exact(static_cast<Technique>(technique)) ? " exact" : "");
+}
 
 // Circle, square, triangle, diamond; a small dot for what is no technique.
 std::string mark(int technique, double x, double y, double r) {
   const std::string style = " class=\"mark " + colour_of(technique) + "\"/>";
-  switch (technique) {
+  switch (technique < 0 ? technique : technique % kPlainTechniques) {
     case 1: return "<rect x=\"" + px(x - 0.88 * r) + "\" y=\"" + px(y - 0.88 * r) + "\" width=\"" + px(1.76 * r) + "\" height=\"" + px(1.76 * r) + "\"" + style;
     case 2: return "<path d=\"M" + px(x) + " " + px(y - 1.15 * r) + "L" + px(x + 1.1 * r) + " " + px(y + 0.85 * r) + "L" + px(x - 1.1 * r) + " " + px(y + 0.85 * r) + "Z\"" + style;
     case 3: return "<path d=\"M" + px(x) + " " + px(y - 1.25 * r) + "L" + px(x + 1.25 * r) + " " + px(y) + "L" + px(x) + " " + px(y + 1.25 * r) + "L" + px(x - 1.25 * r) + " " + px(y) + "Z\"" + style;
@@ -48,6 +54,17 @@ double tick_step(double range, int most) {
   return 10 * power;
 }
 int decimals_of(double step) { return std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9))); }
+
+// In lines of at most that width; a word is never cut.
+std::vector<std::string> wrapped(const std::string& text, double width) {
+  std::vector<std::string> lines;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!lines.empty() && kLetter * double(lines.back().size() + 1 + word.size()) <= width) lines.back() += " " + word;
+    else lines.push_back(word);
+  }
+  return lines;
+}
 
 struct Range {
   double low = 0, high = 1;
@@ -161,7 +178,14 @@ std::string svg_of(const LineChart& chart) {
 }
 
 std::string svg_of(const BarChart& chart) {
-  const double left = 48, right = chart.width - 8, top = 28, bottom = chart.height - 46;
+  const auto groups = std::max<std::size_t>(1, chart.groups.size());
+  const int width = std::max(chart.width, std::min(kWidest, static_cast<int>(64 + groups * (20 + kBar * chart.places.size()))));
+  const double left = 48, right = width - 8, group_width = (right - left) / double(groups);
+  std::vector<std::vector<std::string>> names;
+  std::size_t lines = 1;
+  for (const Series& group : chart.groups) lines = std::max(lines, names.emplace_back(wrapped(group.name, group_width - 6)).size());
+  const int height = chart.height + static_cast<int>(kLineHeight * double(lines - 1));
+  const double top = 28, bottom = chart.height - 46;
   double most = 0;
   for (const Series& group : chart.groups)
     for (const auto& value : group.values)
@@ -170,23 +194,23 @@ std::string svg_of(const BarChart& chart) {
   const double step = tick_step(most, 5), high = step * std::ceil(most * 1.04 / step);
   const auto y_of = [&](double value) { return bottom - value / high * (bottom - top); };
 
-  std::string svg = begin(chart.width, chart.height, "Bar chart");
+  std::string svg = begin(width, height, "Bar chart");
   svg += label(2, top - 14, chart.unit, "muted");
   for (int i = 0; i * step <= high + step * 1e-6; ++i)
     svg += line(left, y_of(i * step), right, y_of(i * step), i ? "grid" : "axis") + label(left - 6, y_of(i * step) + 4, fixed(i * step, decimals_of(step)), "tick", "end");
-  const double group_width = (right - left) / std::max<double>(1, double(chart.groups.size()));
   for (std::size_t g = 0; g < chart.groups.size(); ++g) {
     const Series& group = chart.groups[g];
     const double begin_x = left + group_width * double(g) + 10, slot = (group_width - 20) / std::max<double>(1, double(chart.places.size()));
     for (std::size_t place = 0; place < group.values.size(); ++place) {
-      const double x = begin_x + slot * double(place), width = std::min(slot * 0.78, 46.0), middle = x + slot / 2;
+      const double x = begin_x + slot * double(place), wide = std::min(slot * 0.78, 46.0), middle = x + slot / 2;
       if (slot >= 16) svg += label(middle, bottom + 15, chart.places[place], "tick", "middle");
       if (!group.values[place]) continue;
       const double y = y_of(*group.values[place]);
-      svg += "<rect x=\"" + px(middle - width / 2) + "\" y=\"" + px(y) + "\" width=\"" + px(width) + "\" height=\"" + px(bottom - y) + "\" class=\"bar " + colour_of(group.technique) + "\"/>";
+      svg += "<rect x=\"" + px(middle - wide / 2) + "\" y=\"" + px(y) + "\" width=\"" + px(wide) + "\" height=\"" + px(bottom - y) + "\" class=\"bar " + colour_of(group.technique) + "\"/>";
       if (slot >= 22) svg += label(middle, y - 4, fixed(*group.values[place], chart.decimals), "figure", "middle");
     }
-    svg += label(left + group_width * (double(g) + 0.5), bottom + 36, group.name, "name " + colour_of(group.technique), "middle");
+    for (std::size_t i = 0; i < names[g].size(); ++i)
+      svg += label(left + group_width * (double(g) + 0.5), bottom + 36 + kLineHeight * double(i), names[g][i], "name " + colour_of(group.technique), "middle");
   }
   return svg + "</svg>";
 }

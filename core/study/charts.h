@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Charts as inline SVG: labelled directly, one colour and one mark per technique everywhere. Colours are the page's: class tN of
-// technique N, `axis`, `grid`, `muted` (html_report.cpp's style).
+// Charts as inline SVG: labelled directly, one colour and one mark per technique everywhere; made mass-exact, it has the same ones,
+// hollow, and a dashed line. Colours are the page's: classes tN of technique N and `exact`, `axis`, `grid`, `muted` (page_style.cpp).
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace limber {
 
 struct Series {
   std::string name;
-  int technique = -1;                        // its colour and mark; -1: grey
+  int technique = -1;                        // [study.h] its colour and mark; -1: grey
   std::vector<std::optional<double>> values;  // one per place on the x axis; none: not measured
 };
 
@@ -29,7 +29,7 @@ struct LineChart {
 };
 std::string svg_of(const LineChart& chart);
 
-// Bars that start at 0, in groups; `decimals` of the figure over each.
+// Bars that start at 0, in groups; `decimals` of the figure over each. Wider than asked where the bars need it.
 struct BarChart {
   std::string unit;
   std::vector<std::string> places;           // of a group's bars

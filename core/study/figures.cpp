@@ -12,7 +12,6 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostCloseUps = 4;
 constexpr glm::ivec2 kSliceSize{480, 360}, kBodySize{480, 420}, kCloseSize{360, 300};
 constexpr double kCloseUp_mm = 80;       // height
 constexpr double kTurn = 0.35;           // radians: bodies are seen a little from the side
@@ -174,8 +173,10 @@ class Maker {
     add_close_up(cell, *body.volume, ratios, colours, frame);
   }
 
-  // One for each technique: its worst pose.
+  // One for each technique: its worst pose. Masses made exact leave ratios as they were.
   void add_close_up(const CellResult& cell, const LabelVolume& volume, const LabelVolume& ratios, const LabelColours& colours, PictureFrame frame) {
+    const Technique technique = study_.techniques[cell.cell.technique];
+    if (is_mass_exact(technique) && std::count(study_.techniques.begin(), study_.techniques.end(), plain_of(technique))) return;
     const auto region = worst_region(ratios);
     if (!region) return;
     const auto same = std::find_if(figures_.close_ups.begin(), figures_.close_ups.end(), [&](const CloseUp& one) { return one.cell->cell.technique == cell.cell.technique; });
@@ -185,7 +186,7 @@ class Maker {
     frame.size = kCloseSize;
     CloseUp close{&cell, *region, finished(slice_picture(volume, colours, frame), frame), finished(slice_picture(ratios, ratio_colours(), frame), frame), {}};
     if (same != figures_.close_ups.end()) *same = std::move(close);
-    else if (figures_.close_ups.size() < kMostCloseUps) figures_.close_ups.push_back(std::move(close));
+    else figures_.close_ups.push_back(std::move(close));
   }
 
   // As the slices are seen, a little from the side.

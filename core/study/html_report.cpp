@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/study/charts.h"
+#include "core/study/computing_sources.h"
 #include "core/study/machine.h"
 #include "core/study/page_style.h"
 #include "core/study/text.h"
@@ -19,6 +20,7 @@ namespace {
 constexpr std::size_t kMostBars = 6;      // of a group; more become their mean
 constexpr std::size_t kMostPanels = 12;   // tissues with a chart of their own
 constexpr double kNarrow = 300;           // width of such a chart
+constexpr double kWide = 460;             // width of one of two side by side
 
 std::string base64(const std::string& bytes) {
   static const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -56,6 +58,7 @@ class Page {
     worst();
     gates();
     tissues();
+    if (facts_.sar) sar(*facts_.sar);
     provenance();
     html_ += "</main>\n</body>\n</html>\n";
     return std::move(html_);
@@ -409,13 +412,54 @@ class Page {
         const CellResult* one = cell(figures_.spacing, p, t);
         rows += one ? "<td>" + signed_number(one->volume_percent, 2) + "</td>" : "<td class=\"none\">–</td>";
       }
-      table(rows + "</tr></tfoot>", escaped(study_.poses[p].name) + ", " + finest() + ".", "tissues");
+      table(rows + "</tr>" + mass_exact_row(p) + "</tfoot>", escaped(study_.poses[p].name) + ", " + finest() + ".", "tissues");
     }
+  }
+  // How many voxels changed hands where masses were made exact, below a pose's tissues.
+  std::string mass_exact_row(int pose) const {
+    if (std::none_of(study_.techniques.begin(), study_.techniques.end(), is_mass_exact)) return "";
+    std::string row = "<tr><th class=\"row\">Voxels that mass-exact moved</th><td></td><td></td>";
+    for (int t = 0; t < techniques(); ++t) {
+      const CellResult* one = cell(figures_.spacing, pose, t);
+      row += one && one->mass_exact_voxels ? "<td>" + grouped(*one->mass_exact_voxels) + "</td>" : "<td class=\"none\">–</td>";
+    }
+    return row + "</tr>";
   }
   static std::string change_cell(const CellResult* one, double label) {
     const TissueFigures* tissue = one ? tissue_of(*one, label) : nullptr;
     if (!tissue || !tissue->volume_percent) return "<td class=\"none\">–</td>";
     return "<td>" + signed_number(*tissue->volume_percent, 2) + "</td>";
+  }
+
+  void sar(const SarFigures& sar) {
+    section("Absorption of radio waves", "sar");
+    const SarFigures::Sphere& sphere = sar.sphere;
+    html_ += "<p>Specific absorption rate (SAR) of the posed bodies in a plane wave of " + number(sar.frequency_hz / 1e6) + " MHz and 1 W/m², polarized along " + escaped(sar.polarization) + " and going towards +" + escaped(sar.towards) +
+             ", computed by openEMS with cells of " + number(sar.cell_mm) + " mm. The same way gives a ball of muscle, with cells of " + number(sphere.cell_mm) + " mm, an uptake of " + fixed(1e6 * sphere.absorbed, 1) + " µW, where Mie's exact solution has " +
+             fixed(1e6 * sphere.by_mie, 1) + ": " + signed_number(sphere.difference_percent, 1) + " %" + (std::abs(sphere.difference_percent) > 10 ? "; <b>this is more than 10 %: do not trust what follows</b>" : "") + ".</p>\n";
+    if (!sar.outdated.empty()) {
+      std::string poses;
+      for (const std::string& pose : sar.outdated) poses += (poses.empty() ? "" : ", ") + pose;
+      html_ += "<p class=\"note\"><b>Left out:</b> SAR of " + escaped(poses) + " was computed from cells that are others now. Run <code>sar_openems.py study</code> again.</p>\n";
+    }
+    if (sar.bodies.empty()) return;
+    const CellResult& first = *sar.bodies.front().cell;
+    LineChart average{.title = "Average over all tissue", .unit = "mW/kg", .names = false, .width = int(kWide)}, peak{.title = "Largest average over 10 g", .unit = "mW/kg", .names = false, .width = int(kWide)};
+    Series averages{technique_name(first.cell.technique), look(first.cell.technique), {}}, peaks = averages;
+    std::string rows = "<thead><tr><th>Pose</th><th>Average<small>mW/kg</small></th><th>Peak over 10 g<small>mW/kg</small></th><th>Mass<small>kg</small></th><th>Cells of tissue</th><th>Time<small>s</small></th></tr></thead><tbody>";
+    for (const SarFigures::Body& body : sar.bodies) {
+      const std::string& pose = study_.poses[body.cell->cell.pose].name;
+      for (LineChart* chart : {&average, &peak}) chart->places.push_back(pose);
+      averages.values.push_back(1000 * body.average);
+      peaks.values.push_back(1000 * body.peak_10g);
+      rows += "<tr><th class=\"row\">" + escaped(pose) + "</th><td>" + fixed(1000 * body.average, 2) + "</td><td>" + fixed(1000 * body.peak_10g, 1) + "</td><td>" + fixed(body.mass_kg, 3) + "</td><td>" + grouped(body.cells) + "</td><td>" +
+              fixed(body.seconds, 0) + "</td></tr>";
+    }
+    average.series = {averages};
+    peak.series = {peaks};
+    figure("<div class=\"panels two\"><div>" + svg_of(average) + "</div><div>" + svg_of(peak) + "</div></div>", "SAR against pose, of the volumes posed by " + technique_name(first.cell.technique) + " at " + spacing_text(study_.spacings[first.cell.spacing]) +
+           ". Left: over the whole body. Right: the largest average over a cube of 10 g of tissue.");
+    table(rows + "</tbody>", "SAR of each pose.");
   }
 
   void provenance() {
@@ -425,7 +469,7 @@ class Page {
     for (const auto& [key, one] : at_) machines.insert(one->machine), seconds += one->cpu_seconds;
     std::string list;
     const auto fact = [&](const std::string& name, const std::string& value) { list += "<dt>" + name + "</dt><dd>" + value + "</dd>"; };
-    fact("Program", "Limber " LIMBER_VERSION);
+    fact("Program", "Limber " LIMBER_VERSION ", sources <code>" + std::string(computing_sources()).substr(0, 12) + "</code>");
     fact("Command", "<code>" + escaped(facts_.command) + "</code>");
     fact("Made on", escaped(facts_.date));
     for (const std::string& machine : machines) fact("Computed on", escaped(machine));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The study as one page: summary, figures, gates, tissues, provenance. Everything is in the file, nothing runs in it; it reads in
+// The study as one page: summary, figures, gates, tissues, SAR where it was computed, provenance. Everything is in the file, nothing runs in it; it reads in
 // a browser in light and dark, and printed on A4.
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/study/figures.h"
+#include "core/study/sar_figures.h"
 
 namespace limber {
 
@@ -14,6 +15,7 @@ struct ReportFacts {
   Path out;
   std::string command;  // that made it
   std::string date;     // of the report
+  std::optional<SarFigures> sar;
 };
 
 std::string html_report(const Study& study, const std::vector<CellResult>& cells, const StudyFigures& figures, const ReportFacts& facts);

@@ -60,8 +60,11 @@ svg .name{font-weight:600}
 .line.t0{stroke:var(--t0)}.line.t1{stroke:var(--t1)}.line.t2{stroke:var(--t2)}.line.t3{stroke:var(--t3)}.line.t-none{stroke:var(--text3);stroke-dasharray:3 3}
 .mark.t0,.bar.t0,svg .name.t0{fill:var(--t0)}.mark.t1,.bar.t1,svg .name.t1{fill:var(--t1)}.mark.t2,.bar.t2,svg .name.t2{fill:var(--t2)}.mark.t3,.bar.t3,svg .name.t3{fill:var(--t3)}
 .mark.t-none,svg .name.t-none{fill:var(--text3)}
+.line.exact{stroke-dasharray:6 3}svg .mark.exact{fill:var(--paper);stroke-width:1.8}svg .bar.exact{fill-opacity:.35;stroke-width:1.2}
+.mark.t0.exact,.bar.t0.exact{stroke:var(--t0)}.mark.t1.exact,.bar.t1.exact{stroke:var(--t1)}.mark.t2.exact,.bar.t2.exact{stroke:var(--t2)}.mark.t3.exact,.bar.t3.exact{stroke:var(--t3)}
 p.legend{display:flex;flex-wrap:wrap;gap:4px 22px;margin:0 0 10px;font-size:13.5px}
 .panels{display:grid;grid-template-columns:repeat(3,1fr);gap:18px 14px}
+.panels.two{grid-template-columns:repeat(2,1fr)}
 table.pictures{width:100%;table-layout:fixed;border-collapse:separate;border-spacing:4px}
 table.pictures thead th{border:0;text-align:center;padding:0 4px 2px}
 table.pictures thead th:first-child{width:112px}
@@ -104,6 +107,7 @@ th.pose{vertical-align:top}
  tfoot{display:table-row-group}
  figure>svg{max-width:135mm!important}
  .panels{grid-template-columns:repeat(3,1fr)!important;gap:10px 8px}
+ .panels.two{grid-template-columns:repeat(2,1fr)!important}
  figure.table figcaption{break-after:avoid}
  thead{display:table-header-group}
  tr,table.gates tbody{break-inside:avoid}

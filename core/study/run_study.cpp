@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/project/worker.h"
 #include "core/report/report.h"
+#include "core/study/computing_sources.h"
 #include "core/study/machine.h"
 #include "core/study/work_folder.h"
 #include "core/volume/volume_io.h"
@@ -78,7 +79,7 @@ class Pace {
   }
 
  private:
-  static double weight(int technique) { return technique >= static_cast<int>(Technique::Fem) ? 5 : 1; }
+  static double weight(int technique) { return plain_of(static_cast<Technique>(technique)) >= Technique::Fem ? 5 : 1; }
   std::array<double, kTechniques> seconds_{}, cells_{};
 };
 
@@ -143,7 +144,7 @@ class Runner {
 
   Json body_description(int spacing) {
     const std::optional<double> mm = study_.spacings[spacing];
-    Json json{{"version", LIMBER_VERSION}, {"made", "body/1"}, {"spacing_mm", mm ? Json(*mm) : Json()}, {"weights", study_.weights}};
+    Json json{{"sources", computing_sources()}, {"made", "body/1"}, {"spacing_mm", mm ? Json(*mm) : Json()}, {"weights", study_.weights}};
     if (!study_.phantom.empty()) {
       json["phantom"] = study_.phantom;
     } else {
@@ -227,7 +228,7 @@ class Runner {
   Json cell_job(const StudyCell& cell, const Body& body) const {
     const StudyPose& pose = study_.poses[cell.pose];
     const auto& [pose_file, motion, map] = poses_[cell.pose];
-    const Technique technique = study_.techniques[cell.technique];
+    const Technique technique = plain_of(study_.techniques[cell.technique]);
     const Path folder = Path("../../bodies") / body.name;
     Json job{{"command", "resample"}};
     add_body_words(job, folder);
@@ -242,6 +243,7 @@ class Runner {
     job["method"] = fem ? "fem" : word_of(technique);
     if (technique == Technique::FemContact) job["contact"] = true;
     if (fem) job["quality"] = study_.quality;
+    if (is_mass_exact(study_.techniques[cell.technique])) job["mass-exact"] = true;
     if (study_.fit_joints) job["fit-joints"] = true;
     if (study_.nearest) job["nearest"] = true;
     job.update({{"output", "posed.nrrd"}, {"report", "report.json"}, {"jacobian", "jacobian.nrrd"}, {"overlap", "overlap.nrrd"}});
@@ -250,7 +252,7 @@ class Runner {
 
   std::string cell_key(const StudyCell& cell, const Body& body, const Json& job) const {
     const auto& [pose, motion, map] = poses_[cell.pose];
-    return hash_of({{"version", LIMBER_VERSION}, {"made", "cell/1"}, {"body", body.key}, {"job", job}, {"inputs", {pose.sha256, motion.sha256, map.sha256}}});
+    return hash_of({{"sources", computing_sources()}, {"made", "cell/1"}, {"body", body.key}, {"job", job}, {"inputs", {pose.sha256, motion.sha256, map.sha256}}});
   }
 
   // Whole, and of this very cell.
@@ -304,7 +306,7 @@ class Runner {
     write_file_atomically(folder / "cell.json",
                           Json{{"schema", "limber-cell/1"}, {"key", key}, {"spacing_mm", study_.spacings[cell.spacing] ? Json(*study_.spacings[cell.spacing]) : Json()},
                                {"pose", study_.poses[cell.pose].name}, {"method", word_of(study_.techniques[cell.technique])}, {"pose_reached", reached},
-                               {"cpu_seconds", cpu}, {"wall_seconds", seconds}, {"machine", machine_text()}}.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+                               {"cpu_seconds", cpu}, {"wall_seconds", seconds}, {"machine", machine_text()}, {"sources", computing_sources()}}.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     folder.commit();
     return {};
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes the cells of a study into a folder, each by a worker that runs `limber job` on a file that stays with the result:
 // what the command line would do, with a process's own memory and processor time. Done cells are kept under a hash of all
-// that they depend on, and never computed again:
+// that they depend on, the program's own sources included, and never computed again:
 //   inputs/   rig, tissues, poses: copies that the jobs refer to
 //   bodies/   volume and weights at each spacing
 //   cells/    job.json, report.json (limber-report/1), posed.nrrd, ratio.nrrd, overlap.nrrd, cell.json

@@ -20,8 +20,14 @@ constexpr std::uint64_t kLargestDescription = 1 << 20;
 constexpr std::size_t kMostCells = 100000;
 constexpr std::size_t kLongestName = 60;
 
-constexpr std::array<std::pair<const char*, const char*>, kTechniques> kNames = {
+constexpr std::array<std::pair<const char*, const char*>, kPlainTechniques> kNames = {
     {{"lbs", "Linear blend"}, {"dqs", "Dual quaternions"}, {"fem", "FEM"}, {"fem-contact", "FEM with contact"}}};
+
+std::vector<Technique> plain_techniques() {
+  std::vector<Technique> techniques;
+  for (int t = 0; t < kPlainTechniques; ++t) techniques.push_back(static_cast<Technique>(t));
+  return techniques;
+}
 
 // Reads a value of the description, and says which key is wrong.
 class Reader {
@@ -98,6 +104,8 @@ class Reader {
     return pose;
   }
 
+  std::vector<Technique> techniques(const std::vector<std::string>& words) const { return techniques_of(words, path_.string() + ", methods"); }
+
   GateLimits gates(const Json& value) const {
     GateLimits limits;
     if (!value.is_object()) refuse("this should be an object", "gates", R"(write "gates": {"mass_percent": 1})");
@@ -144,14 +152,11 @@ void read_cells(const Reader& read, const Json& json, Study& study) {
   if (!json.contains("poses")) read.refuse("the study has no poses", "", R"(add "poses": [{"name": "+45", "flex": ["Forearm=45"]}])");
   for (const Json& one : read.list(json["poses"], "poses")) study.poses.push_back(read.pose(one, study.poses.size()));
   if (json.contains("methods")) {
-    for (const Json& one : read.list(json["methods"], "methods")) {
-      const std::string word = read.text(one, "methods");
-      const auto found = std::find_if(kNames.begin(), kNames.end(), [&](const auto& name) { return word == name.first; });
-      if (found == kNames.end()) read.refuse("there is no such method: " + word, "methods", "use lbs, dqs, fem, fem-contact");
-      study.techniques.push_back(static_cast<Technique>(found - kNames.begin()));
-    }
+    std::vector<std::string> words;
+    for (const Json& one : read.list(json["methods"], "methods")) words.push_back(read.text(one, "methods"));
+    study.techniques = read.techniques(words);
   } else {
-    for (int t = 0; t < kTechniques; ++t) study.techniques.push_back(static_cast<Technique>(t));
+    study.techniques = plain_techniques();
   }
 
   const auto check_distinct = [&](auto values, const char* key) {
@@ -159,7 +164,6 @@ void read_cells(const Reader& read, const Json& json, Study& study) {
     if (std::adjacent_find(values.begin(), values.end()) != values.end()) read.refuse("something stands there twice", key, "name each once");
   };
   check_distinct(study.spacings, "spacings_mm");
-  check_distinct(study.techniques, "methods");
   std::vector<std::string> names;
   for (const StudyPose& pose : study.poses) names.push_back(pose.name);
   check_distinct(names, "poses, name");
@@ -182,8 +186,20 @@ std::map<double, Path> real_arms(const Path& folder) {
 
 }  // namespace
 
-std::string word_of(Technique technique) { return kNames[static_cast<int>(technique)].first; }
-std::string name_of(Technique technique) { return kNames[static_cast<int>(technique)].second; }
+std::string word_of(Technique technique) { return kNames[static_cast<int>(plain_of(technique))].first + std::string(is_mass_exact(technique) ? "-mass-exact" : ""); }
+std::string name_of(Technique technique) { return kNames[static_cast<int>(plain_of(technique))].second + std::string(is_mass_exact(technique) ? ", mass-exact" : ""); }
+
+std::vector<Technique> techniques_of(const std::vector<std::string>& words, const std::string& where) {
+  std::vector<Technique> techniques;
+  for (const std::string& word : words) {
+    int t = 0;
+    while (t < kTechniques && word_of(static_cast<Technique>(t)) != word) ++t;
+    if (t == kTechniques) throw Error("there is no such method: " + word, where, "use lbs, dqs, fem, fem-contact, or one of them with -mass-exact behind it");
+    if (std::count(techniques.begin(), techniques.end(), static_cast<Technique>(t))) throw Error("something stands there twice", where, "name each once");
+    techniques.push_back(static_cast<Technique>(t));
+  }
+  return techniques;
+}
 
 std::string spacing_text(const std::optional<double>& spacing) {
   if (!spacing) return "as it is";
@@ -204,6 +220,8 @@ Study read_study(const Path& path) {
   study.quality = read.text(json, "quality", study.quality, {"draft", "normal", "fine"});
   study.fit_joints = read.flag(json, "fit_joints");
   study.nearest = read.flag(json, "nearest");
+  if (study.nearest && std::any_of(study.techniques.begin(), study.techniques.end(), is_mass_exact))
+    read.refuse("masses are made exact by what a voxel is nearly, which \"nearest\" does not ask", "nearest", "leave one of the two out");
   if (json.contains("gates")) study.gates = read.gates(json["gates"]);
   return study;
 }
@@ -228,7 +246,7 @@ Study paper_study(const Path& folder) {
     const std::string text = "+" + std::to_string(degrees);
     study.poses.push_back({.name = text + "°", .flex = degrees ? std::vector<std::string>{"Forearm=" + std::to_string(degrees)} : std::vector<std::string>{}});
   }
-  for (int t = 0; t < kTechniques; ++t) study.techniques.push_back(static_cast<Technique>(t));
+  study.techniques = plain_techniques();
   return study;
 }
 

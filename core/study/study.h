@@ -2,10 +2,10 @@
 // A study: one body at some spacings, in some poses, by some techniques. Each combination is a cell, which is one
 // `limber resample`. Described in JSON; paths are relative to the description:
 //   {"name"?: "Elbow", "volume": "arm.nrrd" | "phantom": "arm"|"body", "rig"?: "rig.json", "tissues"?: "t.json", "bones"?: [111, 209],
-//    "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4], "methods"?: ["lbs", "dqs", "fem", "fem-contact"],
+//    "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4], "methods"?: ["lbs", "dqs", "fem", "fem-contact", "fem-mass-exact"...],
 //    "poses": [{"name": "+45", "flex": ["Forearm=45"]}, {"name": "curl", "motion": "curl.bvh", "frame": 12, "map"?, "up"?}, {"name": "mine", "pose": "p.json"}],
 //    "quality"?: "draft"|"normal"|"fine", "fit_joints"?: true, "nearest"?: true, "gates"?: {"mass_percent": 1, ...}}
-// Without spacings the volume is taken as it is; a phantom brings its own rig and tissues.
+// Without spacings the volume is taken as it is, without methods the four plain ones are; a phantom brings its own rig and tissues.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,15 @@
 
 namespace limber {
 
-enum class Technique { LinearBlend, DualQuaternion, Fem, FemContact };
-constexpr int kTechniques = 4;
-std::string word_of(Technique technique);  // "fem-contact": in descriptions, folders and tables
-std::string name_of(Technique technique);  // "FEM with contact"
+// A method, and each again with masses made exact afterwards: a row of its own, never silently part of the method's.
+enum class Technique { LinearBlend, DualQuaternion, Fem, FemContact, LinearBlendMassExact, DualQuaternionMassExact, FemMassExact, FemContactMassExact };
+constexpr int kTechniques = 8, kPlainTechniques = 4;
+constexpr bool is_mass_exact(Technique technique) { return static_cast<int>(technique) >= kPlainTechniques; }
+constexpr Technique plain_of(Technique technique) { return static_cast<Technique>(static_cast<int>(technique) % kPlainTechniques); }
+std::string word_of(Technique technique);  // "fem-contact", "fem-mass-exact": in descriptions, folders and tables
+std::string name_of(Technique technique);  // "FEM with contact", "FEM, mass-exact"
+// Of words. Throws Error naming `where` for one that is none, or stands there twice.
+std::vector<Technique> techniques_of(const std::vector<std::string>& words, const std::string& where);
 
 struct StudyPose {
   std::string name;

@@ -24,8 +24,9 @@ void write_results(const Study& study, const std::vector<CellOutcome>& outcomes,
   for (const CellOutcome& outcome : outcomes) cells.push_back(read_result(study, outcome));
   write_file_atomically(out / "cells.csv", cells_csv(study, cells));
   write_file_atomically(out / "cells.json", cells_json(study, cells));
+  const std::optional<SarFigures> sar = read_sar(out, study, cells);
   const StudyFigures figures = make_figures(study, cells, start, progress);
-  write_file_atomically(out / "report.html", html_report(study, cells, figures, {out, command, today()}));
+  write_file_atomically(out / "report.html", html_report(study, cells, figures, {out, command, today(), sar}));
 }
 
 }  // namespace limber

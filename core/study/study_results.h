@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes what a study found: cells.csv, cells.json and report.html.
+// Writes what a study found: cells.csv, cells.json and report.html, which shows what sar.json there holds, too.
 #pragma once
 
 #include "core/base/progress.h"

@@ -143,6 +143,49 @@ TEST_CASE("experiment: a study gives tables and one self-contained page, and kil
   CHECK(read_file(one / "posed.nrrd") == before);
 }
 
+TEST_CASE("experiment: masses made exact are a technique of their own, and SAR that was computed of the cells is a figure of the page") {
+  const TemporaryFolder folder;
+  const Path study = folder / "study.json", out = folder / "out";
+  describe(study, R"(["lbs"])");
+  const std::vector<std::string> command{"experiment", study, "-o", out, "--methods", "dqs,dqs-mass-exact"};
+  REQUIRE(run_limber(command).exit_code == 0);
+  const json cells = cells_of(out)["cells"];
+  REQUIRE(cells.size() == 4);
+  CHECK_FALSE(cells[2]["report"].contains("mass_exact"));
+  const json& exact = cells[3]["report"]["mass_exact"];
+  CHECK(exact["changed_voxels"] > 0);
+  for (const json& tissue : exact["tissues"]) CHECK(std::abs(tissue["voxels_after"].get<int>() - tissue["voxels_wanted"].get<int>()) <= std::abs(tissue["voxels_before"].get<int>() - tissue["voxels_wanted"].get<int>()));
+  const std::string page = read_file(out / "report.html");
+  CHECK(page.find("Dual quaternions, mass-exact") != page.npos);
+  CHECK(page.find("Voxels that mass-exact moved") != page.npos);
+  CHECK(page.find("id=\"sar\"") == page.npos);
+
+  json sar{{"schema", "limber-sar/1"}, {"frequency_hz", 9e8}, {"cell_mm", 6}, {"polarization", "z"}, {"towards", "y"}, {"spacing_mm", 8}, {"method", "dqs"},
+           {"sphere", {{"cell_mm", 6}, {"absorbed_w", 0.0102}, {"absorbed_by_mie_w", 0.01}, {"difference_percent", 2.0}}}};
+  for (const int i : {2, 0}) sar["poses"].push_back({{"pose", cells[i]["pose"]}, {"key", cells[i]["key"]}, {"sar_average_w_per_kg", 0.0123 + 1e-3 * i}, {"sar_peak_10g_w_per_kg", 0.0667}, {"mass_kg", 2.5}, {"seconds", 68}, {"cells", 12000}});
+  const auto page_with = [&](const json& of) {
+    std::ofstream(out / "sar.json") << of;
+    const auto run = run_limber(command);
+    CHECK(count(run.err, ": there already") == 4);
+    return run.exit_code == 0 ? read_file(out / "report.html") : run.err;
+  };
+  const std::string shown = page_with(sar);
+  for (const char* part : {"id=\"sar\"", "900 MHz", "+2.0 %", "<td>12.30</td><td>66.7</td>", "<td>14.30</td>", "Largest average over 10 g"}) CHECK_MESSAGE(shown.find(part) != shown.npos, part);
+  CHECK(shown.find("<td>12.30</td>") < shown.find("<td>14.30</td>"));
+  CHECK(shown.find("Left out") == shown.npos);
+  sar["sphere"]["difference_percent"] = -12;
+  sar["poses"][0]["key"] = "of another program";
+  const std::string doubted = page_with(sar);
+  for (const char* part : {"do not trust", "Left out:</b> SAR of +40", "<td>12.30</td>"}) CHECK_MESSAGE(doubted.find(part) != doubted.npos, part);
+  CHECK(doubted.find("<td>14.30</td>") == doubted.npos);
+  for (const json& damaged : {json("text"), json{{"schema", "limber-sar/1"}}}) {
+    const std::string said = page_with(damaged);
+    INFO(said);
+    CHECK(said.find("sar.json") != said.npos);
+    CHECK(said.find("limber: ") != said.npos);
+  }
+}
+
 TEST_CASE("experiment: shards compute each their own cells, and a run without one collects them") {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", out = folder / "out";

@@ -27,21 +27,36 @@ nlohmann::json read(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth, a posed arm's peak over 10 g lies above its average") {
+TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth, a study's posed arm has a peak over 10 g above its average, and the study's page shows both") {
   if (!can_simulate()) {
     MESSAGE("SKIPPED: openEMS, or python's h5py, numpy or scipy, is not installed");
     return;
   }
   const TemporaryFolder folder;
-  const auto ball = sar({"sphere", "--cell", "8", "-o", folder / "ball.json"});
-  CHECK_MESSAGE(ball.exit_code == 0, ball.out, ball.err);
-  CHECK(std::abs(read(folder / "ball.json")["difference_percent"].get<double>()) < 10);
+  std::ofstream(folder / "study.json") << R"({"phantom": "arm", "spacings_mm": [8], "methods": ["dqs"], "poses": [{"name": "bent", "flex": ["Forearm=60"]}]})";
+  const std::vector<std::string> experiment{"experiment", folder / "study.json", "-o", folder / "out"};
+  REQUIRE(run_limber(experiment).exit_code == 0);
+  const auto study = sar({"study", folder / "out", "--method", "dqs", "--limber", LIMBER_PROGRAM});
+  REQUIRE_MESSAGE(study.exit_code == 0, study.out, study.err);
+  const auto figures = read(folder / "out" / "sar.json");
+  CHECK(std::abs(figures["sphere"]["difference_percent"].get<double>()) < 10);
+  REQUIRE(figures["poses"].size() == 1);
+  CHECK(figures["poses"][0]["pose"] == "bent");
+  CHECK(figures["poses"][0]["cell_mm"] == 8);
+  CHECK(figures["poses"][0]["sar_peak_10g_w_per_kg"] > figures["poses"][0]["sar_average_w_per_kg"]);
+  REQUIRE(run_limber(experiment).exit_code == 0);
+  std::ifstream page(folder / "out" / "report.html");
+  const std::string html{std::istreambuf_iterator<char>(page), {}};
+  CHECK(html.find("id=\"sar\"") != html.npos);
+  CHECK(html.find("Left out") == html.npos);
+  const auto none = sar({"study", folder / "out", "--limber", LIMBER_PROGRAM});
+  CHECK(none.exit_code == 1);
+  CHECK(none.err.find("no such cells") != none.err.npos);
 
-  REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
-  REQUIRE(run_limber({"resample", folder / "volume.nrrd", "--rig", folder / "rig.json", "--tissues", folder / "tissues.json", "--flex", "Forearm=60", "--method", "dqs", "-o", folder / "posed.nrrd"}).exit_code == 0);
-  const auto deck = run_limber({"convert", folder / "posed.nrrd", folder / "elbow.xml", "--frequency", "900e6"});
+  const auto posed = folder / "out" / read(folder / "out" / "cells.json")["cells"][0]["folder"].get<std::string>() / "posed.nrrd";
+  const auto deck = run_limber({"convert", posed, folder / "elbow.xml", "--frequency", "900e6"});
   REQUIRE_MESSAGE(deck.exit_code == 0, deck.err);
-  const auto arm = sar({"deck", folder / "elbow.xml", "-o", folder / "sar.json", "--plot", folder / "sar.svg"});
+  const auto arm = sar({"deck", folder / "elbow.xml", "--cell", "12", "-o", folder / "sar.json", "--plot", folder / "sar.svg"});
   REQUIRE_MESSAGE(arm.exit_code == 0, arm.out, arm.err);
   const auto of_elbow = read(folder / "sar.json")["elbow"];
   CHECK(of_elbow["mass_kg"].get<double>() > 1);

@@ -7,6 +7,8 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/study/computing_sources.h"
 #include "core/study/run_study.h"
 #include "tests/support/program.h"
 
@@ -71,6 +73,41 @@ TEST_CASE("study: a description says body, poses, techniques and spacings, and w
   CHECK(cells_of(few).size() == 4);
 }
 
+TEST_CASE("study: each method has a mass-exact variant, which is there only where it is asked for") {
+  for (const Technique technique : paper_study().techniques) CHECK_FALSE(is_mass_exact(technique));
+  std::vector<std::string> words;
+  for (int t = 0; t < kTechniques; ++t) {
+    const auto technique = static_cast<Technique>(t);
+    words.push_back(word_of(technique));
+    CHECK(is_mass_exact(technique) == words.back().ends_with("-mass-exact"));
+    CHECK(word_of(technique) == word_of(plain_of(technique)) + (is_mass_exact(technique) ? "-mass-exact" : ""));
+  }
+  const std::vector<Technique> all = techniques_of(words, "");
+  REQUIRE(all.size() == std::size_t(kTechniques));
+  CHECK(std::is_sorted(all.begin(), all.end()));
+  CHECK(name_of(Technique::FemContactMassExact) == "FEM with contact, mass-exact");
+}
+
+TEST_CASE("study: cells are kept by the sources that compute them: a change of any of them is another hash, the order in which they are named is not") {
+  CHECK(std::string(computing_sources()).size() == 64);
+  if (!test::has_program("cmake")) {
+    MESSAGE("SKIPPED: cmake is not installed");
+    return;
+  }
+  const test::TemporaryFolder folder;
+  const auto hash = [&](const std::string& a, const std::string& b, const std::string& files) {
+    std::ofstream(folder / "a.h") << a;
+    std::ofstream(folder / "b.cpp") << b;
+    REQUIRE(test::run_program("cmake", {"-DFOLDER=" + folder.path().string(), "-DOUT=" + (folder / "out.cpp").string(), "-DFILES=" + files, "-P", LIMBER_SOURCE_DIR "/core/study/hash_sources.cmake"}).exit_code == 0);
+    return read_file(folder / "out.cpp");
+  };
+  const std::string first = hash("int a;", "int b;", "a.h,b.cpp");
+  CHECK(hash("int a;", "int b;", "b.cpp,a.h") == first);
+  CHECK(hash("int a; ", "int b;", "a.h,b.cpp") != first);
+  CHECK(hash("int b;", "int a;", "a.h,b.cpp") != first);
+  CHECK(hash("int a;", "int b;", "a.h") != first);
+}
+
 TEST_CASE("study: a description that is wrong is refused in one line that names the key") {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "v.nrrd") << "x";
@@ -93,6 +130,9 @@ TEST_CASE("study: a description that is wrong is refused in one line that names 
            {"{" + body + R"(, "poses": [{"name": "a", "frame": 3}]})", "motion"},
            {"{" + body + R"(, "poses": [{"name": "a", "flex": [3]}]})", "flex"},
            {"{" + body + ", " + pose + R"(, "methods": ["spline"]})", "spline"},
+           {"{" + body + ", " + pose + R"(, "methods": ["fem-mass"]})", "fem-mass"},
+           {"{" + body + ", " + pose + R"(, "methods": ["fem", "dqs", "fem"]})", "twice"},
+           {"{" + body + ", " + pose + R"(, "methods": ["dqs-mass-exact"], "nearest": true})", "nearest"},
            {"{" + body + ", " + pose + R"(, "spacings_mm": [0]})", "spacings_mm"},
            {"{" + body + ", " + pose + R"(, "spacings_mm": [2, 2]})", "twice"},
            {"{" + body + ", " + pose + R"(, "spacings_mm": "2"})", "spacings_mm"},

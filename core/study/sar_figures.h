@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What a simulation found of a study's posed bodies: OUT/sar.json, which `assets/examples/sar_openems.py study OUT` writes there:
+//   {"schema": "limber-sar/1", "frequency_hz", "cell_mm", "polarization", "towards", "spacing_mm", "method",
+//    "poses": [{"pose", "key", "sar_average_w_per_kg", "sar_peak_10g_w_per_kg", "mass_kg", "cells", "seconds"}],
+//    "sphere": {"cell_mm", "absorbed_w", "absorbed_by_mie_w", "difference_percent"}}
+// SAR is for an incident power density of 1 W/m2. `key` is that of the cell it was computed from.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/study/cell_result.h"
+
+namespace limber {
+
+struct SarFigures {
+  struct Body {
+    const CellResult* cell = nullptr;
+    double average = 0, peak_10g = 0;  // W/kg
+    double mass_kg = 0, seconds = 0;
+    std::int64_t cells = 0;
+  };
+  struct Sphere {
+    double cell_mm = 0, absorbed = 0, by_mie = 0, difference_percent = 0;  // W
+  };
+  double frequency_hz = 0, cell_mm = 0;
+  std::string polarization, towards;
+  std::vector<Body> bodies;          // by pose, all of one spacing and technique
+  std::vector<std::string> outdated;  // poses whose cells are others now: not among the bodies
+  Sphere sphere;
+};
+
+// None where the file is not there.
+//   throws Error where it is damaged
+std::optional<SarFigures> read_sar(const Path& out, const Study& study, const std::vector<CellResult>& cells);
+
+}  // namespace limber
