@@ -73,7 +73,7 @@ void add_convert(CLI::App& app) {
   auto* command = app.add_subcommand("convert", "a volume, rig or label table in another format, or a volume as surfaces or as what a simulation takes, by file name");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "a volume, a folder with DICOM images, a rig or a label table")->required();
-  command->add_option("OUT", options->out, "its extension says the format: volumes .nrrd .mha .nii.gz .txt ..., surfaces .obj .stl .ply, simulations .xml (openEMS) .csxcad.h5 .gprmax.h5 .dat (ICRP 110)")->required();
+  command->add_option("OUT", options->out, "its extension says the format: volumes .nrrd .mha .nii.gz .txt ..., surfaces .obj .glb .stl .ply, simulations .xml (openEMS) .csxcad.h5 .gprmax.h5 .dat (ICRP 110)")->required();
   add_material_options(*command, options->material);
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
   command->callback([options] { convert(*options); });

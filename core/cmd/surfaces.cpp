@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber surfaces VOLUME -o OUT.obj|stl|ply [--tissues T] [--only A,B] [--relax N]
+// limber surfaces VOLUME -o OUT.obj|glb|stl|ply [--tissues T] [--only A,B] [--relax N]
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -47,7 +47,7 @@ void print_surfaces(const LabelSurfaces& all, const LabelVolume& volume, const T
 }  // namespace
 
 void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, const SurfaceChoice& choice, const std::string& output, Progress& progress) {
-  if (!is_surface_path(output)) throw Error("surfaces cannot be written under this name", output, "end it in .obj, .stl or .ply");
+  if (!is_surface_path(output)) throw Error("surfaces cannot be written under this name", output, std::string("end it in ") + kSurfaceEndings);
   LabelSurfaces all = label_surfaces(volume, choice.settings, progress);
   keep_chosen(all, tissues, choice.tissues);
   if (all.surfaces.empty()) throw Error("there is no tissue", output, "give a volume with labels");
@@ -65,7 +65,7 @@ void add_surfaces(CLI::App& app) {
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
   command->add_option("--only", options->choice.tissues, "tissues by name or label (default: all)")->delimiter(',')->type_name("A,B");
   command->add_option("--relax", options->choice.settings.relaxations, "steps of smoothing (default: 5; more is smoother, but what is thin loses volume; 0 keeps voxels and volumes as they are)")->check(CLI::Range(0, 1000));
-  command->add_option("-o,--output", options->output, "OUT.obj (one file), OUT.stl or OUT.ply (a file a tissue: OUT-NAME.stl)")->required();
+  command->add_option("-o,--output", options->output, "OUT.obj or OUT.glb (one file), OUT.stl or OUT.ply (a file a tissue: OUT-NAME.stl)")->required();
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
   command->callback([options] {
     check_place(options->output);

@@ -6,7 +6,10 @@
 #include <cstring>
 #include <set>
 
+#include <nlohmann/json.hpp>
+
 #include "core/base/error.h"
+#include "core/mesh/glb.h"
 #include "core/volume/header_text.h"
 
 namespace limber {
@@ -100,23 +103,68 @@ std::string obj(const LabelSurfaces& all, const std::vector<std::string>& names)
   }
   return text + faces;
 }
+std::vector<glm::vec3> places_of(const LabelSurfaces& all, const LabelSurface& surface) {
+  std::vector<glm::vec3> places;
+  for (const int vertex : surface.vertex) places.emplace_back(gltf_from_lps(all.V[vertex]));
+  return places;
+}
+
+// At a vertex the mean over its triangles, by their area.
+std::vector<glm::vec3> normals_of(const std::vector<glm::vec3>& places, const LabelSurface& surface) {
+  std::vector<glm::vec3> normals(places.size(), glm::vec3(0));
+  for (const glm::ivec3& f : surface.F) {
+    const glm::vec3 area = glm::cross(places[f.y] - places[f.x], places[f.z] - places[f.x]);
+    for (int i = 0; i < 3; ++i) normals[f[i]] += area;
+  }
+  for (glm::vec3& normal : normals) {
+    const float length = glm::length(normal);
+    normal = length > 0 ? normal / length : glm::vec3(0, 1, 0);
+  }
+  return normals;
+}
+
+// A node, a mesh and a material each; the label as files have it among the node's extras.
+std::string glb(const LabelSurfaces& all, const TissueTable& tissues) {
+  using Json = nlohmann::ordered_json;
+  GlbData data;
+  Json json = {{"asset", {{"version", "2.0"}, {"generator", "Limber"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", Json::array()}}})}};
+  for (const LabelSurface& surface : all.surfaces) {
+    const Tissue* tissue = tissues.find(surface.label);
+    const std::string name = title_of(surface, tissues);
+    const std::vector<glm::vec3> places = places_of(all, surface);
+    std::vector<std::uint32_t> corners;
+    for (const glm::ivec3& f : surface.F)
+      for (int i = 0; i < 3; ++i) corners.push_back(static_cast<std::uint32_t>(f[i]));
+    const glm::dvec3 colour = linear_colour(tissue ? tissue->colour : glm::vec3(0.7f));
+    const Json attributes = {{"POSITION", data.add_places(places)}, {"NORMAL", data.add(normals_of(places, surface), GlbData::Use::Vertices)}};
+    const std::size_t number = json["scenes"][0]["nodes"].size();
+    json["meshes"].push_back({{"name", name}, {"primitives", Json::array({{{"attributes", attributes}, {"indices", data.add(corners, GlbData::Use::Indices)}, {"material", number}}})}});
+    json["materials"].push_back({{"name", name}, {"pbrMetallicRoughness", {{"baseColorFactor", {colour.r, colour.g, colour.b, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}});
+    json["nodes"].push_back({{"name", name}, {"mesh", number}, {"extras", {{"label", tissue ? tissue->file_value : surface.label}}}});
+    json["scenes"][0]["nodes"].push_back(number);
+  }
+  return data.file(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+bool is_one_file(const Path& path) { return extension_of(path) == ".obj" || extension_of(path) == ".glb"; }
 }  // namespace
 
 bool is_surface_path(const Path& path) {
   const std::string extension = extension_of(path);
-  return extension == ".obj" || extension == ".stl" || extension == ".ply";
+  return is_one_file(path) || extension == ".stl" || extension == ".ply";
 }
 
 std::vector<Path> surface_paths(const LabelSurfaces& all, const TissueTable& tissues, const Path& path) {
-  if (extension_of(path) == ".obj") return {path};
+  if (is_one_file(path)) return {path};
   std::vector<Path> paths;
   for (const std::string& word : words_for(all, tissues)) paths.push_back(path.parent_path() / (path.stem().string() + "-" + word + path.extension().string()));
   return paths;
 }
 
 void write_surfaces(const LabelSurfaces& all, const TissueTable& tissues, const Path& path) {
-  if (!is_surface_path(path)) throw Error("surfaces cannot be written under this name", path.string(), "end it in .obj, .stl or .ply");
+  if (!is_surface_path(path)) throw Error("surfaces cannot be written under this name", path.string(), std::string("end it in ") + kSurfaceEndings);
   if (extension_of(path) == ".obj") return write_file_atomically(path, obj(all, words_for(all, tissues)));
+  if (extension_of(path) == ".glb") return write_file_atomically(path, glb(all, tissues));
   const std::vector<Path> paths = surface_paths(all, tissues, path);
   for (std::size_t s = 0; s < paths.size(); ++s) {
     const LabelSurface& surface = all.surfaces[s];

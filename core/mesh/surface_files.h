@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Surfaces of tissues as files: Wavefront OBJ, all tissues in one file as groups that share their vertices; STL (binary) and PLY
-// (binary, with the tissue's colour), a file a tissue. World coordinates (LPS), millimetres.
+// Surfaces of tissues as files: Wavefront OBJ, all tissues in one file as groups that share their vertices; glTF (.glb), all in one
+// file, a node with a name and a colour each; STL (binary) and PLY (binary, with the tissue's colour), a file a tissue. World
+// coordinates (LPS), millimetres; those of glTF are its own [glb.h].
 #pragma once
 
 #include <string>
@@ -11,7 +12,8 @@
 
 namespace limber {
 
-bool is_surface_path(const Path& path);  // .obj, .stl, .ply
+bool is_surface_path(const Path& path);  // .obj, .glb, .stl, .ply
+constexpr const char* kSurfaceEndings = ".obj, .glb, .stl or .ply";
 
 // What is written for OUT: OUT itself, or NAME-TISSUE.stl for each surface, in its order.
 std::vector<Path> surface_paths(const LabelSurfaces& all, const TissueTable& tissues, const Path& path);

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/mesh/glb.h"
 #include "core/mesh/surface.h"
 #include "core/skin/skin_at.h"
 
@@ -18,60 +18,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;  // component types [glTF 2.0, 3.6.2.2]
-constexpr int kVertices = 34962, kIndices = 34963;                        // targets of buffer views
-constexpr double kLongestSide = 400;                                      // steps
+constexpr double kLongestSide = 400;  // steps
 
-// The description and the data that it points into.
-class Glb {
- public:
+// The description and the data that it points to.
+struct Glb {
   Json json;
-
-  // An accessor of its own view; returns its index.
-  template <class T>
-  int add(const std::vector<T>& values, int component, const char* type, int target = 0) {
-    data_.resize((data_.size() + 3) / 4 * 4, '\0');
-    Json view = {{"buffer", 0}, {"byteOffset", data_.size()}, {"byteLength", values.size() * sizeof(T)}};
-    if (target) view["target"] = target;
-    data_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-    json["bufferViews"].push_back(view);
-    json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1}, {"componentType", component}, {"count", values.size()}, {"type", type}});
-    return static_cast<int>(json["accessors"].size()) - 1;
-  }
-  Json& accessor(int index) { return json["accessors"][static_cast<std::size_t>(index)]; }
-
-  std::string bytes() {
-    data_.resize((data_.size() + 3) / 4 * 4, '\0');
-    json["buffers"] = Json::array({{{"byteLength", data_.size()}}});
-    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    const std::uint64_t total = 12 + 8 + text.size() + 8 + data_.size();
-    if (total > std::numeric_limits<std::uint32_t>::max()) throw Error("the file would be larger than 4 GB, which glTF cannot hold", "glTF export", "trim the clips");
-    std::string out = "glTF";
-    const auto put = [&](std::uint64_t value) {
-      for (int i = 0; i < 4; ++i) out += static_cast<char>(value >> 8 * i & 255);
-    };
-    put(2);
-    put(total);
-    put(text.size());
-    out += "JSON" + text;
-    put(data_.size());
-    return out.append("BIN\0", 4) + data_;
-  }
-
- private:
-  std::string data_;
+  GlbData data;
 };
 
-struct Vec3 {
-  float x, y, z;
-};
-struct Vec4 {
-  float x, y, z, w;
-};
-Vec3 vec3(const glm::dvec3& p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
-Vec4 vec4(const glm::dquat& q) { return {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)}; }
-Json json_of(const Vec3& v) { return {v.x, v.y, v.z}; }
+Json json_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+glm::vec4 curve_value(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
 
 void check(const GltfBody& body, const TissueVoxels& tissue) {
   const bool same_bones = std::equal(body.weights.bones().begin(), body.weights.bones().end(), body.armature.bones.begin(), body.armature.bones.end(),
@@ -82,15 +38,16 @@ void check(const GltfBody& body, const TissueVoxels& tissue) {
 
 // ---- the mesh
 
-double linear(float channel) { return channel <= 0.04045 ? channel / 12.92 : std::pow((channel + 0.055) / 1.055, 2.4); }
-
 // The colour of the tissue that lies under most of the surface.
 Json colour_under(const std::vector<SkinAt>& skin, const TissueTable& tissues) {
   std::vector<std::int64_t> count(1 << 16, 0);
   for (const SkinAt& at : skin) ++count[at.label];
   const auto label = static_cast<Label>(std::max_element(count.begin(), count.end()) - count.begin());
   for (const Tissue& tissue : tissues.tissues)
-    if (tissue.label == label) return {linear(tissue.colour.r), linear(tissue.colour.g), linear(tissue.colour.b), 1.0};
+    if (tissue.label == label) {
+      const glm::dvec3 colour = linear_colour(tissue.colour);
+      return {colour.r, colour.g, colour.b, 1.0};
+    }
   return {0.8, 0.8, 0.8, 1.0};
 }
 
@@ -105,15 +62,9 @@ void add_mesh(Glb& glb, const GltfBody& body, const TissueVoxels& tissue, const 
   progress.update("surface", 0.5);
   const std::vector<SkinAt> skin = skin_at(body.volume, tissue, body.weights, mesh.V);
 
-  std::vector<Vec3> places, normals;
-  Vec3 low = vec3(gltf_from_lps(mesh.V[0])), high = low;
-  for (const glm::dvec3& v : mesh.V) {
-    const Vec3 p = vec3(gltf_from_lps(v));
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    places.push_back(p);
-  }
-  for (const glm::dvec3& n : vertex_normals(mesh)) normals.push_back(vec3({n.x, n.z, -n.y}));
+  std::vector<glm::vec3> places, normals;
+  for (const glm::dvec3& v : mesh.V) places.emplace_back(gltf_from_lps(v));
+  for (const glm::dvec3& n : vertex_normals(mesh)) normals.emplace_back(n.x, n.z, -n.y);
   std::vector<std::array<std::uint16_t, 4>> joints, weights;
   for (const SkinAt& at : skin) {
     joints.push_back(at.influence.bone);
@@ -123,17 +74,14 @@ void add_mesh(Glb& glb, const GltfBody& body, const TissueVoxels& tissue, const 
   for (const glm::ivec3& f : mesh.F) corners.insert(corners.end(), {static_cast<std::uint32_t>(f.x), static_cast<std::uint32_t>(f.y), static_cast<std::uint32_t>(f.z)});
 
   Json attributes;
-  const int position = glb.add(places, kFloat, "VEC3", kVertices);
-  glb.accessor(position)["min"] = json_of(low);
-  glb.accessor(position)["max"] = json_of(high);
-  attributes["POSITION"] = position;
-  attributes["NORMAL"] = glb.add(normals, kFloat, "VEC3", kVertices);
-  attributes["JOINTS_0"] = glb.add(joints, kUnsignedShort, "VEC4", kVertices);
-  const int weight = glb.add(weights, kUnsignedShort, "VEC4", kVertices);
-  glb.accessor(weight)["normalized"] = true;
+  attributes["POSITION"] = glb.data.add_places(places);
+  attributes["NORMAL"] = glb.data.add(normals, GlbData::Use::Vertices);
+  attributes["JOINTS_0"] = glb.data.add(joints, GlbData::Use::Vertices);
+  const int weight = glb.data.add(weights, GlbData::Use::Vertices);
+  glb.data.accessor(weight).normalized = true;
   attributes["WEIGHTS_0"] = weight;
   Json primitive = {{"attributes", attributes}, {"material", 0}};
-  primitive["indices"] = glb.add(corners, kUnsignedInt, "SCALAR", kIndices);
+  primitive["indices"] = glb.data.add(corners, GlbData::Use::Indices);
   glb.json["meshes"] = Json::array({{{"name", "Surface"}, {"primitives", Json::array({primitive})}}});
   glb.json["materials"] = Json::array(
       {{{"name", "Tissue"}, {"pbrMetallicRoughness", {{"baseColorFactor", colour_under(skin, body.tissues)}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}}});
@@ -144,21 +92,21 @@ void add_mesh(Glb& glb, const GltfBody& body, const TissueVoxels& tissue, const 
 void add_skeleton(Glb& glb, const Armature& armature) {
   const std::size_t count = armature.bones.size();
   Json nodes = Json::array(), joints = Json::array(), roots = Json::array();
-  std::vector<std::array<float, 16>> bind;
+  std::vector<glm::mat4> bind;
   for (std::size_t b = 0; b < count; ++b) {
     const Bone& bone = armature.bones[b];
     const glm::dvec3 above = bone.parent >= 0 ? armature.bones[bone.parent].head : glm::dvec3(0);
-    nodes.push_back({{"name", bone.name}, {"translation", json_of(vec3(gltf_from_lps(bone.head - above)))}});
+    nodes.push_back({{"name", bone.name}, {"translation", json_of(glm::vec3(gltf_from_lps(bone.head - above)))}});
     if (bone.parent >= 0) nodes[static_cast<std::size_t>(bone.parent)]["children"].push_back(b);
     else roots.push_back(b);
     joints.push_back(b);
-    const Vec3 head = vec3(gltf_from_lps(bone.head));
-    bind.push_back({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -head.x, -head.y, -head.z, 1});
+    glm::mat4& matrix = bind.emplace_back(1.0f);
+    matrix[3] = glm::vec4(-glm::vec3(gltf_from_lps(bone.head)), 1);
   }
   nodes.push_back({{"name", "Armature"}, {"children", roots}});
   nodes.push_back({{"name", "Surface"}, {"mesh", 0}, {"skin", 0}});
   glb.json["nodes"] = nodes;
-  const int matrices = glb.add(bind, kFloat, "MAT4");
+  const int matrices = glb.data.add(bind);
   glb.json["skins"] = Json::array({{{"name", "Armature"}, {"joints", joints}, {"skeleton", count}, {"inverseBindMatrices", matrices}}});
   glb.json["scenes"] = Json::array({{{"nodes", {count, count + 1}}}});
   glb.json["scene"] = 0;
@@ -169,13 +117,13 @@ void add_skeleton(Glb& glb, const Armature& armature) {
 class Animation {
  public:
   Animation(Glb& glb, const std::string& name, const std::vector<float>& times) : glb_(glb), json_({{"name", name}, {"channels", Json::array()}, {"samplers", Json::array()}}) {
-    times_ = glb.add(times, kFloat, "SCALAR");
-    glb.accessor(times_)["min"] = Json::array({times.front()});
-    glb.accessor(times_)["max"] = Json::array({times.back()});
+    times_ = glb.data.add(times);
+    glb.data.accessor(times_).least = {times.front()};
+    glb.data.accessor(times_).most = {times.back()};
   }
   template <class T>
-  void add(std::size_t node, const char* path, const std::vector<T>& values, const char* type) {
-    json_["samplers"].push_back({{"input", times_}, {"output", glb_.add(values, kFloat, type)}, {"interpolation", "LINEAR"}});
+  void add(std::size_t node, const char* path, const std::vector<T>& values) {
+    json_["samplers"].push_back({{"input", times_}, {"output", glb_.data.add(values)}, {"interpolation", "LINEAR"}});
     json_["channels"].push_back({{"sampler", json_["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
   }
   const Json& json() const { return json_; }
@@ -212,14 +160,14 @@ Json animation_of(Glb& glb, const std::shared_ptr<const Clip>& clip, const std::
   for (std::size_t b = 0; b < count; ++b) {
     const bool turned = std::any_of(turns[b].begin(), turns[b].end(), [](const glm::dquat& q) { return q != glm::dquat(1, 0, 0, 0); });
     if (turned || (b + 1 == count && animation.json()["channels"].empty())) {
-      std::vector<Vec4> curve;
-      for (const glm::dquat& q : turns[b]) curve.push_back(vec4(gltf_from_lps(q)));
-      animation.add(b, "rotation", curve, "VEC4");
+      std::vector<glm::vec4> curve;
+      for (const glm::dquat& q : turns[b]) curve.push_back(curve_value(gltf_from_lps(q)));
+      animation.add(b, "rotation", curve);
     }
     if (!travels || armature->bones[b].parent >= 0) continue;
-    std::vector<Vec3> places;
-    for (const glm::dvec3& t : travel) places.push_back(vec3(gltf_from_lps(armature->bones[b].head + t)));
-    animation.add(b, "translation", places, "VEC3");
+    std::vector<glm::vec3> places;
+    for (const glm::dvec3& t : travel) places.emplace_back(gltf_from_lps(armature->bones[b].head + t));
+    animation.add(b, "translation", places);
   }
   return animation.json();
 }
@@ -235,7 +183,7 @@ std::string glb_of(const GltfBody& body, const std::vector<std::shared_ptr<const
   add_skeleton(glb, body.armature);
   const auto armature = std::make_shared<const Armature>(body.armature);
   for (std::size_t i = 0; i < clips.size(); ++i) glb.json["animations"].push_back(animation_of(glb, clips[i], armature, progress, double(i) / double(clips.size())));
-  return glb.bytes();
+  return glb.data.file(glb.json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 void write_glb(const GltfBody& body, const std::vector<std::shared_ptr<const Clip>>& clips, const Path& path, const GltfSettings& settings, Progress& progress) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A posable body as glTF 2.0, all in one .glb file: the surface of its tissue with up to four bones a vertex, the skeleton at
-// rest, and every clip as an animation.
+// rest, and every clip as an animation. Axes and units are glTF's [core/mesh/glb.h].
 //
-// glTF is right-handed, in metres, with Y up and the front towards +Z: the world's (x, y, z) in LPS mm becomes
-// (x, z, -y) / 1000. Every bone is a node at its head, without a rotation at rest, so that a pose's rotations are the nodes'
+// Every bone is a node at its head, without a rotation at rest, so that a pose's rotations are the nodes'
 // own; a clip sets a key at each of its frames. Other programs blend linearly between bones, as our linear blend does. A
 // bone's tail, roll and limits have no place in the format.
 #pragma once
@@ -38,8 +37,5 @@ struct GltfSettings {
 std::string glb_of(const GltfBody& body, const std::vector<std::shared_ptr<const Clip>>& clips, const GltfSettings& settings = {}, Progress& progress = no_progress());
 void write_glb(const GltfBody& body, const std::vector<std::shared_ptr<const Clip>>& clips, const Path& path, const GltfSettings& settings = {},
                Progress& progress = no_progress());
-
-inline glm::dvec3 gltf_from_lps(const glm::dvec3& p) { return glm::dvec3(p.x, p.z, -p.y) / 1000.0; }
-inline glm::dquat gltf_from_lps(const glm::dquat& q) { return {q.w, q.x, q.z, -q.y}; }
 
 }  // namespace limber

@@ -4,10 +4,11 @@
   read_exports.py KIND FILE VOLUME.nii.gz [TISSUES.csv]
 
 KIND is volume (nibabel), disc or gprmax (h5py), icrp (numpy), openems (FILE is what openEMS dumped of its materials; VTK), surface
-(VTK: manifold, watertight) or tets (numpy). VOLUME is the same body as NIfTI, read by nibabel. TISSUES.csv is what `limber tissues` writes. Exits
+(VTK: manifold, watertight), surfaces (glTF with all of them; VTK) or tets (numpy). VOLUME is the same body as NIfTI, read by nibabel. TISSUES.csv is what `limber tissues` writes. Exits
 with 0 and a line of figures when everything agrees, else with 1 and what does not; with 77 where a reader is missing.
 """
 import csv
+import json
 import sys
 
 try:
@@ -15,7 +16,7 @@ try:
     import nibabel
     if sys.argv[1] in ('disc', 'gprmax'):
         import h5py
-    if sys.argv[1] in ('openems', 'surface'):
+    if sys.argv[1] in ('openems', 'surface', 'surfaces'):
         import vtk
         from vtk.util.numpy_support import vtk_to_numpy
 except ImportError as missing:
@@ -120,6 +121,41 @@ elif kind == 'openems':
         worst = max(worst, error)
         check(error < 1e-5, f'{key}: off by {error}')
     print('worst', worst)
+elif kind == 'surfaces':
+    head = open(name, 'rb').read()
+    length = int.from_bytes(head[12:16], 'little')
+    gltf = json.loads(head[20:20 + length])
+    check([int(node['extras']['label']) for node in gltf['nodes']] == sorted(set(np.unique(labels)) - {0}), 'labels')
+    reader = vtk.vtkGLTFReader()
+    reader.SetFileName(name)
+    reader.Update()
+    blocks = reader.GetOutput().NewIterator()
+    meshes = []
+    while not blocks.IsDoneWithTraversal():
+        meshes.append(blocks.GetCurrentDataObject())
+        blocks.GoToNextItem()
+    check(len(meshes) == len(gltf['nodes']), f'{len(meshes)} surfaces')
+    total = 0
+    for node, mesh in zip(gltf['nodes'], meshes):
+        place = vtk_to_numpy(mesh.GetPoints().GetData())
+        place = 1000 * np.stack([place[:, 0], -place[:, 2], place[:, 1]], 1)  # LPS, mm
+        mask = np.argwhere(labels == int(node['extras']['label']))
+        low, high = origin + spacing * (mask.min(0) - 0.5), origin + spacing * (mask.max(0) + 0.5)
+        check((place > low - 0.5 * spacing).all() and (place < high + 0.5 * spacing).all(), f'{node["name"]}: bounds')
+        check((place.min(0) < low + spacing).all() and (place.max(0) > high - spacing).all(), f'{node["name"]}: reach')
+        # Outside is outside: the flux of the places through the surface is three times the volume.
+        corners = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        a, b, c = (place[corners[:, i]] for i in range(3))
+        volume = (np.cross(a, b) * c).sum() / 6
+        check(volume > 0, f'{node["name"]}: inside out')
+        total += volume
+        edges = np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)
+        check((np.unique(edges, axis=0, return_counts=True)[1] == 2).all(), f'{node["name"]}: an edge is not in two triangles')
+        normals = vtk_to_numpy(mesh.GetPointData().GetArray('NORMAL'))
+        check(np.allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-4), 'normals')
+    whole = np.count_nonzero(labels) * spacing.prod()
+    check(abs(total / whole - 1) < 0.05, f'volume {total} of {whole}')
+    print('surfaces', len(meshes), 'volume', total / whole)
 elif kind == 'surface':
     reader = {'stl': vtk.vtkSTLReader, 'ply': vtk.vtkPLYReader, 'obj': vtk.vtkOBJReader}[name[-3:]]()
     if name[-3:] == 'stl':

@@ -147,7 +147,7 @@ TEST_CASE("label surfaces: outside is outside on a mirrored grid, too, and spaci
   CHECK(least == doctest::Approx(100 - 4.5));
 }
 
-TEST_CASE("surfaces command: one OBJ with groups that share vertices, STL and PLY a file a tissue, watertight for VTK") {
+TEST_CASE("surfaces command: one OBJ with groups that share vertices, one glTF with a named node each, STL and PLY a file a tissue, watertight for VTK") {
   const TemporaryFolder folder;
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
   const std::string volume = folder / "volume.nrrd", tissues = folder / "tissues.json", nifti = folder / "v.nii.gz";
@@ -182,6 +182,8 @@ TEST_CASE("surfaces command: one OBJ with groups that share vertices, STL and PL
   READ_BACK("surface", folder / "arm-skin.ply", nifti);
   READ_BACK("surface", folder / "arm-cortical_bone.ply", nifti);
   READ_BACK("surface", folder / "all-skin.stl", nifti);
+  REQUIRE(run_limber({"surfaces", volume, "--tissues", tissues, "-o", folder / "arm.glb"}).exit_code == 0);
+  READ_BACK("surfaces", folder / "arm.glb", nifti);
   const auto wrong = run_limber({"surfaces", volume, "--tissues", tissues, "--only", "gills", "-o", folder / "x.stl"});
   CHECK(wrong.exit_code == 1);
   CHECK(run_limber({"surfaces", volume, "-o", folder / "x.xyz"}).exit_code == 1);
