@@ -97,7 +97,7 @@ QualityGate judge_skin(const Json& report, const QualityLimits& limits) {
 }
 
 QualityGate judge_islands(const Json& report) {
-  QualityGate gate{"islands", "No islands or holes", GateState::NotMeasured, "", "", "Pieces of a tissue of 50 voxels or more that were one at rest, and voxels inside tissue that have no label."};
+  QualityGate gate{"islands", "No islands or holes", GateState::NotMeasured, "", "", "Pieces of a tissue of 50 voxels or more that were one at rest, voxels inside tissue that have no label, and tissue that fell off the grid."};
   double islands = 0, most = 0;
   bool measured = false;
   for (const Json& tissue : part(report, "tissues")) {
@@ -108,11 +108,12 @@ QualityGate judge_islands(const Json& report) {
     islands += more;
     if (more > most) most = more, gate.worst = text(tissue, "name");
   }
-  const auto holes = number(part(report, "total"), "new_hole_voxels");
+  const Json& total = part(report, "total");
+  const auto holes = number(total, "new_hole_voxels"), dropped = number(total, "dropped_voxels");
   if (!measured && !holes) return gate;
-  const double hole_voxels = holes.value_or(0);
   std::string figure = islands > 0 ? counted(islands, "island") : "";
-  if (hole_voxels > 0) figure += (figure.empty() ? "" : ", ") + counted(hole_voxels, "hole");
+  if (holes.value_or(0) > 0) figure += (figure.empty() ? "" : ", ") + counted(*holes, "hole");
+  if (dropped.value_or(0) > 0) figure += (figure.empty() ? "" : ", ") + counted(*dropped, "voxel") + " lost";
   decide(gate, figure.empty(), figure.empty() ? "0" : figure);
   return gate;
 }

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/study/cell_result.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/study/text.h"
+#include "core/report/solve_gates.h"
 
 namespace limber {
 
@@ -55,60 +52,13 @@ void read_solve(const Json& json, CellResult& result) {
     result.solve = {solve.at("converged"), solve.at("reached"), solve.value("blocked_by", ""), solve.at("iterations"), solve.at("residual")};
   }
 }
+}  // namespace
 
-Gate gate(const char* name, bool passed, const std::string& figure, const std::string& limit) {
-  return {name, figure, limit, passed ? Gate::State::Passed : Gate::State::Failed};
-}
-Gate no_gate(const char* name, const char* why, const std::string& limit) { return {name, why, limit}; }
-
-Gate mass_gate(const CellResult& cell, const GateLimits& limits) {
-  const TissueFigures* worst = nullptr;
-  for (const TissueFigures& tissue : cell.tissues)
-    if (tissue.voxels_before >= limits.least_voxels && tissue.mass_percent && (!worst || std::abs(*tissue.mass_percent) > std::abs(*worst->mass_percent))) worst = &tissue;
-  const std::string limit = "±" + number(limits.mass_percent) + " %";
-  if (!worst) return no_gate("Mass", "no tissue is large enough", limit);
-  return gate("Mass", std::abs(*worst->mass_percent) <= limits.mass_percent, signed_number(*worst->mass_percent, 2) + " % " + worst->name, limit);
-}
-
-Gate islands_gate(const CellResult& cell) {
-  int islands = 0;
-  std::string where;
-  for (const TissueFigures& tissue : cell.tissues)
-    if (const int more = tissue.components_after - tissue.components_before; more > 0) islands += more, where += (where.empty() ? " " : ", ") + tissue.name;
-  return gate("Islands", islands == 0, grouped(islands) + where, "no new piece");
-}
-
-Gate skin_gate(const CellResult& cell, const GateLimits& limits) {
-  const std::string limit = "loses " + number(limits.skin_share_percent) + " % at most";
-  if (!cell.skin_share_before) return no_gate("Skin closed", "there is no skin", limit);
-  const double change = 100 * (*cell.skin_share_after - *cell.skin_share_before);
-  return gate("Skin closed", change >= -limits.skin_share_percent, fixed(100 * *cell.skin_share_after, 1) + " % of surface", limit);
-}
-
-std::vector<Gate> gates_of(const CellResult& cell, const GateLimits& limits) {
-  std::vector<Gate> gates;
-  const bool reached = !cell.solve || cell.solve->converged;
-  gates.push_back(gate("Pose reached", reached, fixed(100 * (cell.solve ? cell.solve->reached : 1), 0) + " %" + (cell.solve && !reached && cell.solve->reached == 1 ? ", not settled" : ""), "100 %, settled"));
-  gates.push_back(mass_gate(cell, limits));
-  const std::string rigid = "≤ " + number(limits.bone_residual_mm) + " mm";
-  gates.push_back(cell.bone_residual_mm ? gate("Bone rigidity", *cell.bone_residual_mm <= limits.bone_residual_mm, fixed(*cell.bone_residual_mm, 4) + " mm", rigid)
-                                        : no_gate("Bone rigidity", "there is no bone", rigid));
-  gates.push_back(islands_gate(cell));
-  gates.push_back(gate("Holes", cell.new_hole_voxels + cell.dropped_voxels == 0, grouped(cell.new_hole_voxels + cell.dropped_voxels) + " voxels", "none"));
-  gates.push_back(skin_gate(cell, limits));
-  gates.push_back(cell.mesh ? gate("Inverted cells", cell.mesh->inverted == 0, grouped(cell.mesh->inverted), "none") : no_gate("Inverted cells", "no mesh", "none"));
-  gates.push_back(cell.mesh && cell.mesh->self_intersections ? gate("Self-intersections", *cell.mesh->self_intersections == 0, grouped(*cell.mesh->self_intersections) + " pairs", "none")
-                                                             : no_gate("Self-intersections", "no mesh", "none"));
-  gates.push_back(cell.mesh && cell.mesh->min_gap_mm ? gate("Gap", *cell.mesh->min_gap_mm > 0, fixed(*cell.mesh->min_gap_mm, 3) + " mm", "> 0 mm") : no_gate("Gap", cell.mesh ? "nothing comes near" : "no mesh", "> 0 mm"));
-  const std::string limit = "≤ " + number(limits.joint_excess_degrees) + "° beyond";
-  const JointFigures* worst = nullptr;
-  for (const JointFigures& joint : cell.joints)
-    if (joint.excess_degrees && (!worst || *joint.excess_degrees > *worst->excess_degrees)) worst = &joint;
-  gates.push_back(worst ? gate("Joint limits", *worst->excess_degrees <= limits.joint_excess_degrees, fixed(*worst->excess_degrees, 1) + "° " + worst->bone, limit)
-                        : no_gate("Joint limits", cell.joints.empty() ? "no joint turns" : "the rig has none", limit));
+std::vector<QualityGate> gates_of(const std::string& report, const QualityLimits& limits) {
+  std::vector<QualityGate> gates = quality_gates(report, limits);
+  for (QualityGate& gate : solve_gates(report)) gates.push_back(std::move(gate));
   return gates;
 }
-}  // namespace
 
 CellResult read_result(const Study& study, const CellOutcome& outcome) {
   CellResult result{.cell = outcome.cell, .folder = outcome.folder, .failure = outcome.failure};
@@ -132,7 +82,7 @@ CellResult read_result(const Study& study, const CellOutcome& outcome) {
   } catch (const Json::exception& error) {
     throw Error("a result of the study is damaged", outcome.folder.string(), std::string("delete the folder and run the same again (") + error.what() + ")");
   }
-  result.gates = gates_of(result, study.gates);
+  result.gates = gates_of(result.report, study.gates);
   return result;
 }
 

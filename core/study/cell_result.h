@@ -9,6 +9,7 @@
 
 #include <glm/glm.hpp>
 
+#include "core/report/quality_gates.h"
 #include "core/study/run_study.h"
 
 namespace limber {
@@ -44,12 +45,6 @@ struct JointFigures {
   std::optional<double> excess_degrees;
 };
 
-struct Gate {
-  enum class State { Passed, Failed, DoesNotApply };
-  std::string name, figure, limit;  // "Mass", "-2.10 % (muscle)", "within 1 %"; of one that does not apply, `figure` says why
-  State state = State::DoesNotApply;
-};
-
 struct CellResult {
   StudyCell cell;
   Path folder;
@@ -69,12 +64,15 @@ struct CellResult {
   std::optional<SolveFigures> solve;
   std::vector<JointFigures> joints;
   std::vector<std::string> warnings;
-  std::vector<Gate> gates;
+  std::vector<QualityGate> gates;
   std::map<std::string, std::string> inputs;  // SHA-256 by path
   std::string report, cell_json;              // as they lie in the folder
 
   bool done() const { return failure.empty(); }
 };
+
+// What a cell of a study must pass: all that is judged from its report.
+std::vector<QualityGate> gates_of(const std::string& report, const QualityLimits& limits);
 
 // Throws Error where the folder's files cannot be read.
 CellResult read_result(const Study& study, const CellOutcome& outcome);

@@ -91,7 +91,7 @@ class Page {
   }
 
   static bool passes(const CellResult& cell) {
-    return std::none_of(cell.gates.begin(), cell.gates.end(), [](const Gate& gate) { return gate.state == Gate::State::Failed; });
+    return std::none_of(cell.gates.begin(), cell.gates.end(), [](const QualityGate& gate) { return gate.state == GateState::Failed; });
   }
 
   void head() {
@@ -350,23 +350,25 @@ class Page {
     return one ? "<small>" + grouped(one->overlap_voxels) + " voxels</small>" : "";
   }
 
-  static std::string gate_cell(const Gate& gate) {
-    if (gate.state == Gate::State::DoesNotApply) return "<td class=\"gate na\"><span>–</span><small>" + escaped(gate.figure) + "</small></td>";
-    const bool passed = gate.state == Gate::State::Passed;
-    return std::string("<td class=\"gate ") + (passed ? "ok\"><span>✓</span>" : "bad\"><span>✗</span>") + "<small>" + escaped(gate.figure) + "</small></td>";
+  static std::string gate_cell(const QualityGate& gate) {
+    if (gate.state == GateState::NotMeasured) return "<td class=\"gate na\"><span>–</span></td>";
+    const bool passed = gate.state == GateState::Passed;
+    return std::string("<td class=\"gate ") + (passed ? "ok\"><span>✓</span>" : "bad\"><span>✗</span>") + "<small>" + escaped(gate.figure + (gate.worst.empty() ? "" : " " + gate.worst)) + "</small></td>";
   }
 
   void gates() {
     section("Gates", "gates");
-    const CellResult* first = at_.empty() ? nullptr : at_.begin()->second;
-    if (!first) {
+    if (at_.empty()) {
       html_ += "<p>No cell is computed yet.</p>\n";
       return;
     }
-    html_ += "<p>A gate is a figure with a limit. ✓ it keeps to it; ✗ it does not; – it does not apply, and why. A failed gate is a finding about the technique in that pose, not a mistake of the run.</p>\n";
+    html_ += "<p>A gate is a figure with a limit. ✓ it keeps to it; ✗ it does not; – there is nothing to judge. A failed gate is a finding about the technique in that pose, not a mistake of the run.</p>\n";
+    const std::vector<QualityGate> kinds = gates_of("", study_.gates);
+    std::string meanings;
+    for (const QualityGate& gate : kinds) meanings += " <b>" + escaped(gate.name) + ":</b> " + escaped(gate.meaning);
     for (int s = 0; s < std::ssize(study_.spacings); ++s) {
       std::string rows = "<thead><tr><th colspan=\"2\">Cell</th>";
-      for (const Gate& gate : first->gates) rows += "<th>" + gate.name + "<small>" + escaped(gate.limit) + "</small></th>";
+      for (const QualityGate& gate : kinds) rows += "<th>" + escaped(gate.name) + "</th>";
       rows += "</tr></thead>";
       for (int p = 0; p < poses(); ++p) {
         rows += "<tbody>";
@@ -375,15 +377,14 @@ class Page {
           if (t == 0) rows += "<th class=\"row pose\" rowspan=\"" + std::to_string(techniques()) + "\">" + escaped(study_.poses[p].name) + "</th>";
           rows += "<th class=\"row\">" + marked_name(t) + "</th>";
           if (const CellResult* one = cell(s, p, t))
-            for (const Gate& gate : one->gates) rows += gate_cell(gate);
+            for (const QualityGate& gate : one->gates) rows += gate_cell(gate);
           else
-            rows += "<td class=\"bad failed\" colspan=\"" + std::to_string(first->gates.size()) + "\">" + failure_of(s, p, t) + "</td>";
+            rows += "<td class=\"bad failed\" colspan=\"" + std::to_string(kinds.size()) + "\">" + failure_of(s, p, t) + "</td>";
           rows += "</tr>";
         }
         rows += "</tbody>";
       }
-      table(rows, "Gates at " + spacing_text(study_.spacings[s]) + (s ? "." : ". <b>Mass</b>: the largest change of a tissue of " + grouped(study_.gates.least_voxels) + " voxels or more. <b>Bone rigidity</b>: furthest that a bone's voxel is from where the bone's own motion takes it. <b>Islands</b>: pieces of 50 voxels or more that were not apart at rest. "
-            "<b>Holes</b>: posed voxels inside the body without a label, and voxels that fell off the grid. <b>Skin closed</b>: share of the surface that is skin. <b>Inverted cells</b> and <b>self-intersections</b>: of the mesh of finite elements. <b>Gap</b>: least air between skins that came near each other. <b>Joint limits</b>: how far the pose goes beyond the rig's."), "gates");
+      table(rows, "Gates at " + spacing_text(study_.spacings[s]) + "." + (s ? "" : meanings), "gates");
     }
   }
   std::string failure_of(int spacing, int pose, int technique) const {

@@ -106,14 +106,14 @@ class Reader {
 
   std::vector<Technique> techniques(const std::vector<std::string>& words) const { return techniques_of(words, path_.string() + ", methods"); }
 
-  GateLimits gates(const Json& value) const {
-    GateLimits limits;
-    if (!value.is_object()) refuse("this should be an object", "gates", R"(write "gates": {"mass_percent": 1})");
-    check_keys(value, "gates", {"mass_percent", "least_voxels", "bone_residual_mm", "skin_share_percent", "joint_excess_degrees"});
+  QualityLimits gates(const Json& value) const {
+    QualityLimits limits;
+    if (!value.is_object()) refuse("this should be an object", "gates", R"(write "gates": {"tissue_percent": 1})");
+    check_keys(value, "gates", {"tissue_percent", "least_voxels", "bone_residual_mm", "skin_share_percent", "joint_excess_degrees"});
     const auto take = [&](const char* key, auto& limit) {
       if (value.contains(key)) limit = static_cast<std::remove_reference_t<decltype(limit)>>(number(value[key], std::string("gates, ") + key, 0, 1e9));
     };
-    take("mass_percent", limits.mass_percent);
+    take("tissue_percent", limits.tissue_percent);
     take("least_voxels", limits.least_voxels);
     take("bone_residual_mm", limits.bone_residual_mm);
     take("skin_share_percent", limits.skin_share_percent);
@@ -275,7 +275,7 @@ std::string to_json(const Study& study) {
   json["quality"] = study.quality;
   json["fit_joints"] = study.fit_joints;
   json["nearest"] = study.nearest;
-  json["gates"] = {{"mass_percent", study.gates.mass_percent}, {"least_voxels", study.gates.least_voxels}, {"bone_residual_mm", study.gates.bone_residual_mm},
+  json["gates"] = {{"tissue_percent", study.gates.tissue_percent}, {"least_voxels", study.gates.least_voxels}, {"bone_residual_mm", study.gates.bone_residual_mm},
                    {"skin_share_percent", study.gates.skin_share_percent}, {"joint_excess_degrees", study.gates.joint_excess_degrees}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -4,7 +4,7 @@
 //   {"name"?: "Elbow", "volume": "arm.nrrd" | "phantom": "arm"|"body", "rig"?: "rig.json", "tissues"?: "t.json", "bones"?: [111, 209],
 //    "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4], "methods"?: ["lbs", "dqs", "fem", "fem-contact", "fem-mass-exact"...],
 //    "poses": [{"name": "+45", "flex": ["Forearm=45"]}, {"name": "curl", "motion": "curl.bvh", "frame": 12, "map"?, "up"?}, {"name": "mine", "pose": "p.json"}],
-//    "quality"?: "draft"|"normal"|"fine", "fit_joints"?: true, "nearest"?: true, "gates"?: {"mass_percent": 1, ...}}
+//    "quality"?: "draft"|"normal"|"fine", "fit_joints"?: true, "nearest"?: true, "gates"?: {"tissue_percent": 1, ...}}
 // Without spacings the volume is taken as it is, without methods the four plain ones are; a phantom brings its own rig and tissues.
 #pragma once
 
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "core/report/quality_gates.h"
 
 namespace limber {
 
@@ -36,15 +37,6 @@ struct StudyPose {
   std::string up;
 };
 
-// What a result must keep to. A gate that does not apply to a cell is neither passed nor failed.
-struct GateLimits {
-  double mass_percent = 1;             // change of each soft tissue of `least_voxels` or more
-  std::int64_t least_voxels = 5000;    // at rest: smaller tissues change by more where a rigid turn alone meets the grid
-  double bone_residual_mm = 0.05;      // from each bone's rigid motion
-  double skin_share_percent = 0.2;     // of the surface that is no longer skin
-  double joint_excess_degrees = 0.1;   // beyond the rig's limits
-};
-
 struct Study {
   std::string name = "Study";
   Path description;                    // the file it was read from, or empty
@@ -57,7 +49,7 @@ struct Study {
   std::vector<std::optional<double>> spacings;  // mm; none: as it is
   std::vector<StudyPose> poses;
   std::vector<Technique> techniques;
-  GateLimits gates;
+  QualityLimits gates;
 };
 
 // Throws Error naming the key that is wrong.

@@ -14,11 +14,10 @@ using Json = nlohmann::ordered_json;
 
 Json gates_json(const CellResult& cell) {
   Json rows = Json::array();
-  for (const Gate& gate : cell.gates) {
-    Json row{{"name", gate.name}};
-    if (gate.state != Gate::State::DoesNotApply) row["passed"] = gate.state == Gate::State::Passed;
-    row["figure"] = gate.figure;
-    row["limit"] = gate.limit;
+  for (const QualityGate& gate : cell.gates) {
+    Json row{{"id", gate.id}, {"name", gate.name}};
+    if (gate.state != GateState::NotMeasured) row.update({{"passed", gate.state == GateState::Passed}, {"figure", gate.figure}});
+    if (!gate.worst.empty()) row["worst"] = gate.worst;
     rows.push_back(row);
   }
   return rows;

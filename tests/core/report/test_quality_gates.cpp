@@ -5,14 +5,16 @@
 
 #include "core/pose/pose.h"
 #include "core/report/report.h"
+#include "core/report/solve_gates.h"
 
 using namespace limber;
 
 namespace {
 
 QualityGate gate(const std::string& report, const std::string& id) {
-  for (const QualityGate& one : quality_gates(report))
-    if (one.id == id) return one;
+  for (const auto& gates : {quality_gates(report), solve_gates(report)})
+    for (const QualityGate& one : gates)
+      if (one.id == id) return one;
   FAIL("no gate " << id);
   return {};
 }
@@ -22,8 +24,10 @@ QualityGate gate(const std::string& report, const std::string& id) {
 TEST_CASE("quality gates: what a report has no figures for is neither passed nor failed") {
   for (const char* report : {"", "no report", "[1, 2]", "{}", R"({"tissues": 3, "bones": {"a": 1}, "mesh": [], "total": null, "joints": "x"})"}) {
     INFO(std::string(report));
-    const auto gates = quality_gates(report);
+    auto gates = quality_gates(report);
     CHECK(gates.size() == 7);
+    for (const QualityGate& one : solve_gates(report)) gates.push_back(one);
+    CHECK(gates.size() == 9);
     for (const QualityGate& one : gates) {
       CHECK(one.state == GateState::NotMeasured);
       CHECK(one.figure.empty());
@@ -56,6 +60,10 @@ TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
       {"skin", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.8681}})", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.866}})", "86.6 %"},
       {"islands", R"({"total": {"new_hole_voxels": 0}, "tissues": [{"name": "Fat", "components_before": 5, "components_after": 4}]})",
        R"({"total": {"new_hole_voxels": 3286}, "tissues": [{"name": "Fat", "components_before": 1, "components_after": 2}]})", "1 island, 3 286 holes"},
+      {"islands", R"({"total": {"new_hole_voxels": 0, "dropped_voxels": 0}})", R"({"total": {"new_hole_voxels": 0, "dropped_voxels": 1}})", "1 voxel lost"},
+      {"reached", R"({"solve": {"converged": true, "reached": 1}})", R"({"solve": {"converged": false, "reached": 0.999}})", "99 %"},
+      {"reached", R"({"solve": {"converged": true, "reached": 1}})", R"({"solve": {"converged": false, "reached": 1}})", "100 %, not settled"},
+      {"gap", R"({"mesh": {"min_gap_mm": 0.001}})", R"({"mesh": {"min_gap_mm": 0}})", "0.000 mm"},
       {"inverted", R"({"mesh": {"inverted": 0}})", R"({"mesh": {"inverted": 2}})", "2"},
       {"crossings", R"({"mesh": {"self_intersections": 0}, "total": {"overlap_voxels": 0}})", R"({"mesh": {"self_intersections": 1}})", "1 pair"},
       {"crossings", R"({"total": {"overlap_voxels": 0}})", R"({"mesh": {"self_intersections": 1}, "total": {"overlap_voxels": 12345678}})", "12 345 678 voxels"},

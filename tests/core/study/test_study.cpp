@@ -53,7 +53,7 @@ TEST_CASE("study: a description says body, poses, techniques and spacings, and w
   std::ofstream(folder / "body.nrrd") << "x";
   std::ofstream(folder / "rig.json") << "x";
   std::ofstream(folder / "study.json") << R"({"name": "Knee", "volume": "body.nrrd", "rig": "rig.json", "bones": [3, 4], "spacings_mm": [1.5, null], "methods": ["dqs", "fem-contact"],
-    "poses": [{"name": "rest"}, {"name": "bent", "flex": ["Shin=60", "Foot=-10"]}], "quality": "draft", "weights": "geodesic", "fit_joints": true, "gates": {"mass_percent": 0.5}})";
+    "poses": [{"name": "rest"}, {"name": "bent", "flex": ["Shin=60", "Foot=-10"]}], "quality": "draft", "weights": "geodesic", "fit_joints": true, "gates": {"tissue_percent": 0.5}})";
   const Study study = read_study(folder / "study.json");
   CHECK(study.name == "Knee");
   CHECK(study.volume == folder / "body.nrrd");
@@ -63,7 +63,7 @@ TEST_CASE("study: a description says body, poses, techniques and spacings, and w
   CHECK_FALSE(study.spacings[1].has_value());
   CHECK(study.techniques == std::vector<Technique>{Technique::DualQuaternion, Technique::FemContact});
   CHECK(study.poses[1].flex == std::vector<std::string>{"Shin=60", "Foot=-10"});
-  CHECK(study.gates.mass_percent == 0.5);
+  CHECK(study.gates.tissue_percent == 0.5);
   CHECK(study.gates.least_voxels == 5000);
   CHECK(cells_of(study).size() == 8);
 

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/report/solve_gates.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// Of a report; an object without anything where there is none.
+Json part(const Json& report, const char* key) { return report.is_object() && report.contains(key) && report[key].is_object() ? report[key] : Json::object(); }
+
+std::string formatted(const char* format, double value) {
+  char buffer[48];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+QualityGate judge_reached(const Json& report) {
+  QualityGate gate{"reached", "Pose reached", GateState::NotMeasured, "", "", "How much of the pose a solve by finite elements came to, and whether it settled there."};
+  const Json solve = part(report, "solve");
+  if (!solve.contains("reached") || !solve["reached"].is_number() || !solve.contains("converged") || !solve["converged"].is_boolean()) return gate;
+  const double reached = solve["reached"];
+  const bool converged = solve["converged"];
+  gate.state = converged ? GateState::Passed : GateState::Failed;
+  gate.figure = formatted("%.0f %%", std::floor(100 * reached)) + (converged || reached < 1 ? "" : ", not settled");
+  return gate;
+}
+
+QualityGate judge_gap(const Json& report) {
+  QualityGate gate{"gap", "Gap", GateState::NotMeasured, "", "", "The least air between skins that came near each other in a solve; not measured where none did."};
+  const Json mesh = part(report, "mesh");
+  if (!mesh.contains("min_gap_mm") || !mesh["min_gap_mm"].is_number()) return gate;
+  const double gap_mm = mesh["min_gap_mm"];
+  gate.state = gap_mm > 0 ? GateState::Passed : GateState::Failed;
+  gate.figure = formatted("%.3f mm", gap_mm);
+  return gate;
+}
+
+}  // namespace
+
+std::vector<QualityGate> solve_gates(const std::string& report) {
+  const Json json = Json::parse(report, nullptr, false);
+  return {judge_reached(json), judge_gap(json)};
+}
+
+}  // namespace limber
