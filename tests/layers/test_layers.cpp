@@ -57,6 +57,7 @@ const std::vector<Door> kDoors = {
     {"bzip2", {"bzlib"}, {"core/volume/voxel_stream.cpp"}},
     {"TetGen", {"tetgen"}, {"core/mesh/tetrahedralize.cpp"}},
     {"CGAL", {"CGAL/"}, {"tests/independent/", "tests/bench/mesh_cgal.cpp", "tests/support/crossings_cgal.h"}},
+    {"ITK", {"itk"}, {"tests/independent/"}},
     {"CHOLMOD", {"cholmod", "suitesparse/"}, {"core/base/cholesky.cpp"}},
     {"TBB", {"tbb/", "oneapi/"}, {"core/base/parallel.cpp", "core/base/background.cpp"}},
     {"SQLite", {"sqlite3"}, {"core/project/", "tests/support/power_cut.cpp"}},
