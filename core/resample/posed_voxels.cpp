@@ -1,0 +1,504 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/posed_voxels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/deform/inverse_map.h"
+#include "core/resample/bone_volumes.h"
+#include "core/resample/mend.h"
+#include "core/resample/tissue_volumes.h"
+
+namespace limber {
+
+namespace {
+
+constexpr glm::ivec3 kTile{64, 64, 32};  // output voxels: 3 MB of map a thread
+constexpr double kSkinReach = 3;         // voxels below air: as deep as what touches a thin skin from below can lie
+constexpr int kReach = 8;                // voxels: as far as soft tissue is looked for where a joint opens between bones
+
+constexpr double kMostSure = 0.8;        // of memberships: a voxel that is surer of its tissue keeps it
+constexpr std::int64_t kJudged = 5000;   // voxels: the grid alone changes smaller tissues by more than is asked here
+
+double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
+
+// Grey values between voxel centres, linear; the nearest voxel's outside the grid.
+class GreySampler {
+ public:
+  explicit GreySampler(const GreyVolume& grey) : grey_(grey), voxel_from_world_(voxel_from_world(grey.grid)) {}
+
+  float operator()(const glm::dvec3& world) const {
+    const glm::dvec3 last(grey_.grid.size - 1);
+    const glm::dvec3 p = glm::clamp(voxel_from_world_ * world, glm::dvec3(0), last);
+    const glm::ivec3 low = glm::min(glm::ivec3(p), glm::max(grey_.grid.size - 2, glm::ivec3(0)));
+    const glm::dvec3 f = p - glm::dvec3(low);
+    double value = 0;
+    for (int k = 0; k < 8; ++k) {
+      const glm::ivec3 step(k & 1, k >> 1 & 1, k >> 2);
+      const double share = (step.x ? f.x : 1 - f.x) * (step.y ? f.y : 1 - f.y) * (step.z ? f.z : 1 - f.z);
+      if (share > 0) value += share * grey_.voxels[grey_.grid.index(low + step)];
+    }
+    return static_cast<float>(value);
+  }
+  bool covers(const glm::dvec3& world) const {
+    const glm::dvec3 p = voxel_from_world_ * world;
+    return glm::all(glm::greaterThanEqual(p, glm::dvec3(-0.5))) && glm::all(glm::lessThan(p, glm::dvec3(grey_.grid.size) - 0.5));
+  }
+
+ private:
+  const GreyVolume& grey_;
+  AffineTransform voxel_from_world_;
+};
+
+// A posed voxel of soft tissue, maybe bare, that was covered by skin at rest.
+struct UnderSkin {
+  std::int64_t at;
+  Label skin;
+};
+
+// A posed voxel of skin that is covered itself.
+struct InnerSkin {
+  float depth;  // mm below air at rest
+  std::int64_t at;
+};
+
+// What one tile saw.
+struct TileCounts {
+  VoxelRange range;
+  RowSet row_used, row_has_bone;  // of the range
+  std::int64_t holes = 0, overlap = 0, bone_overlap = 0;
+  std::vector<Label> lost;
+  std::vector<UnderSkin> under_skin;
+  std::vector<InnerSkin> inner_skin;
+  struct BoneCounts {
+    std::int64_t voxels = 0;
+    double residual_mm = 0;
+  };
+  std::map<int, BoneCounts> bones;
+
+  void add_bone_voxel(int bone, double residual_mm) {
+    BoneCounts& seen = bones[bone];
+    ++seen.voxels;
+    seen.residual_mm = std::max(seen.residual_mm, residual_mm);
+  }
+};
+
+// Soft tissue of one tile, and where its borders may move.
+struct SoftBorders {
+  std::map<Label, std::int64_t> by_cell;  // voxels whose place at rest lies in a voxel of the tissue
+  std::vector<BorderMove> moves;
+};
+
+// Everything a tile needs to know, and where it writes.
+class PosedVoxels {
+ public:
+  PosedVoxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed)
+      : volume_(body.volume), labels_(body.labels), lattice_(body.lattice), bones_(body.bones), tets_(body.tets), depth_(body.depth),
+        settings_(settings), output_(body.output), mends_(body.mends), posed_(posed), sampler_(volume_),
+        world_from_rest_(world_from_voxel(volume_.grid)) {
+    posed.volume.grid = output_.grid;
+    const std::int64_t voxels = output_.grid.voxel_count();
+    posed.volume.voxels.resize(voxels);
+    rows_.resize(std::int64_t{output_.grid.size.y} * output_.grid.size.z);
+    bone_rows_ = rows_;
+    if (mends_) posed_bones_ = {output_.grid, ZeroedVector<Label>(voxels)};
+    if (settings.displacement) posed.displacement.resize(voxels);
+    if (settings.jacobian) posed.jacobian.resize(voxels);
+    if (settings.overlap) posed.overlap.resize(voxels);
+    if (settings.grey) start_grey();
+  }
+
+  void run(Progress& progress) {
+    for_each_tile<TileCounts>(
+        progress, "resample", [&](const VoxelRange& range, TileCounts& counts) { run_tile(range, counts); },
+        [&](const TileCounts& tile) { add(tile); });
+  }
+
+  // Reading labels takes voxels from thin tissues and gives them to thick ones: they get back what the map gives them.
+  void keep_soft_volumes(Progress& progress) {
+    SoftBorders borders = soft_borders(progress);
+    posed_.report.mended_voxels += keep_tissue_volumes(posed_.volume, borders.by_cell, borders.moves, labels_.soft, labels_.skin).changed;
+  }
+
+  void keep_masses(const TissueTable& tissues, Progress& progress) {
+    MassExactReport& report = posed_.report.mass_exact.emplace();
+    for (const auto& [label, voxels] : soft_voxels(volume_)) report.tissues[label].wanted = std::llround(double(voxels) * output_per_rest());
+    for (const auto& [label, voxels] : soft_voxels(posed_.volume)) report.tissues[label].before = voxels;
+    std::map<Label, std::int64_t> wanted;
+    for (const auto& [label, tissue] : report.tissues) {
+      const double percent = 100.0 * double(tissue.wanted - tissue.before) / double(std::max<std::int64_t>(tissue.wanted, 1));
+      if (tissue.wanted >= kJudged && std::abs(percent) > settings_.mass_limit_percent) throw too_far(tissues, label, percent);
+      wanted[label] = tissue.wanted;
+    }
+    report.changed_voxels = keep_tissue_volumes(posed_.volume, wanted, soft_borders(progress).moves, labels_.soft, labels_.skin).changed;
+    for (const auto& [label, voxels] : soft_voxels(posed_.volume)) report.tissues[label].after = voxels;
+  }
+
+  void mend_tears() {
+    InverseMap map;
+    const auto of_bone = [&](const glm::ivec3& voxel) {
+      return bones_.rest_point(posed_bones_.at(voxel) - 1, glm::dvec3(output_.range.low + voxel));
+    };
+    const RowSet rest_rows = lattice_.tissue().rows(), bone_rest_rows = bones_.rest_rows();
+    const LabelVolume rest_bones = bones_.numbered();
+    const auto bridges = mend_bones(posed_bones_, rest_bones, posed_.volume, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
+    for (const glm::ivec3& voxel : bridges) {
+      map.reset({output_.range.low + voxel, output_.range.low + voxel});
+      map.bone[0] = static_cast<std::uint16_t>(posed_bones_.at(voxel) - 1);
+      map.rest[0] = of_bone(voxel);
+      map.use_row(map.range.low);
+      TileCounts counts;
+      write(map, counts);
+      add(counts);
+    }
+    const std::int64_t kept =
+        keep_bone_volumes(posed_.volume, posed_bones_, volume_, rest_bones, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
+    const auto rest_point = [&](const glm::ivec3& voxel) {
+      if (posed_bones_.at(voxel)) return of_bone(voxel);
+      fill(map, {output_.range.low + voxel, output_.range.low + voxel});
+      return glm::dvec3(map.rest[0]);
+    };
+    const std::int64_t closed = close_skin();
+    posed_.report.mended_voxels = std::ssize(bridges) + kept + closed + thin_skin(closed) +
+                                  mend(posed_.volume, volume_, labels_.soft, rest_point, {&rows_, &rest_rows},
+                                       {&bone_rows_, &bone_rest_rows});
+  }
+
+ private:
+  // Skin is often one voxel thick; where the grid or a stretch opens it, what lay under it is skin now.
+  std::int64_t close_skin() {
+    std::int64_t closed = 0;
+    for (const UnderSkin& voxel : under_skin_) {
+      const glm::ivec3 v = voxel_at(output_.grid, voxel.at);
+      if (!touches_air(posed_.volume, v) || !can_spare(posed_.volume, v)) continue;
+      posed_.volume.voxels[voxel.at] = voxel.skin;
+      ++closed;
+    }
+    return closed;
+  }
+
+  // Where skin was closed it gained voxels, and elsewhere the grid laid some of it two voxels thick: the deepest of those go to
+  // the tissue that lies around them, as many as were gained.
+  std::int64_t thin_skin(std::int64_t most) {
+    std::sort(inner_skin_.begin(), inner_skin_.end(), [](const InnerSkin& a, const InnerSkin& b) { return a.depth != b.depth ? a.depth > b.depth : a.at < b.at; });
+    std::int64_t given = 0;
+    for (const InnerSkin& voxel : inner_skin_) {
+      if (given == most) break;
+      const glm::ivec3 v = voxel_at(output_.grid, voxel.at);
+      const Label below = tissue_under_skin(v);
+      if (below == 0 || !labels_.skin[posed_.volume.voxels[voxel.at]] || touches_air(posed_.volume, v) || !can_spare(posed_.volume, v)) continue;
+      posed_.volume.voxels[voxel.at] = below;
+      ++given;
+    }
+    return given;
+  }
+
+  // The soft tissue, not skin, that most of the 26 voxels around have; 0 when none is.
+  Label tissue_under_skin(const glm::ivec3& v) const {
+    std::map<Label, int> counts;
+    for (const glm::ivec3& step : neighbours())
+      if (const Label label = posed_.volume.at_or_air(v + step); label && labels_.soft[label] && !labels_.skin[label]) ++counts[label];
+    const auto most = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    return most == counts.end() ? Label{0} : most->first;
+  }
+
+  // work(range, Tile) by many threads, then add(Tile) in order.
+  template <class Tile, class Work, class Add>
+  void for_each_tile(Progress& progress, const char* stage, const Work& work, const Add& add) const {
+    const glm::ivec3 size = output_.range.high - output_.range.low + 1, tiles = (size + kTile - 1) / kTile;
+    const std::int64_t layer = std::int64_t{tiles.x} * tiles.y;
+    for (int z = 0; z < tiles.z; ++z) {
+      progress.update(stage, double(z) / tiles.z);
+      std::vector<Tile> seen(layer);
+      parallel_for(layer, 1, [&](std::int64_t begin, std::int64_t end) {
+        for (auto t = begin; t < end && !progress.cancelled(); ++t) {
+          const glm::ivec3 low = output_.range.low + kTile * glm::ivec3(t % tiles.x, t / tiles.x, z);
+          work({low, glm::min(low + kTile - 1, output_.range.high)}, seen[t]);
+        }
+      });
+      for (const Tile& tile : seen) add(tile);
+    }
+    progress.update(stage, 1);
+  }
+
+  SoftBorders soft_borders(Progress& progress) const {
+    SoftBorders all;
+    for_each_tile<SoftBorders>(
+        progress, "volumes", [&](const VoxelRange& range, SoftBorders& tile) { find_borders(range, tile); },
+        [&](const SoftBorders& tile) {
+          for (const auto& [label, voxels] : tile.by_cell) all.by_cell[label] += voxels;
+          all.moves.insert(all.moves.end(), tile.moves.begin(), tile.moves.end());
+        });
+    return all;
+  }
+
+  void find_borders(const VoxelRange& range, SoftBorders& borders) const {
+    thread_local InverseMap map;
+    map.has_volume_ratio = false;
+    if (!fill(map, range)) return;
+    std::int64_t i = 0;
+    glm::ivec3 v;
+    for (v.z = range.low.z; v.z <= range.high.z; ++v.z)
+      for (v.y = range.low.y; v.y <= range.high.y; ++v.y)
+        for (v.x = range.low.x; v.x <= range.high.x; ++v.x, ++i) {
+          if (!is_covered(map, i) || map.bone[i] != InverseMap::kNoBone) continue;
+          const glm::ivec3 voxel = v - output_.range.low;
+          const Label label = posed_.volume.at(voxel), own = volume_.voxels[map.cell[i]];
+          if (label == 0 || !labels_.soft[label]) continue;
+          ++borders.by_cell[labels_.soft[own] ? own : label];
+          if (!is_enclosed(posed_.volume, voxel)) add_moves(voxel, label, glm::dvec3(map.rest[i]), borders.moves);
+        }
+  }
+
+  // To the soft tissues at its faces that its place at rest lies near to, and to air.
+  void add_moves(const glm::ivec3& voxel, Label label, const glm::dvec3& rest, std::vector<BorderMove>& moves) const {
+    static const LabelSet every(65536, 1);
+    const LabelSampler::Memberships found = sampler_.memberships(rest, every);
+    double own = 0, body = 0;
+    for (int k = 0; k < found.count; ++k) {
+      body += found.share[k];
+      if (found.label[k] == label) own = found.share[k];
+    }
+    const std::int64_t at = posed_.volume.grid.index(voxel);
+    const auto add = [&](Label to, double share) {
+      if (own - share < kMostSure) moves.push_back({at, label, to, static_cast<float>(std::max(own - share, 0.0))});
+    };
+    for (int k = 0; k < found.count; ++k)
+      if (found.label[k] != label && labels_.soft[found.label[k]] && has_at_face(voxel, found.label[k])) add(found.label[k], found.share[k]);
+    if (touches_air(posed_.volume, voxel)) add(0, 1 - body);
+  }
+
+  bool has_at_face(const glm::ivec3& voxel, Label label) const {
+    bool found = false;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side : {-1, 1}) {
+        glm::ivec3 beside = voxel;
+        beside[axis] += side;
+        found |= posed_.volume.at_or_air(beside) == label;
+      }
+    return found;
+  }
+
+  std::map<Label, std::int64_t> soft_voxels(const LabelVolume& volume) const {
+    std::vector<std::int64_t> counts(65536);
+    for (const Label label : volume.voxels) ++counts[label];
+    std::map<Label, std::int64_t> soft;
+    for (int label = 1; label < 65536; ++label)
+      if (counts[label] && labels_.soft[label]) soft[static_cast<Label>(label)] = counts[label];
+    return soft;
+  }
+
+  // Output voxels that a rest voxel is as large as.
+  double output_per_rest() const {
+    const glm::dvec3& ratio = lattice_.output().ratio;
+    return ratio.x * ratio.y * ratio.z;
+  }
+
+  Error too_far(const TissueTable& tissues, Label label, double percent) const {
+    const Tissue* tissue = tissues.find(label);
+    char text[200];
+    std::snprintf(text, sizeof text, "%.60s would have to %s %.1f %% to keep its mass, and more than %g %% is not made up", tissue ? tissue->name.c_str() : "a tissue",
+                  percent > 0 ? "gain" : "lose", std::abs(percent), settings_.mass_limit_percent);
+    return Error(text, "mass-exact", "pose by finite elements, bend less, or allow more by --mass-limit");
+  }
+
+  static bool meet(const VoxelRange& a, const VoxelRange& b) { return !intersect(a, b).empty(); }
+
+  void run_tile(const VoxelRange& range, TileCounts& counts) {
+    thread_local InverseMap map;
+    map.has_volume_ratio = settings_.jacobian;
+    if (fill(map, range) || settings_.grey) write(map, counts);
+  }
+
+  // False where no tissue reaches.
+  bool fill(InverseMap& map, const VoxelRange& range) const {
+    std::vector<std::int64_t> bricks, pieces;
+    for (std::int64_t b = 0; b < std::ssize(lattice_.tissue().bricks()); ++b) {
+      const auto& box = lattice_.bounds(b);
+      if (meet({box.low >> 16, (box.high + (kFixedOne - 1)) >> 16}, range)) bricks.push_back(b);
+    }
+    for (std::int64_t p = 0; p < std::ssize(bones_.pieces()); ++p)
+      if (meet(bones_.pieces()[p].posed, range)) pieces.push_back(p);
+    const bool has_tets = tets_ && tets_->reaches(range);
+    if (bricks.empty() && pieces.empty() && !has_tets && !settings_.grey) return false;
+    map.reset(range);
+    if (has_tets) tets_->rasterize(map, labels_.priority, depth_);
+    rasterize_cells(map, lattice_, bricks, labels_.priority, depth_, tets_ ? &tets_->instead_of() : nullptr);
+    if (has_tets) tets_->rasterize_riders(map, labels_.priority, depth_);
+    bones_.paint(map, pieces, sampler_, settings_.nearest, depth_);
+    return true;
+  }
+
+  void write(const InverseMap& map, TileCounts& counts) {
+    counts.range = map.range;
+    counts.row_used = map.row_used;
+    counts.row_has_bone.assign(map.row_used.size(), 0);
+    counts.lost = map.lost;
+    const std::int64_t length = map.range.high.x - map.range.low.x + 1;
+    std::int64_t map_row = 0;
+    glm::ivec3 v;
+    for (v.z = map.range.low.z; v.z <= map.range.high.z; ++v.z)
+      for (v.y = map.range.low.y; v.y <= map.range.high.y; ++v.y, ++map_row) {
+        if (!map.row_used[map_row] && !settings_.grey) continue;
+        const std::int64_t row = output_.grid.index(glm::ivec3(0, v.y, v.z) - output_.range.low);
+        std::int64_t i = map_row * length;
+        for (v.x = map.range.low.x; v.x <= map.range.high.x; ++v.x, ++i) {
+          const bool covered = is_covered(map, i);
+          if (settings_.grey) posed_.grey.voxels[row + v.x] = covered ? moved_grey(map.rest[i]) : still_grey(v);
+          if (covered) counts.row_has_bone[map_row] |= write_voxel(map, i, v, row + v.x, counts);
+        }
+      }
+  }
+
+  // Whether it is bone.
+  bool write_voxel(const InverseMap& map, std::int64_t i, const glm::ivec3& v, std::int64_t at, TileCounts& counts) {
+    const Label label = label_of(map, i);
+    posed_.volume.voxels[at] = label;
+    if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
+    if (mends_ && labels_.soft[label] && !labels_.skin[label] && may_touch_air(map, i, v))
+      if (const Label skin = skin_over(map.rest[i])) counts.under_skin.push_back({at, skin});
+    if (mends_ && labels_.skin[label] && !may_touch_air(map, i, v)) counts.inner_skin.push_back({static_cast<float>((*depth_)(map.rest[i])), at});
+    write_fields(map, i, v, at);
+    count(map, i, v, label, counts);
+    return map.bone[i] != InverseMap::kNoBone || labels_.bone[label];
+  }
+
+  static bool is_covered(const InverseMap& map, std::int64_t i) {
+    return map.cell[i] != InverseMap::kNoCell || map.bone[i] != InverseMap::kNoBone;
+  }
+
+  // Whether a voxel at one of its faces is air, or lies in another tile.
+  static bool may_touch_air(const InverseMap& map, std::int64_t i, const glm::ivec3& v) {
+    const glm::ivec3 size = map.range.high - map.range.low + 1;
+    std::int64_t stride = 1;
+    for (int axis = 0; axis < 3; stride *= size[axis++]) {
+      if (v[axis] == map.range.low[axis] || v[axis] == map.range.high[axis]) return true;
+      if (!is_covered(map, i - stride) || !is_covered(map, i + stride)) return true;
+    }
+    return false;
+  }
+
+  // The skin that touches the rest point's voxel, 0 when there is none or the voxel lay bare itself.
+  Label skin_over(const glm::dvec3& rest) const {
+    const glm::ivec3 voxel = glm::ivec3(rest + 1.5) - 1;  // rest points lie in tissue; std::floor would be a call
+    if (depth_->at_voxel(voxel) > skin_reach_ || touches_air(volume_, voxel)) return 0;
+    for (const glm::ivec3& step : neighbours())
+      if (const Label label = volume_.at_or_air(voxel + step); labels_.skin[label]) return label;
+    return 0;
+  }
+
+  Label label_of(const InverseMap& map, std::int64_t i) const {
+    const glm::dvec3 rest = map.rest[i];
+    if (map.bone[i] != InverseMap::kNoBone) {
+      const Label label = settings_.nearest ? sampler_.nearest(rest) : sampler_.tissue(rest, labels_.bone);
+      return labels_.bone[label] ? label : sampler_.nearest_of(rest, labels_.bone, kReach);
+    }
+    const Label own = volume_.voxels[map.cell[i]];
+    Label label = settings_.nearest ? own : sampler_.tissue(rest);
+    if (label == 0) label = own;  // a rest point on the tissue's outer border
+    if (!labels_.bone[label]) return label;
+    Label soft = settings_.nearest ? Label{0} : sampler_.tissue(rest, labels_.soft);
+    if (soft == 0) soft = sampler_.prevailing(rest, labels_.soft, kReach);
+    return soft ? soft : label;
+  }
+
+  void write_fields(const InverseMap& map, std::int64_t i, const glm::ivec3& v, std::int64_t at) const {
+    const OutputLattice& lattice = lattice_.output();
+    if (settings_.displacement)
+      posed_.displacement[at] = world_from_rest_.linear * (lattice.to_rest(glm::dvec3(v)) - glm::dvec3(map.rest[i]));
+    if (settings_.jacobian)
+      posed_.jacobian[at] = map.bone[i] != InverseMap::kNoBone
+                                ? 1.0f
+                                : static_cast<float>(map.posed_per_rest[i] / output_per_rest());
+    if (settings_.overlap)
+      posed_.overlap[at] = map.flags[i] & InverseMap::kBoneOverlap ? Label{2} : map.flags[i] & InverseMap::kOverlap ? Label{1} : Label{0};
+  }
+
+  void count(const InverseMap& map, std::int64_t i, const glm::ivec3& v, Label label, TileCounts& counts) const {
+    counts.holes += label == 0;
+    counts.overlap += (map.flags[i] & InverseMap::kOverlap) != 0;
+    counts.bone_overlap += (map.flags[i] & InverseMap::kBoneOverlap) != 0;
+    if (!labels_.bone[label]) return;
+    const int bone = map.bone[i] != InverseMap::kNoBone ? map.bone[i] : bones_.owner(voxel_at(volume_.grid, map.cell[i]));
+    if (bone >= 0) counts.add_bone_voxel(bone, bones_.residual(bone, map.rest[i], v));
+  }
+
+  static glm::ivec3 voxel_at(const Grid& grid, std::int64_t at) {
+    return {int(at % grid.size.x), int(at / grid.size.x % grid.size.y), int(at / grid.size.x / grid.size.y)};
+  }
+
+  void start_grey() {
+    grey_.emplace(*settings_.grey);
+    const auto& voxels = settings_.grey->voxels;
+    outside_ = voxels.empty() ? 0 : *std::min_element(voxels.begin(), voxels.end());
+    posed_.grey.grid = output_.grid;
+    posed_.grey.type = settings_.grey->type;
+    posed_.grey.voxels.resize(output_.grid.voxel_count());
+  }
+
+  float moved_grey(const glm::dvec3& rest) const { return (*grey_)(world_from_rest_ * rest); }
+
+  // Surroundings that were air and are air again stay; where the body went away there is nothing.
+  float still_grey(const glm::ivec3& v) const {
+    const glm::dvec3 rest = lattice_.output().to_rest(glm::dvec3(v)), world = world_from_rest_ * rest;
+    return sampler_.nearest(rest) == 0 && grey_->covers(world) ? (*grey_)(world) : outside_;
+  }
+
+  void add(const TileCounts& tile) {
+    DeformReport& report = posed_.report;
+    for (std::int64_t i = 0; i < std::ssize(tile.row_used); ++i) {
+      const int height = tile.range.high.y - tile.range.low.y + 1;
+      const glm::ivec3 row(output_.range.low.x, tile.range.low.y + i % height, tile.range.low.z + i / height);
+      const std::int64_t at = output_.grid.index(row - output_.range.low) / output_.grid.size.x;
+      rows_[at] |= tile.row_used[i];
+      bone_rows_[at] |= tile.row_has_bone[i];
+    }
+    report.new_hole_voxels += tile.holes;
+    report.overlap_voxels += tile.overlap;
+    report.bone_overlap_voxels += tile.bone_overlap;
+    for (Label label : tile.lost) ++report.overlap_by_label[label];
+    under_skin_.insert(under_skin_.end(), tile.under_skin.begin(), tile.under_skin.end());
+    inner_skin_.insert(inner_skin_.end(), tile.inner_skin.begin(), tile.inner_skin.end());
+    for (const auto& [bone, seen] : tile.bones) {
+      report.bones[bone].voxels += seen.voxels;
+      report.bones[bone].rigid_residual_mm = std::max(report.bones[bone].rigid_residual_mm, seen.residual_mm);
+    }
+  }
+
+  const LabelVolume& volume_;
+  const LabelSets& labels_;
+  const PosedLattice& lattice_;
+  const RigidBones& bones_;
+  const PosedTets* tets_;
+  const TissueDepth* depth_;
+  const ResampleSettings& settings_;
+  const OutputGrid& output_;
+  const bool mends_;
+  Posed& posed_;
+  const double skin_reach_ = kSkinReach * largest(volume_.grid.spacing);  // mm below air
+  std::vector<UnderSkin> under_skin_;
+  std::vector<InnerSkin> inner_skin_;
+  RowSet rows_, bone_rows_;  // of the output that hold tissue, and bone
+  LabelVolume posed_bones_;  // 1 + the rig bone of each voxel that a bone paints
+  LabelSampler sampler_;
+  AffineTransform world_from_rest_;
+  std::optional<GreySampler> grey_;
+  float outside_ = 0;
+};
+
+}  // namespace
+
+void write_voxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed, Progress& progress) {
+  PosedVoxels voxels(body, settings, posed);
+  voxels.run(progress);
+  if (body.mends) voxels.mend_tears();
+  if (body.mends && body.tets) voxels.keep_soft_volumes(progress);
+  if (settings.mass_exact) voxels.keep_masses(body.tissues, progress);
+}
+
+}  // namespace limber
