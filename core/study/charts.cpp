@@ -130,7 +130,7 @@ std::string svg_of(const LineChart& chart) {
     for (double tick = range.low; tick <= range.high * 1.001; tick *= 10)
       svg += line(left, y_of(tick), right, y_of(tick), "grid") + label(left - 6, y_of(tick) + 4, number(tick), "tick", "end");
   } else {
-    const double step = tick_step(range.high - range.low, 5);
+    const double step = tick_step(range.high - range.low, 7);  // five steps may have grown by two, to end at a step
     for (int i = 0; range.low + i * step <= range.high + step * 1e-6; ++i) {
       const double tick = range.low + i * step;
       const bool is_zero = std::abs(tick) < step * 1e-6;

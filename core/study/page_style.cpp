@@ -108,6 +108,7 @@ th.pose{vertical-align:top}
  figure>svg{max-width:135mm!important}
  .panels{grid-template-columns:repeat(3,1fr)!important;gap:10px 8px}
  .panels.two{grid-template-columns:repeat(2,1fr)!important}
+ figcaption{break-inside:avoid}
  figure.table figcaption{break-after:avoid}
  thead{display:table-header-group}
  tr,table.gates tbody{break-inside:avoid}
@@ -115,9 +116,9 @@ th.pose{vertical-align:top}
  .wide{overflow:visible}
  table.gates,table.gates th.row{font-size:7.4pt}table.gates thead th{font-size:7pt;padding:3px}table.gates thead small,td.gate small{font-size:6.6pt}td.gate{padding:2px 3px}
  tbody td,tfoot td,th.row{padding-top:2.5pt;padding-bottom:2.5pt}
- table.pictures thead th:first-child{width:72px}
+ table.pictures thead th:first-child{width:96px}
  table.pictures th.row,table.pictures thead th{font-size:8pt}
- pre{white-space:pre-wrap;font-size:7.4pt}
+ pre{white-space:pre-wrap;font-size:7.4pt;columns:3}
  .hash{font-size:7pt}
 }
 )css";
