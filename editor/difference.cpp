@@ -3,6 +3,7 @@
 
 #include "editor/dispatch.h"
 #include "editor/fem_view.h"
+#include "editor/overlap.h"
 #include "editor/results.h"
 #include "editor/task.h"
 #include "editor/tissues.h"
@@ -27,11 +28,9 @@ glm::vec3 dulled(const glm::vec3& colour) {
 ComparedSide compared(const std::shared_ptr<const LabelVolume>& volume, const LabelVolume& other, const TissueTable& tissues, bool side_a) {
   ComparedSide side{volume, std::make_shared<const TissueVoxels>(*volume), {}, nullptr};
   side.differing = differing(*volume, *side.tissue, other);
-  const auto bytes = [](const glm::vec3& colour) { return glm::u8vec3(glm::round(colour * 255.0f)); };
-  std::vector<glm::u8vec3> dull(65536, bytes(dulled(glm::vec3(0.7f))));
-  for (const Tissue& tissue : tissues.tissues) dull[tissue.label] = bytes(dulled(tissue.colour));
+  const std::vector<glm::u8vec3> dull = dull_colours(tissues);
   const MarkColours marks = marks_of(side_a);
-  const glm::u8vec3 air = bytes(marks.air), another = bytes(marks.tissue);
+  const glm::u8vec3 air = bytes_of(marks.air), another = bytes_of(marks.tissue);
   std::vector<glm::u8vec3> field(side.differing.voxels.size());
   side.tissue->for_each([&](std::int64_t place, const glm::ivec3& voxel) {
     const Differs differs = side.differing.voxels[static_cast<std::size_t>(place)];
@@ -54,13 +53,23 @@ MarkColours marks_of(bool side_a) {
   return {colour, glm::mix(colour, glm::vec3(1), 0.6f)};
 }
 
+glm::u8vec3 bytes_of(const glm::vec3& srgb) { return glm::u8vec3(glm::round(srgb * 255.0f)); }
+
+std::vector<glm::u8vec3> dull_colours(const TissueTable& tissues) {
+  std::vector<glm::u8vec3> dull(65536, bytes_of(dulled(glm::vec3(0.7f))));
+  for (const Tissue& tissue : tissues.tissues) dull[tissue.label] = bytes_of(dulled(tissue.colour));
+  return dull;
+}
+
 bool shows_difference(const Editor& editor) {
   return editor.difference->shown && editor.workspace == Workspace::Resample && !watched_solve(editor) && why_no_comparison(editor).empty();
 }
 
 void show_difference_overlay(Editor& editor, bool on) {
   editor.difference->shown = on;
-  if (on) editor.fem->overlay.measure.reset();
+  if (!on) return;
+  editor.fem->overlay.measure.reset();
+  editor.overlap->shown = false;
 }
 
 const ComparedVolumes* compared_volumes(const Editor& editor) {

@@ -40,6 +40,8 @@ struct MarkColours {
   glm::vec3 air, tissue;
 };
 MarkColours marks_of(bool side_a);
+glm::u8vec3 bytes_of(const glm::vec3& srgb);
+std::vector<glm::u8vec3> dull_colours(const TissueTable& tissues);  // [65536]: what is not marked, as bright as it is, nearly grey
 
 // Shown in the Resample workspace, while there are two volumes to compare.
 bool shows_difference(const Editor& editor);

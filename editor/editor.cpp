@@ -15,6 +15,7 @@
 #include "editor/frame_log.h"
 #include "editor/handling.h"
 #include "editor/live_pose.h"
+#include "editor/overlap.h"
 #include "editor/panels/panels.h"
 #include "editor/project.h"
 #include "editor/sitting.h"
@@ -104,7 +105,7 @@ void Dialog::escape(Editor& editor) { editor.close_dialog(); }
 Editor::Editor(Host& host, const Preferences& preferences)
     : host(host), preferences(preferences), keymap(read_keymap(asset("keymap.json"))), operators(gather_operators()),
       jobs(kJobsAtOnce, [&host] { host.wake(); }), arrangements(preferences.arrangements),
-      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), fem(std::make_unique<FemView>()), difference(std::make_unique<DifferenceView>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
+      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), fem(std::make_unique<FemView>()), difference(std::make_unique<DifferenceView>()), overlap(std::make_unique<OverlapView>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
   IMGUI_CHECKVERSION();
   imgui = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -174,6 +175,7 @@ void Editor::draw_views() {
   show_weights(*this);
   show_fem(*this);
   show_difference(*this);
+  show_overlap(*this);
   show_proposed_joint(*this);
   move_camera(views->body, now, preferences.reduce_motion);
   ended(*this, "pose");

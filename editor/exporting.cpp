@@ -1,22 +1,33 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/exporting.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/base/outputs.h"
+#include "core/deck/decks.h"
+#include "core/deck/tet_phantom.h"
+#include "core/mesh/surface_files.h"
+#include "core/mesh/tetgen_files.h"
 #include "core/pose/gltf_export.h"
 #include "core/pose/pose_io.h"
 #include "core/rig/armature_io.h"
+#include "core/report/fem_measures.h"
 #include "core/rig/bvh.h"
 #include "core/skin/weights_io.h"
+#include "core/study/session_page.h"
 #include "core/volume/volume_io.h"
 #include "core/rig/motion_edit.h"
+#include "editor/commands/study_pictures.h"
+#include "editor/form.h"
 #include "editor/icons.h"
 #include "editor/panels/question.h"
 #include "editor/results.h"
+#include "editor/scratch_folder.h"
 #include "render/image_io.h"
 
 namespace limber::editor {
@@ -102,17 +113,112 @@ void export_file(Editor& editor, ExportKind kind, const Path& path) {
   });
 }
 
-void export_result(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
-  check_writable(path);
-  start_task(editor, "Export " + path.filename().string(), [result, path, document = editor.document()](Progress& progress) -> Finish {
-    progress.update("write", 0);
-    write_volume(*result->volume, path, *(result->from_tissues ? result->from_tissues : document.tissues), document.volume_type ? *document.volume_type : FileType{});
-    return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+namespace {
+
+// Of the label that most rest voxels in a tet have.
+TetMesh posed_mesh(const Result& result, const TissueTable& tissues) {
+  const SolvedMesh& solved = *result.solved;
+  const LabelVolume& rest = *result.from_volume;
+  const TissueVoxels tissue(rest);
+  const std::vector<std::int32_t> tets = tets_of_voxels(solved.mesh.tets.T, solved.mesh.tets.V, rest.grid, tissue);
+  std::vector<std::map<Label, int>> counts(static_cast<std::size_t>(solved.mesh.tets.T.rows()));
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& voxel) {
+    if (const std::int32_t tet = tets[static_cast<std::size_t>(place)]; tet >= 0) ++counts[static_cast<std::size_t>(tet)][rest.at(voxel)];
   });
+  std::vector<Label> labels;
+  for (const auto& count : counts)
+    labels.push_back(count.empty() ? Label{0} : std::max_element(count.begin(), count.end(), [](const auto& x, const auto& y) { return x.second < y.second; })->first);
+  return organ_mesh(solved.V, solved.mesh.tets.T, labels, tissues);
+}
+
+void write_mesh(const Result& result, const TissueTable& tissues, const Path& path, std::vector<std::string>& warnings) {
+  const TetMesh mesh = posed_mesh(result, tissues);
+  const Path name = Path(path).replace_extension(""), materials = name.string() + ".material";
+  Outputs outputs;
+  outputs.expect({materials, name.string() + ".ele", path});
+  write_tetgen_files(path, mesh);
+  try {
+    write_file_atomically(materials, material_list(tissues, mesh.region, read_composition_table(), materials.string()));
+  } catch (const Error& error) {
+    warnings.push_back(std::string("There is no list of materials: ") + error.what());
+  }
+  outputs.complete();
+}
+
+void write_surface_files(const LabelVolume& volume, const TissueTable& tissues, const Path& path, Progress& progress) {
+  const LabelSurfaces all = label_surfaces(volume, {}, progress);
+  if (all.surfaces.empty()) throw Error("there is no tissue", path.string(), "export a volume with labels");
+  Outputs outputs;
+  outputs.expect(surface_paths(all, tissues, path));
+  write_surfaces(all, tissues, path);
+  outputs.complete();
+}
+
+std::vector<TissueMaterial> materials_at(const TissueTable& tissues, double frequency) {
+  TissueMaterials found = tissue_materials(tissues, read_dielectric_table(), frequency);
+  std::string unmatched;
+  for (const std::string& name : found.unmatched) unmatched += (unmatched.empty() ? "" : ", ") + name;
+  if (!unmatched.empty()) throw Error("no dielectric properties are known of: " + unmatched, "tissues", "rename or merge them, or convert the exported volume with `limber convert --properties`");
+  return std::move(found.materials);
+}
+
+bool is_mesh(const Path& path) { return path.extension() == ".node"; }
+
+//   frequency  Hz, of formats that go by it
+void start_export(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path, double frequency) {
+  const Document& document = editor.document();
+  const auto tissues = result->from_tissues ? result->from_tissues : document.tissues;
+  start_task(editor, "Export " + path.filename().string(), [result, path, frequency, tissues, type = document.volume_type ? *document.volume_type : FileType{}](Progress& progress) -> Finish {
+    progress.update("write", 0);
+    std::vector<std::string> warnings;
+    const DeckFormat format = deck_format(path);
+    if (is_mesh(path)) write_mesh(*result, *tissues, path, warnings);
+    else if (is_surface_path(path)) write_surface_files(*result->volume, *tissues, path, progress);
+    else if (format != DeckFormat::None) write_deck(*result->volume, *tissues, needs_frequency(format) ? materials_at(*tissues, frequency) : std::vector<TissueMaterial>(), frequency, path, warnings);
+    else write_volume(*result->volume, path, *tissues, type);
+    return [path, warnings](Editor& e) {
+      e.messages.ok("Exported " + path.filename().string(), path.parent_path().string());
+      for (const std::string& warning : warnings) e.messages.warn(path.filename().string(), warning);
+    };
+  });
+}
+
+void ask_frequency(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+  const auto tissues = result->from_tissues ? result->from_tissues : editor.document().tissues;
+  const auto outcome = [tissues](const Editor&, const std::vector<FormField>& fields) {
+    return std::to_string(materials_at(*tissues, fields[0].value * 1e6).size()) + " tissues with permittivity and conductivity of the published tables.";
+  };
+  const auto act = [result, path](Editor& e, const std::vector<FormField>& fields) { start_export(e, result, path, fields[0].value * 1e6); };
+  editor.open_dialog(make_form({"Export " + path.filename().string(), "Permittivity and conductivity of tissue go by the frequency of the field.", "Export",
+                                {number_of("Frequency", "Of the field that is simulated.", 900, kLowestFrequency / 1e6, kHighestFrequency / 1e6, "%g", "MHz")}, outcome, act, {}}));
+}
+
+// A page of all results, oldest first.
+void export_page(Editor& editor, const Path& path) {
+  const Document& document = editor.document();
+  SessionPage session{editor.name.empty() ? "Untitled" : Path(editor.name).stem().string(), {}, document.tissues};
+  for (const auto& result : document.results)
+    session.results.push_back({result, result->from_armature && result->from_pose ? name_of_pose(*result->from_armature, *result->from_pose) : result->name});
+  start_task(editor, "Report " + path.filename().string(), [session, path, scratch = editor.preferences.scratch_folder](Progress& progress) -> Finish {
+    const ScratchFolder folder(scratch);
+    write_file_atomically(path, session_page(session, folder.path(), start_pictures, progress));
+    return [path](Editor& e) { e.messages.ok((e.host.open_file(path) ? "Opened " : "Wrote ") + path.filename().string(), path.parent_path().string()); };
+  });
+}
+
+}  // namespace
+
+void export_result(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+  const DeckFormat format = deck_format(path);
+  if (format == DeckFormat::None && !is_surface_path(path) && !is_mesh(path)) check_writable(path);
+  else check_place(path);
+  if (is_mesh(path) && !(result->solved && result->from_volume)) throw Error("the result has no mesh", result->name, "choose one by finite elements that bends something");
+  needs_frequency(format) ? ask_frequency(editor, result, path) : start_export(editor, result, path, 0);
 }
 
 void export_report(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
   check_place(path);
+  if (path.extension() == ".html") return export_page(editor, path);
   const std::string text = path.extension() == ".json" ? result->report : text_of_report(result->name, *facts_of(editor, result));
   start_task(editor, "Report " + path.filename().string(), [text, path](Progress&) -> Finish {
     write_file_atomically(path, text);

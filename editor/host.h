@@ -8,6 +8,7 @@
 
 #include <glm/glm.hpp>
 
+#include "core/base/file.h"
 #include "editor/events.h"
 
 namespace limber::editor {
@@ -36,6 +37,8 @@ class Host {
   virtual void set_cursor(Cursor cursor) = 0;
   virtual void set_title(const std::string& title) = 0;
   virtual void toggle_full_screen() = 0;
+  // With the program that the desktop has for it; false where there is none.
+  virtual bool open_file(const Path&) { return false; }
 
   EventQueue events;
 };

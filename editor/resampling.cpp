@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/resampling.h"
 
-#include <cstdlib>
-#include <cstring>
-
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -16,32 +13,11 @@
 #include "core/volume/volume_io.h"
 #include "editor/fem_view.h"
 #include "editor/results.h"
+#include "editor/scratch_folder.h"
 
 namespace limber::editor {
 
 namespace {
-
-// Empty at first, gone with all that is in it at the end.
-class ScratchFolder {
- public:
-  explicit ScratchFolder(const std::string& inside) {
-    std::error_code failure;
-    const Path base = inside.empty() ? std::filesystem::temp_directory_path(failure) : Path(inside);
-    std::string name = (base / "limber-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw Error("no scratch folder can be made", base.string(), std::string(std::strerror(errno)) + ": choose another one in the preferences");
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  Path operator/(const char* name) const { return path_ / name; }
-
- private:
-  Path path_;
-};
 
 struct Request {
   Document from;  // with a pose
@@ -69,7 +45,7 @@ void write_inputs(const Request& request, const ScratchFolder& folder, Progress&
   write_pose(*from.pose, *from.armature, folder / "pose.json");
   write_weights(*from.weights, *from.volume, TissueVoxels(*from.volume), folder / "weights.nrrd");
   nlohmann::ordered_json job{{"command", "resample"}, {"volume", "volume.nrrd"}, {"rig", "rig.json"},     {"tissues", "tissues.json"},  {"weights", "weights.nrrd"},
-                             {"pose", "pose.json"},   {"method", request.method}, {"output", "posed.nrrd"}, {"report", "report.json"}};
+                             {"pose", "pose.json"},   {"method", request.method}, {"output", "posed.nrrd"}, {"report", "report.json"}, {"overlap", "overlap.nrrd"}};
   if (request.spacing > 0) job["spacing"] = request.spacing;
   if (request.fit_joints) job["fit-joints"] = true;
   if (request.mass_exact) job["mass-exact"] = true;
@@ -93,6 +69,17 @@ std::shared_ptr<const LabelVolume> read_posed(const Path& path, const TissueTabl
   }
   for (Label& label : file.volume.voxels) label = label_of[label];
   return std::make_shared<const LabelVolume>(std::move(file.volume));
+}
+
+std::shared_ptr<const Overlap> read_overlap(const Path& path, Progress& progress) {
+  const VolumeFile file = read_volume(path, progress);
+  auto overlap = std::make_shared<Overlap>();
+  for (const Tissue& value : file.tissues.tissues) {
+    auto& voxels = value.file_value == 1 ? overlap->tissue : overlap->bones;
+    for (std::size_t i = 0; i < file.volume.voxels.size(); ++i)
+      if (file.volume.voxels[i] == value.label) voxels.push_back(static_cast<std::int64_t>(i));
+  }
+  return overlap;
 }
 
 // Hands on what the worker has left of its solve, as it goes.
@@ -132,6 +119,7 @@ Edit resample_in_worker(Request& request, std::shared_ptr<std::string>& name, Pr
   auto result = std::make_shared<Result>();
   result->method = request.method + (request.method == "fem" && request.contact ? "-contact" : "");
   result->volume = read_posed(folder / "posed.nrrd", *request.from.tissues, progress);
+  result->overlap = read_overlap(folder / "overlap.nrrd", progress);
   result->report = read_file(folder / "report.json");
   result->from_volume = request.from.volume;
   result->from_tissues = request.from.tissues;

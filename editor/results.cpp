@@ -247,7 +247,7 @@ std::string why_no_comparison(const Editor& editor) {
   return same ? "Choose two results: a click makes one B, Shift and a click A" : "";
 }
 
-bool wiping(const Editor& editor) { return editor.comparison.views == Comparison::Views::Wipe && why_no_comparison(editor).empty(); }
+bool wiping(const Editor& editor) { return editor.comparison.views == Comparison::Views::Wipe && editor.workspace == Workspace::Resample && why_no_comparison(editor).empty(); }
 
 bool side_by_side(const Editor& editor) {
   return editor.comparison.views == Comparison::Views::SideBySide && editor.workspace == Workspace::Resample && why_no_comparison(editor).empty();

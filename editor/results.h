@@ -75,8 +75,9 @@ inline constexpr std::uint32_t kColourOfA = 0xFFD97AB0, kColourOfB = 0xFFA8B63F;
 std::shared_ptr<const Result> result_named(const Document& document, const std::string& name);  // null for none
 // Why there is nothing to compare; "" when there is.
 std::string why_no_comparison(const Editor& editor);
+// In the Resample workspace alone: elsewhere there is work on one body.
 bool wiping(const Editor& editor);
-bool side_by_side(const Editor& editor);  // in the Resample workspace
+bool side_by_side(const Editor& editor);
 bool comparing(const Editor& editor);     // either
 // Name of a side as the views show it: "Fore 30°, DQ", "At rest".
 std::string name_of_side(const Editor& editor, const std::string& result);

@@ -26,8 +26,11 @@ void commit_looks(Editor& editor, const std::string& label, const std::function<
 }  // namespace
 
 std::string shown_name(const Tissue& tissue) {
-  std::string name = tissue.name.empty() ? "Label " + std::to_string(tissue.label) : tissue.name;
-  if (name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+  return capitalized(tissue.name.empty() ? "Label " + std::to_string(tissue.label) : tissue.name);
+}
+
+std::string capitalized(std::string name) {
+  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
   return name;
 }
 

@@ -10,6 +10,7 @@ namespace limber::editor {
 
 // As lists show it: "muscle" begins with a capital, one without a name is "Label 17".
 std::string shown_name(const Tissue& tissue);
+std::string capitalized(std::string name);  // "fat" -> "Fat"
 
 TissueLook look_of(const Document& document, Label label);
 void set_look(Editor& editor, const std::string& label, Label tissue, const TissueLook& look);

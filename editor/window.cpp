@@ -7,6 +7,9 @@
 #define GLFW_INCLUDE_NONE
 #include <epoxy/gl.h>
 #include <GLFW/glfw3.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "core/base/error.h"
 
@@ -137,6 +140,7 @@ class Window final : public Host {
   }
   void set_title(const std::string& title) override { glfwSetWindowTitle(window_, title.c_str()); }
   void toggle_full_screen() override;
+  bool open_file(const Path& path) override;
 
  private:
   static Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
@@ -180,6 +184,15 @@ void Window::set_callbacks() {
     of(w).events.push(FilesDropped{std::vector<Path>(names, names + count)});
   });
   glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int focused) { of(w).events.push(FocusChanged{focused == GLFW_TRUE}); });
+}
+
+// By a shell that leaves at once, so that nothing waits for the other program or ends with it.
+bool Window::open_file(const Path& path) {
+  std::string program = "sh", option = "-c", script = "command -v xdg-open >/dev/null || exit 1; xdg-open \"$0\" </dev/null >/dev/null 2>&1 &", name = path.string();
+  char* arguments[] = {program.data(), option.data(), script.data(), name.data(), nullptr};
+  pid_t shell = 0;
+  int status = 1;
+  return ::posix_spawnp(&shell, "sh", nullptr, nullptr, arguments, environ) == 0 && ::waitpid(shell, &status, 0) == shell && status == 0;
 }
 
 void Window::toggle_full_screen() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "render/headless.h"
 
+#include <mutex>
 #include <string>
 
 #include <epoxy/egl.h>
@@ -17,13 +18,25 @@ namespace {
               "install a graphics driver with EGL (Debian: libegl1 and libgl1-mesa-dri)");
 }
 
+// EGL has one display for the whole process, and ends it under every context: only the last one of all threads may.
+struct Users {
+  std::mutex mutex;
+  int count = 0;
+};
+Users& users() {
+  static Users all;
+  return all;
+}
+
 EGLDisplay open_display() {
   const EGLDisplay display = epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base") &&
                                      epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")
                                  ? eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)
                                  : eglGetDisplay(EGL_DEFAULT_DISPLAY);
   EGLint major = 0, minor = 0;
+  const std::lock_guard lock(users().mutex);
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor)) refuse("EGL has no display");
+  ++users().count;
   return display;
 }
 
@@ -46,9 +59,10 @@ struct HeadlessContext::Impl {
 
   ~Impl() {
     if (display == EGL_NO_DISPLAY) return;
-    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (context != EGL_NO_CONTEXT && eglGetCurrentContext() == context) eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
-    eglTerminate(display);
+    const std::lock_guard lock(users().mutex);
+    if (--users().count == 0) eglTerminate(display);
   }
 };
 

@@ -6,7 +6,7 @@
 
 namespace limber::render {
 
-// Current on the thread that made it while it lives. One at a time for a thread.
+// Current on the thread that made it while it lives. One at a time for a thread; threads may have their own.
 class HeadlessContext {
  public:
   // Throws Error when this machine has no EGL, or an OpenGL older than 3.3.

@@ -5,7 +5,6 @@
 #include "core/base/error.h"
 #include "core/cmd/command.h"
 #include "core/cmd/convert_rig.h"
-#include "core/cmd/outputs.h"
 #include "core/cmd/surface_options.h"
 #include "core/cmd/tissue_options.h"
 #include "core/deck/decks.h"
@@ -21,20 +20,13 @@ struct Options {
   MaterialOptions material;
 };
 
-void write_deck(DeckFormat format, const VolumeFile& file, const Options& options) {
+void write_as_deck(DeckFormat format, const VolumeFile& file, const Options& options) {
   const TissueTable tissues = tissues_of(file, options.material.tissues);
   std::vector<std::string> warnings;
-  Deck deck{deck_volume(file.volume, warnings), {}, options.material.frequency.value_or(0)};
+  std::vector<TissueMaterial> materials;
+  if (needs_frequency(format)) materials = materials_of(tissues, options.material, options.out);
+  write_deck(file.volume, tissues, std::move(materials), options.material.frequency.value_or(0), options.out, warnings);
   warn(warnings);
-  if (needs_frequency(format)) deck.materials = materials_of(tissues, options.material, options.out);
-  Outputs outputs;
-  outputs.expect({options.out});
-  outputs.expect(companions(format, options.out));
-  if (format == DeckFormat::OpenEms) write_openems(deck, options.out);
-  if (format == DeckFormat::DiscMaterial) write_disc_material(deck, options.out);
-  if (format == DeckFormat::GprMax) write_gprmax(deck, options.out);
-  if (format == DeckFormat::IcrpSlices) write_icrp_slices(deck.volume, tissues, read_composition_table(), options.out);
-  outputs.complete();
 }
 
 // Label volumes keep every value as it was; grey ones with fractions go as float.
@@ -55,7 +47,7 @@ void convert_volume(const Options& options) {
   }
   VolumeFile file = read_volume(options.in, progress);
   warn(file.warnings);
-  if (format != DeckFormat::None) return write_deck(format, file, options);
+  if (format != DeckFormat::None) return write_as_deck(format, file, options);
   if (is_surface) return write_surfaces_of(file.volume, tissues_of(file, options.material.tissues), {}, options.out, progress);
   if (!options.material.tissues.empty()) file.tissues = tissues_of(file, options.material.tissues);
   write_volume(file.volume, options.out, file.tissues, file.type);

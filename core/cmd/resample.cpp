@@ -10,10 +10,10 @@
 #include <memory>
 #include <optional>
 
+#include "core/base/outputs.h"
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
-#include "core/cmd/outputs.h"
 #include "core/cmd/pose_options.h"
 #include "core/deck/tet_phantom.h"
 #include "core/fem/solve_pose.h"
@@ -203,36 +203,17 @@ void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bo
                 (deform.solve->blocked_by.empty() ? "" : ": what stands in the way: " + deform.solve->blocked_by)});
 }
 
-// The posed mesh with organ numbers as regions: that of the label with most voxels of a tet; of a tet without any voxel, as of a tet
-// that shares a corner.
+// The posed mesh with organ numbers as regions: that of the label with most voxels of a tet.
 TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
   const TissueModel& model = shape.model;
   const TetMesh& mesh = model.fem.mesh;
-  std::vector<std::uint16_t> of_tet(mesh.T.rows(), 0), of_node(mesh.V.rows(), 0);
-  const auto spread = [&](int t) {
-    for (int i = 0; i < 4; ++i) of_node[mesh.T(t, i)] = of_tet[t];
-  };
+  std::vector<Label> labels(mesh.T.rows(), 0);
   for (int t = 0; t < mesh.T.rows(); ++t) {
     int most = 0;
     for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i)
-      if (model.counts[i].voxels > most) {
-        most = model.counts[i].voxels;
-        const Tissue* tissue = tissues.find(model.counts[i].label);
-        of_tet[t] = tissue ? organ_number(*tissue) : model.counts[i].label;
-      }
-    if (most > 0) spread(t);
+      if (model.counts[i].voxels > most) most = model.counts[i].voxels, labels[t] = model.counts[i].label;
   }
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (int t = 0; t < mesh.T.rows(); ++t) {
-      if (of_tet[t] != 0) continue;
-      for (int i = 0; i < 4 && of_tet[t] == 0; ++i) of_tet[t] = of_node[mesh.T(t, i)];
-      if (of_tet[t] == 0) continue;
-      spread(t);
-      changed = true;
-    }
-  }
-  return {.V = shape.V, .T = mesh.T, .region = of_tet};
+  return organ_mesh(shape.V, mesh.T, labels, tissues);
 }
 
 void describe(Report& report, const Options& options, const Armature& rig, const Pose& pose) {

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/outputs.h"
 #include "core/cmd/command.h"
-#include "core/cmd/outputs.h"
 #include "core/cmd/surface_options.h"
 #include "core/cmd/tissue_options.h"
 #include "core/mesh/surface_files.h"

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/outputs.h"
 #include "core/deck/greedy_boxes.h"
 #include "core/deck/hdf5_file.h"
 #include "core/volume/header_text.h"
@@ -172,6 +173,19 @@ void write_gprmax(const Deck& deck, const Path& path) {
   file.attribute("/", "title", "Limber: " + path.filename().string());
   file.write(path);
   write_file_atomically(companions(DeckFormat::GprMax, path).front(), text);
+}
+
+void write_deck(const LabelVolume& volume, const TissueTable& tissues, std::vector<TissueMaterial> materials, double frequency, const Path& path, std::vector<std::string>& warnings) {
+  const DeckFormat format = deck_format(path);
+  const Deck deck{deck_volume(volume, warnings), std::move(materials), frequency};
+  Outputs outputs;
+  outputs.expect({path});
+  outputs.expect(companions(format, path));
+  if (format == DeckFormat::OpenEms) write_openems(deck, path);
+  if (format == DeckFormat::DiscMaterial) write_disc_material(deck, path);
+  if (format == DeckFormat::GprMax) write_gprmax(deck, path);
+  if (format == DeckFormat::IcrpSlices) write_icrp_slices(deck.volume, tissues, read_composition_table(), path);
+  outputs.complete();
 }
 
 }  // namespace limber

@@ -43,4 +43,9 @@ void write_icrp_slices(const LabelVolume& volume, const TissueTable& tissues, co
 // What write_* puts beside `path`.
 std::vector<Path> companions(DeckFormat format, const Path& path);
 
+// What the name of `path` asks for; after a failure none of it is left.
+//   materials  of every tissue, where the format goes by frequency (Hz); else none
+//   throws Error as the above do
+void write_deck(const LabelVolume& volume, const TissueTable& tissues, std::vector<TissueMaterial> materials, double frequency, const Path& path, std::vector<std::string>& warnings);
+
 }  // namespace limber

@@ -13,6 +13,32 @@ std::uint16_t organ_number(const Tissue& tissue) {
   return fits ? static_cast<std::uint16_t>(tissue.file_value) : tissue.label;
 }
 
+TetMesh organ_mesh(const Eigen::MatrixX3d& V, const Eigen::MatrixX4i& T, const std::vector<Label>& labels, const TissueTable& tissues) {
+  std::vector<std::uint16_t> of_tet(static_cast<std::size_t>(T.rows()), 0), of_node(static_cast<std::size_t>(V.rows()), 0);
+  const auto spread = [&](Eigen::Index t) {
+    for (int i = 0; i < 4; ++i) of_node[static_cast<std::size_t>(T(t, i))] = of_tet[static_cast<std::size_t>(t)];
+  };
+  for (Eigen::Index t = 0; t < T.rows(); ++t) {
+    const Label label = labels[static_cast<std::size_t>(t)];
+    if (label == 0) continue;
+    const Tissue* tissue = tissues.find(label);
+    of_tet[static_cast<std::size_t>(t)] = tissue ? organ_number(*tissue) : label;
+    spread(t);
+  }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (Eigen::Index t = 0; t < T.rows(); ++t) {
+      std::uint16_t& organ = of_tet[static_cast<std::size_t>(t)];
+      if (organ != 0) continue;
+      for (int i = 0; i < 4 && organ == 0; ++i) organ = of_node[static_cast<std::size_t>(T(t, i))];
+      if (organ == 0) continue;
+      spread(t);
+      changed = true;
+    }
+  }
+  return {.V = V, .T = T, .region = of_tet};
+}
+
 std::string material_list(const TissueTable& tissues, const std::vector<std::uint16_t>& organs, const CompositionTable& media, const std::string& where) {
   TissueTable in_mesh;
   for (const Tissue& tissue : tissues.tissues)

@@ -7,12 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "core/mesh/tet_mesh.h"
 #include "core/volume/composition.h"
 
 namespace limber {
 
 // What a tet of a tissue carries: the label in files where that is a number from 1 to 65535, else the label here.
 std::uint16_t organ_number(const Tissue& tissue);
+
+// A mesh with organ numbers as regions.
+//   V, T    places, world, mm; tets
+//   labels  #T of most of what a tet holds; 0: it holds no voxel, and becomes as a tet that shares a corner
+TetMesh organ_mesh(const Eigen::MatrixX3d& V, const Eigen::MatrixX4i& T, const std::vector<Label>& labels, const TissueTable& tissues);
 
 //   organs  numbers that the mesh has
 //   throws Error naming the tissues whose elements are not known: `where` is the file

@@ -60,6 +60,13 @@ struct Visibility {
   bool operator==(const Visibility&) const = default;
 };
 
+// Where a resampling's map claimed a posed voxel twice: indices into the posed volume, rising.
+struct Overlap {
+  std::vector<std::int64_t> tissue, bones;  // by two places of tissue; by two bones
+
+  bool operator==(const Overlap&) const = default;
+};
+
 // A posed volume that a resampling made, with what it was made from, to tell when it has become stale.
 struct Result {
   std::string name;    // unique among the results
@@ -72,6 +79,7 @@ struct Result {
   std::shared_ptr<const SkinWeights> from_weights;
   std::shared_ptr<const Pose> from_pose;
   std::shared_ptr<const SolvedMesh> solved;  // by finite elements, where anything bends; else null
+  std::shared_ptr<const Overlap> overlap;    // null where it was not kept
 };
 
 // Any part may be absent (null); weights, their layers, pose and results need what they belong to.

@@ -167,6 +167,18 @@ void get(ByteReader& in, SolvedMesh& solved) {
   in.require(solved.V.rows() == solved.mesh.tets.V.rows());
 }
 
+void get(ByteReader& in, Overlap& overlap) {
+  for (auto* voxels : {&overlap.tissue, &overlap.bones}) {
+    voxels->resize(in.count(sizeof(std::int64_t)));
+    std::int64_t last = -1;
+    for (std::int64_t& voxel : *voxels) {
+      voxel = in.get<std::int64_t>();
+      in.require(voxel > last);
+      last = voxel;
+    }
+  }
+}
+
 void get(ByteReader& in, RetargetMap& map) {
   for (std::size_t count = in.count(41); count > 0; --count) {
     RetargetMap::Source& source = map.sources[in.text()];
@@ -540,8 +552,11 @@ class Reading {
     result.method = in.text();
     result.report = in.text();
     if (!in.at_end()) part(result.solved);
+    if (!in.at_end()) part(result.overlap);
     in.require(next == node.nodes.size());
     in.end();
+    if (result.overlap)
+      for (const auto* voxels : {&result.overlap->tissue, &result.overlap->bones}) in.require(voxels->empty() || (result.volume && voxels->back() < std::ssize(result.volume->voxels)));
     return result;
   }
 

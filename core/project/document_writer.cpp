@@ -342,7 +342,15 @@ class DocumentWriter::Writing {
     out.text(result.name);
     out.text(result.method);
     out.text(result.report);
-    if (result.solved) part(result.solved);  // at the end: results without one are as they always were
+    if (result.solved || result.overlap) part(result.solved);  // at the end: results without one are as they always were
+    if (result.overlap) part(result.overlap);
+  }
+
+  void fill(Node&, ByteWriter& out, const Overlap& overlap) {
+    for (const auto* voxels : {&overlap.tissue, &overlap.bones}) {
+      out.count(voxels->size());
+      for (const std::int64_t voxel : *voxels) out.put(voxel);
+    }
   }
 
   void fill(Node&, ByteWriter& out, const SolvedMesh& solved) {

@@ -85,6 +85,7 @@ std::int64_t own_bytes(const SolvedMesh& solved) {
   return heap_bytes(mesh.material) + heap_bytes(mesh.joint) + heap_bytes(mesh.tets.region) +
          static_cast<std::int64_t>((mesh.tets.V.size() + solved.V.size()) * sizeof(double) + mesh.tets.T.size() * sizeof(int)) + 3 * kBlock;
 }
+std::int64_t own_bytes(const Overlap& overlap) { return heap_bytes(overlap.tissue) + heap_bytes(overlap.bones); }
 std::int64_t own_bytes(const Result& result) {
   return heap_bytes(result.name) + heap_bytes(result.method) + heap_bytes(result.report);
 }
@@ -137,6 +138,7 @@ class History::Ledger {
     visit(result->from_weights, step);
     count(result->from_pose, step);
     count(result->solved, step);
+    count(result->overlap, step);
   }
 
   void visit(const Document& document, int step) {

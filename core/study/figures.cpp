@@ -27,7 +27,7 @@ PosedBody read_posed(const CellResult& cell, Progress& progress) {
   std::optional<TissueTable> user;
   // The cell's own table, where it had one.
   for (const auto& [path, hash] : cell.inputs)
-    if (const Path table = cell.folder / path; is_tissue_table(table)) user = read_tissue_table(table);
+    if (const Path table = cell.folder / path; std::filesystem::exists(table) && is_tissue_table(table)) user = read_tissue_table(table);
   TissueTable tissues = merge_tissue_tables(file.tissues, user ? &*user : nullptr);
   return {std::make_shared<const LabelVolume>(std::move(file.volume)), std::move(tissues)};
 }
@@ -165,11 +165,13 @@ class Maker {
     if (const auto column = column_of(cell); column >= 0) figures_.slices.png[technique][column] = finished(slice_picture(*body.volume, colours, frame), frame);
     box_.add(*body.volume, body_plane(frame));
 
+    // Results of a session may lack either.
+    const bool is_largest = cell.cell.pose == figures_.largest_pose;
+    if (const Path overlap = cell.folder / "overlap.nrrd"; is_largest && std::filesystem::exists(overlap))
+      figures_.overlaps.png[technique][0] = finished(marked_picture(*body.volume, read_values(overlap), colours, frame), frame);
+    if (!std::filesystem::exists(cell.folder / "ratio.nrrd")) return;
     const LabelVolume ratios = read_values(cell.folder / "ratio.nrrd");
-    if (cell.cell.pose == figures_.largest_pose) {
-      figures_.ratios.png[technique][0] = finished(slice_picture(ratios, ratio_colours(), frame), frame);
-      figures_.overlaps.png[technique][0] = finished(marked_picture(*body.volume, read_values(cell.folder / "overlap.nrrd"), colours, frame), frame);
-    }
+    if (is_largest) figures_.ratios.png[technique][0] = finished(slice_picture(ratios, ratio_colours(), frame), frame);
     add_close_up(cell, *body.volume, ratios, colours, frame);
   }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <optional>
 #include <set>
@@ -90,12 +91,21 @@ class Page {
              (style.empty() ? "" : " class=\"" + style + "\"") + ">" + inside + "</table></div></figure>\n";
   }
 
+  // Studies count processor seconds; what was made one by one knows the clock.
+  std::string seconds_word() const { return facts_.of_session ? "s" : "CPU s"; }
+  std::string time_word() const { return facts_.of_session ? "time by the clock" : "processor time"; }
+  static std::string counted(std::size_t count, const std::string& what) { return std::to_string(count) + " " + what + (count == 1 ? "" : "s"); }
+
   static bool passes(const CellResult& cell) {
     return std::none_of(cell.gates.begin(), cell.gates.end(), [](const QualityGate& gate) { return gate.state == GateState::Failed; });
   }
 
   void head() {
-    html_ += "<header><p class=\"kind\">Limber study</p><h1>" + escaped(study_.name) + "</h1><p class=\"lead\">";
+    html_ += std::string("<header><p class=\"kind\">Limber ") + (facts_.of_session ? "results" : "study") + "</p><h1>" + escaped(study_.name) + "</h1><p class=\"lead\">";
+    if (facts_.of_session) {
+      html_ += counted(cells_.size(), "result") + ": " + counted(poses(), "pose") + ", " + counted(techniques(), "technique") + ". Limber " LIMBER_VERSION ", " + escaped(facts_.date) + ".</p></header>\n";
+      return;
+    }
     std::string spacings;
     for (const auto& spacing : study_.spacings) spacings += (spacings.empty() ? "" : ", ") + spacing_text(spacing);
     html_ += std::to_string(study_.spacings.size()) + " spacing" + (study_.spacings.size() == 1 ? "" : "s") + " (" + escaped(spacings) + ") × " + std::to_string(poses()) + " pose" +
@@ -118,12 +128,13 @@ class Page {
     section("Summary", "summary");
     std::size_t done = at_.size(), whole = 0;
     for (const auto& [key, one] : at_) whole += passes(*one);
-    html_ += "<p>" + std::to_string(done) + " of " + std::to_string(cells_.size()) + " cells are computed; " + std::to_string(whole) + " of them pass every gate that applies to them. ";
+    if (facts_.of_session) html_ += "<p>" + std::to_string(whole) + " of " + counted(done, "result") + (whole == 1 ? " passes" : " pass") + " every gate that applies. ";
+    else html_ += "<p>" + std::to_string(done) + " of " + std::to_string(cells_.size()) + " cells are computed; " + std::to_string(whole) + " of them pass every gate that applies to them. ";
     if (!figures_.joint.empty()) html_ += "The joint that turns the furthest is at the head of " + escaped(figures_.joint) + ". ";
     html_ += "Changes are of volume, relative to the same tissue at rest at the same spacing; they can cancel in a total, so the tissue that changes most stands beside it.</p>\n";
 
     std::string rows = "<thead><tr><th rowspan=\"2\">Technique</th><th colspan=\"2\">Total volume</th><th colspan=\"3\">Tissue that changes most</th><th rowspan=\"2\">Overlap<small>voxels</small></th>"
-                       "<th rowspan=\"2\">Time<small>CPU s, mean</small></th><th rowspan=\"2\">Memory<small>MB, peak</small></th><th rowspan=\"2\">Cells that pass<small>all spacings</small></th></tr>"
+                       "<th rowspan=\"2\">Time<small>" + seconds_word() + ", mean</small></th><th rowspan=\"2\">Memory<small>MB, peak</small></th><th rowspan=\"2\">" + (facts_.of_session ? "Results that pass" : "Cells that pass<small>all spacings</small>") + "</th></tr>"
                        "<tr><th>change, %</th><th class=\"word\">at</th><th>change, %</th><th class=\"word\">of</th><th class=\"word\">at</th></tr></thead><tbody>";
     for (int t = 0; t < techniques(); ++t) {
       Extreme total, tissue;
@@ -153,12 +164,12 @@ class Page {
       rows += "<td>" + grouped(overlap) + "</td><td>" + fixed(seconds / count, 1) + "</td><td>" + fixed(memory, 0) + "</td><td>" + std::to_string(pass) + " of " + std::to_string(all) + "</td></tr>";
     }
     table(rows + "</tbody>", "Each technique at " + finest() + ": the largest change over all poses with the pose that has it, the most voxels that two places of the body claimed, "
-          "mean processor time and largest memory of a cell. Tissues of fewer than " + grouped(study_.gates.least_voxels) + " voxels at rest are left out.");
+          "mean " + time_word() + " and largest memory of a " + (facts_.of_session ? "result" : "cell") + ". Tissues of fewer than " + grouped(study_.gates.least_voxels) + " voxels at rest are left out.");
   }
 
   void time() {
     section("Time", "time");
-    BarChart bars{.unit = "CPU s", .places = pose_names()};
+    BarChart bars{.unit = seconds_word(), .places = pose_names()};
     const bool too_many = bars.places.size() > kMostBars;
     if (too_many) bars.places = {"mean"};
     double most = 0;
@@ -175,8 +186,8 @@ class Page {
       bars.groups.push_back(group);
     }
     bars.decimals = most < 20 ? 1 : 0;
-    figure(svg_of(bars), "Time by technique at " + finest() + ": processor time of each cell from reading the volume to writing the result" +
-           std::string(too_many ? ", mean over " + std::to_string(poses()) + " poses." : ", one bar for each pose.") + " Weights are computed once for each spacing and not counted" + weights_note() + ".");
+    figure(svg_of(bars), "Time by technique at " + finest() + ": " + time_word() + " of each " + (facts_.of_session ? "result" : "cell") + " from reading the volume to writing the result" +
+           std::string(too_many ? ", mean over " + std::to_string(poses()) + " poses." : ", one bar for each pose.") + (facts_.of_session ? "" : " Weights are computed once for each spacing and not counted" + weights_note() + "."));
 
     if (study_.spacings.size() > 1) {
       LineChart lines{.unit = "CPU s", .x_unit = "spacing", .logarithmic = true};
@@ -323,13 +334,14 @@ class Page {
     if (figures_.no_bodies.empty())
       figure(grid(figures_.bodies, figures_.poses, "Body"), "The posed volumes in 3D at " + finest() + ", technique by pose, all at one scale: each picture is " + fixed(figures_.bodies.width_mm, 0) + " mm wide, seen along the joint's axis, turned by 20°." + shown, "grid");
     else
-      html_ += "<p class=\"note\"><b>No pictures in 3D:</b> " + escaped(figures_.no_bodies) + ". Run the same again with a program that draws; the cells need not be computed again.</p>\n";
+      html_ += "<p class=\"note\"><b>No pictures in 3D:</b> " + escaped(figures_.no_bodies) + ". " + (facts_.of_session ? "" : "Run the same again with a program that draws; the cells need not be computed again.") + "</p>\n";
     figure(grid(figures_.slices, figures_.poses, "Slice"), "The same cut " + where() + ", voxels as they are. Each picture is " + fixed(figures_.slices.width_mm, 0) + " mm wide; the bar is 50 mm." + shown, "grid");
   }
   std::string where() const { return figures_.joint.empty() ? "through the middle" : "through the head of " + escaped(figures_.joint) + ", across the axis that it turns about"; }
 
   void worst() {
-    if (figures_.largest_pose < 0) return;
+    const auto any = [](const PictureGrid& grid) { return std::any_of(grid.png.begin(), grid.png.end(), [](const auto& row) { return !row[0].empty(); }); };
+    if (figures_.largest_pose < 0 || (!any(figures_.ratios) && !any(figures_.overlaps))) return;
     section("Where it is worst", "worst");
     std::string html = "<table class=\"pictures maps\"><thead><tr><th></th>";
     for (int t = 0; t < techniques(); ++t) html += "<th>" + marked_name(t) + "</th>";
@@ -384,7 +396,7 @@ class Page {
     std::string meanings;
     for (const QualityGate& gate : kinds) meanings += " <b>" + escaped(gate.name) + ":</b> " + escaped(gate.meaning);
     for (int s = 0; s < std::ssize(study_.spacings); ++s) {
-      std::string rows = "<thead><tr><th colspan=\"2\">Cell</th>";
+      std::string rows = "<thead><tr><th colspan=\"2\">" + std::string(facts_.of_session ? "Result" : "Cell") + "</th>";
       for (const QualityGate& gate : kinds) rows += "<th>" + escaped(gate.name) + "</th>";
       rows += "</tr></thead>";
       for (int p = 0; p < poses(); ++p) {
@@ -412,7 +424,7 @@ class Page {
 
   void tissues() {
     section("Tissues", "tissues");
-    html_ += "<p>Change of volume in %, at " + finest() + ". Small tissues change by some percent where a rigid turn alone meets the voxel grid. Every figure of every cell is in cells.csv and cells.json beside this page.</p>\n";
+    html_ += "<p>Change of volume in %, at " + finest() + ". Small tissues change by some percent where a rigid turn alone meets the voxel grid." + (facts_.of_session ? "" : " Every figure of every cell is in cells.csv and cells.json beside this page.") + "</p>\n";
     for (int p = 0; p < poses(); ++p) {
       const CellResult* any = nullptr;
       for (int t = 0; t < techniques() && !any; ++t) any = cell(figures_.spacing, p, t);
@@ -488,36 +500,38 @@ class Page {
     std::string list;
     const auto fact = [&](const std::string& name, const std::string& value) { list += "<dt>" + name + "</dt><dd>" + value + "</dd>"; };
     fact("Program", "Limber " LIMBER_VERSION ", sources <code>" + std::string(computing_sources()).substr(0, 12) + "</code>");
-    fact("Command", "<code>" + escaped(facts_.command) + "</code>");
+    if (!facts_.of_session) fact("Command", "<code>" + escaped(facts_.command) + "</code>");
     fact("Made on", escaped(facts_.date));
-    for (const std::string& machine : machines) fact("Computed on", escaped(machine));
-    fact("Processor time", fixed(seconds / 60, 1) + " min for all cells");
-    fact("Weights", escaped(study_.weights));
-    fact("Finite elements", "quality " + escaped(study_.quality));
-    fact("Joints", study_.fit_joints ? "fitted to the bones before each pose, so that no bone enters another" : "as the rig has them");
-    fact("Labels", study_.nearest ? "of the nearest rest voxel" : "with the largest interpolated membership");
+    if (!facts_.of_session) {
+      for (const std::string& machine : machines) fact("Computed on", escaped(machine));
+      fact("Processor time", fixed(seconds / 60, 1) + " min for all cells");
+      fact("Weights", escaped(study_.weights));
+      fact("Finite elements", "quality " + escaped(study_.quality));
+      fact("Joints", study_.fit_joints ? "fitted to the bones before each pose, so that no bone enters another" : "as the rig has them");
+      fact("Labels", study_.nearest ? "of the nearest rest voxel" : "with the largest interpolated membership");
+    }
     html_ += "<dl>" + list + "</dl>\n";
 
-    std::map<std::string, std::string> inputs;
+    std::set<std::pair<std::string, std::string>> inputs;
     for (const auto& [key, one] : at_)
       for (const auto& [path, hash] : one->inputs) inputs.emplace(path.starts_with("../../") ? path.substr(6) : path, hash);
     std::string rows = "<thead><tr><th>File</th><th>SHA-256</th></tr></thead><tbody>";
     for (const auto& [path, hash] : inputs) rows += "<tr><th class=\"row\">" + escaped(path) + "</th><td class=\"hash\">" + hash + "</td></tr>";
-    table(rows + "</tbody>", "What the cells read. Each cell's folder has the job that made it: <code>limber job cells/…/job.json</code> makes it again.", "inputs");
+    table(rows + "</tbody>", facts_.of_session ? "What the results were made from, by content." : "What the cells read. Each cell's folder has the job that made it: <code>limber job cells/…/job.json</code> makes it again.", "inputs");
     warnings();
-    html_ += "<h3>The study</h3><pre>" + escaped(to_json(study_)) + "</pre>\n";
+    if (!facts_.of_session) html_ += "<h3>The study</h3><pre>" + escaped(to_json(study_)) + "</pre>\n";
   }
   void warnings() {
     std::map<std::string, std::vector<std::string>> by_text;
     for (const auto& [key, one] : at_)
-      for (const std::string& warning : one->warnings) by_text[warning].push_back(text_of(study_, one->cell));
+      for (const std::string& warning : one->warnings) by_text[warning].push_back(facts_.of_session ? study_.poses[one->cell.pose].name + ", " + technique_name(one->cell.technique) : text_of(study_, one->cell));
     if (by_text.empty()) return;
     std::string list;
     for (const auto& [text, where] : by_text) {
       list += "<li>" + escaped(text) + " <small>(" + escaped(where.front());
       list += (where.size() > 1 ? " and " + std::to_string(where.size() - 1) + " more" : "") + ")</small></li>";
     }
-    html_ += "<h3>What the cells warned of</h3><ul>" + list + "</ul>\n";
+    html_ += "<h3>" + std::string(facts_.of_session ? "Warnings" : "What the cells warned of") + "</h3><ul>" + list + "</ul>\n";
   }
 
   const Study& study_;
@@ -530,6 +544,15 @@ class Page {
 };
 
 }  // namespace
+
+std::string date_text() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  ::localtime_r(&now, &local);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", &local);
+  return text;
+}
 
 std::string html_report(const Study& study, const std::vector<CellResult>& cells, const StudyFigures& figures, const ReportFacts& facts) { return Page(study, cells, figures, facts)(); }
 

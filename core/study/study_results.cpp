@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/study/study_results.h"
 
-#include <ctime>
-
 #include "core/study/html_report.h"
 #include "core/study/tables.h"
 
 namespace limber {
-
-namespace {
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  ::localtime_r(&now, &local);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", &local);
-  return text;
-}
-}  // namespace
 
 void write_results(const Study& study, const std::vector<CellOutcome>& outcomes, const Path& out, const std::string& command, const StartPictures& start, Progress& progress) {
   std::vector<CellResult> cells;
@@ -26,7 +13,7 @@ void write_results(const Study& study, const std::vector<CellOutcome>& outcomes,
   write_file_atomically(out / "cells.json", cells_json(study, cells));
   const std::optional<SarFigures> sar = read_sar(out, study, cells);
   const StudyFigures figures = make_figures(study, cells, start, progress);
-  write_file_atomically(out / "report.html", html_report(study, cells, figures, {out, command, today(), sar}));
+  write_file_atomically(out / "report.html", html_report(study, cells, figures, {out, command, date_text(), sar}));
 }
 
 }  // namespace limber

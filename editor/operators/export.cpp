@@ -63,16 +63,24 @@ std::string file_name_of(const Editor& editor, const Result& result) {
 }
 
 // Of the result that the table is about, whatever is shown when the file is chosen.
-void browse_for_result(Editor& editor, const char* what, const char* purpose, const std::vector<FileFilter>& filters, void (*write)(Editor&, const std::shared_ptr<const Result>&, const Path&)) {
+//   name  that is proposed, without its end
+void browse_for_result(Editor& editor, const std::string& title, const char* purpose, const std::string& name, const std::vector<FileFilter>& filters, void (*write)(Editor&, const std::shared_ptr<const Result>&, const Path&)) {
   const auto result = chosen_result(editor);
   browse(editor, {.purpose = purpose,
-                  .title = what + result->name,
+                  .title = title,
                   .action = "Write",
                   .kind = FileRequest::Kind::Save,
                   .filters = filters,
-                  .name = file_name_of(editor, *result) + filters[0].ends[0],
+                  .name = name + filters[0].ends[0],
                   .folder = editor.project_path.parent_path(),
                   .chosen = [result, write](Editor& e, const Path& path) { write(e, result, path); }});
+}
+
+std::vector<FileFilter> formats_of(const Result& result) {
+  std::vector<FileFilter> formats = writable_volumes();
+  formats.insert(formats.end(), {{"Surfaces: OBJ, STL, PLY, glTF", {".obj", ".stl", ".ply", ".glb"}}, {"openEMS boxes", {".xml"}}, {"CSXCAD DiscMaterial", {".csxcad.h5"}}, {"gprMax geometry", {".gprmax.h5"}}, {"ICRP 110 slices", {".dat"}}});
+  if (result.solved) formats.push_back({"TetGen mesh", {".node"}});
+  return formats;
 }
 
 std::string needs_result(const Editor& editor) { return editor.document().results.empty() ? "Nothing was resampled yet" : ""; }
@@ -90,10 +98,10 @@ std::vector<Operator> export_operators() {
       export_operator({"file.export_pose", "Pose...", "Writes the pose of the rig.", ExportKind::Pose, {{"Limber pose", {".json"}}}, "-pose"}),
       export_operator({"file.export_motion", "Motion...", "Writes the motion as BVH.", ExportKind::Motion, {{"BVH", {".bvh"}}}, "-motion"}),
       export_operator({"file.export_gltf", "glTF...", "Writes the surface, the skeleton, the weights and every clip for other programs.", ExportKind::Gltf, {{"glTF", {".glb"}}}, ""}),
-      {"file.export", "Export...", icon::kExport, "Result", "Writes the posed voxels of the chosen result.",
-       [](Editor& e) { browse_for_result(e, "Export ", "export", writable_volumes(), export_result); }, needs_result},
-      {"report.open", "Report...", icon::kReport, "Result", "Writes the report of the chosen result: what was asked, from which files, what changed, which gates it passes.",
-       [](Editor& e) { browse_for_result(e, "Report of ", "report", {{"Text", {".txt"}}, {"JSON", {".json"}}}, export_report); }, needs_result},
+      {"file.export", "Export...", icon::kExport, "Result", "Writes the chosen result: voxels, surfaces, or what openEMS, gprMax and others take.",
+       [](Editor& e) { browse_for_result(e, "Export " + chosen_result(e)->name, "export", file_name_of(e, *chosen_result(e)), formats_of(*chosen_result(e)), export_result); }, needs_result},
+      {"report.open", "Report...", icon::kReport, "Result", "Writes a page of all results, with pictures and gates, and opens it; or the chosen one's figures as text or JSON.",
+       [](Editor& e) { browse_for_result(e, "Report", "report", stem_of(e) + "-results", {{"Page of all results", {".html"}}, {"Text", {".txt"}}, {"JSON", {".json"}}}, export_report); }, needs_result},
       picture_operator("view.screenshot", "Picture...", "Writes the active view as a PNG.", "", export_picture),
       picture_operator("view.turntable", "Turntable...", "Writes 36 pictures all around the body.", "-turn", [](Editor& e, const Path& path) { export_turntable(e, path); }),
   };

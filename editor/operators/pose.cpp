@@ -37,7 +37,10 @@ void ask_flex(Editor& editor) {
   int chosen = editor.selection.bone.value_or(-1);
   // A bone that bends by itself, such as a forearm, where none is chosen.
   if (chosen < 0 || chosen >= std::ssize(names)) {
-    chosen = 0;
+    // A hinge, else the first bone that has something to bend against.
+    const auto& bones = editor.document().armature->bones;
+    const auto child = std::find_if(bones.begin(), bones.end(), [](const Bone& bone) { return bone.parent >= 0; });
+    chosen = child == bones.end() ? 0 : static_cast<int>(child - bones.begin());
     for (int b = 0; b < std::ssize(names); ++b)
       if (editor.document().armature->bones[b].limits.type == JointLimits::Type::Hinge) {
         chosen = b;

@@ -5,6 +5,7 @@
 #include "editor/dispatch.h"
 #include "editor/fem_view.h"
 #include "editor/icons.h"
+#include "editor/overlap.h"
 #include "editor/operators/polls.h"
 #include "editor/project.h"
 #include "editor/resampling.h"
@@ -32,9 +33,10 @@ void toggle_watching(Editor& editor) {
 Operator colours_operator(const char* id, const char* label, const char* sentence, std::optional<FemMeasure> measure) {
   return {id, label, "", "Finite elements", sentence, [measure](Editor& e) {
             show_difference_overlay(e, false);
+            show_overlap_overlay(e, false);
             e.fem->overlay.measure = measure;
           },
-          measure ? why_no_fem_overlay : nullptr, [measure](const Editor& e) { return e.fem->overlay.measure == measure && !e.difference->shown; }};
+          measure ? why_no_fem_overlay : nullptr, [measure](const Editor& e) { return e.fem->overlay.measure == measure && !e.difference->shown && !e.overlap->shown; }};
 }
 
 void toggle_posed(Editor& editor) { show_result(editor, shown_result(editor) ? "" : chosen_result(editor)->name); }
@@ -61,7 +63,10 @@ void show_sides(Editor& editor, Comparison::Views views) {
   editor.comparison.shows_a = false;
 }
 
-void toggle_wipe(Editor& editor) { show_sides(editor, wiping(editor) ? Comparison::Views::One : Comparison::Views::Wipe); }
+void toggle_wipe(Editor& editor) {
+  show_sides(editor, wiping(editor) ? Comparison::Views::One : Comparison::Views::Wipe);
+  editor.workspace = Workspace::Resample;
+}
 
 void toggle_side_by_side(Editor& editor) {
   show_sides(editor, side_by_side(editor) ? Comparison::Views::One : Comparison::Views::SideBySide);
@@ -74,6 +79,14 @@ void toggle_difference(Editor& editor) {
   stop_watching(editor);
   choose_sides(editor);
   show_difference_overlay(editor, on);
+}
+
+void toggle_overlap(Editor& editor) {
+  const bool on = !shows_overlap(editor);
+  editor.workspace = Workspace::Resample;
+  stop_watching(editor);
+  if (on && !shown_result(editor) && !comparing(editor)) show_result(editor, chosen_result(editor)->name);
+  show_overlap_overlay(editor, on);
 }
 
 // The other side, for as long as the key is held; of two views each shows what the other one did.
@@ -162,6 +175,7 @@ std::vector<Operator> resample_operators() {
       {"compare.side_by_side", "Side by side", icon::kSplitViews, "Result", "Shows A and B beside one another, each view twice, seen by one camera; the line between them can be dragged.", toggle_side_by_side, needs_result,
        side_by_side},
       {"compare.difference", "Difference", icon::kDifference, "Result", "Marks the voxels whose tissue differs between A and B, and counts them.", toggle_difference, needs_result, shows_difference},
+      {"result.overlap", "Overlap", icon::kOverlap, "Result", "Marks the voxels that two places of the body claimed, and counts them.", toggle_overlap, why_no_overlap, shows_overlap},
       {"compare.flicker", "Flicker", "", "Result", "Shows the other side while the key is held.", [](Editor& e) { e.modal = std::make_unique<Flicker>(e); }, needs_result},
       {"compare.swap", "Swap A and B", icon::kMirror, "Result", "Makes A B, and B A.", [](Editor& e) { std::swap(e.comparison.a, e.comparison.b); }, needs_result},
       colours_operator("fem.show_tissues", "Tissue colours", "Shows the tissues of a result by finite elements as elsewhere.", std::nullopt),

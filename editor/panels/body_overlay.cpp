@@ -111,7 +111,7 @@ void draw_body_overlay(Editor& editor, const ViewPlace& place) {
   draw_proposed_joint(editor, rect);
   Rect above = rect;  // what is in the corner already
   if (draw_weight_legend(editor, rect) || draw_fem_legend(editor, rect)) above.high.y -= editor.look.px(60);
-  if (draw_difference_legend(editor, rect)) above.high.y -= editor.look.px(104);
+  above.high.y -= editor.look.px(draw_marks_legend(editor, rect));
   if (!proposed_joint(editor)) draw_last_operation(editor, above);
   draw_scale_bar(editor, rect, visible_height / rect.height());
 }

@@ -8,12 +8,13 @@
 #include "editor/panels/change.h"
 #include "editor/panels/panels.h"
 #include "editor/results.h"
+#include "editor/tissues.h"
 
 namespace limber::editor {
 
 namespace {
 
-constexpr float kHead = 26, kAxis = 20, kPad = 12, kName = 96, kFigure = 58;
+constexpr float kHead = 26, kAxis = 20, kPad = 12, kName = 112, kFigure = 58;
 constexpr double kLeastSpan = 2;  // percent, so that small changes look small
 
 struct Series {
@@ -53,7 +54,7 @@ Axis axis_of(const std::vector<Series>& all) {
       axis.high = std::max(axis.high, tissue.change_percent.value_or(0));
     }
   if (const double lacking = kLeastSpan - (axis.high - axis.low); lacking > 0) axis.low -= lacking / 2, axis.high += lacking / 2;
-  const double rough = (axis.high - axis.low) / 4, power = std::pow(10.0, std::floor(std::log10(rough)));
+  const double rough = (axis.high - axis.low) / 3, power = std::pow(10.0, std::floor(std::log10(rough)));
   axis.step = power * (rough < 1.5 * power ? 1 : rough < 3.5 * power ? 2 : rough < 7.5 * power ? 5 : 10);
   axis.low = std::floor(axis.low / axis.step + 1e-9) * axis.step;
   axis.high = std::ceil(axis.high / axis.step - 1e-9) * axis.step;
@@ -77,7 +78,7 @@ std::string figure(const std::optional<double>& percent) {
 
 void draw_tissue(Editor& editor, const Rect& row, const std::string& name, const std::vector<Series>& all, const Axis& axis, float left, float width) {
   const Look& look = editor.look;
-  put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(kPad), row.low.y}, {left - look.px(8), row.high.y}}, name);
+  put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(kPad), row.low.y}, {left - look.px(8), row.high.y}}, capitalized(name));
   draw_lines(look, axis, left, width, row);
   const float count = static_cast<float>(all.size()), high = look.px(7), zero = std::round(left + width * static_cast<float>(axis.place(0)));
   float y = std::round(row.centre().y - (high * count + look.px(1) * (count - 1)) / 2), x = left + width + look.px(4);
@@ -95,7 +96,7 @@ void draw_tissue(Editor& editor, const Rect& row, const std::string& name, const
     if (tissue) whole += (whole.empty() ? "" : "\n") + std::string(words);
   }
   const PathScope path(editor, name);
-  if (press_area(editor, "row", row).hovered) tooltip(editor, row, name, whole);
+  if (press_area(editor, "row", row).hovered) tooltip(editor, row, capitalized(name), whole);
 }
 
 }  // namespace

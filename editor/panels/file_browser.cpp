@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
 #include <utility>
 
 #include <imgui_internal.h>
@@ -138,6 +139,16 @@ void FileBrowser::set_name(const std::string& name) {
   refocus_ = true;
 }
 
+// In place of the one that the name has.
+void FileBrowser::take_ending(const FileFilter& filter) {
+  if (filter.ends.empty()) return;
+  std::size_t longest = 0;
+  for (const FileFilter& one : request_.filters)
+    for (const std::string& end : one.ends)
+      if (name_.ends_with(end)) longest = std::max(longest, end.size());
+  if (longest > 0) set_name(name_.substr(0, name_.size() - longest) + filter.ends.front());
+}
+
 void FileBrowser::go_up(Editor& editor) {
   if (folder_.has_parent_path() && folder_ != folder_.parent_path()) go_to(editor, folder_.parent_path());
 }
@@ -193,7 +204,8 @@ void FileBrowser::accept_name(Editor& editor) {
     return go_to(editor, path);
   }
   const FileFilter& filter = request_.filters[filter_];
-  if (!filter.ends.empty() && !matches(filter, path.filename().string())) path += filter.ends.front();
+  const auto is_known = [&](const FileFilter& one) { return !one.ends.empty() && matches(one, path.filename().string()); };
+  if (!filter.ends.empty() && std::none_of(request_.filters.begin(), request_.filters.end(), is_known)) path += filter.ends.front();
   if (!is_folder(path.parent_path())) return void(remark_ = "There is no folder " + short_path(path.parent_path()));
   std::error_code error;
   if (fs::exists(path, error)) return void(replace_ = path);

@@ -37,6 +37,7 @@ class FileBrowser final : public Dialog {
   void move_row(Editor&);
   // A field that is being typed in knows only what was typed: a text from elsewhere makes it another field.
   void set_name(const std::string& name);
+  void take_ending(const FileFilter& filter);
   void go_up(Editor& editor);
   void toggle_hidden(Editor& editor);
 

@@ -289,6 +289,7 @@ float FileBrowser::draw_filter(Editor& editor, const Rect& rect) {
     register_widget(editor, request_.filters[i].name, row);
     put_text(editor, look.fonts.regular, look.theme.text, Rect{{row.low.x + look.px(6), row.low.y}, row.high}, request_.filters[i].name);
     if (picked) {
+      if (saving()) take_ending(request_.filters[i]);
       filter_ = i;
       changed_ = true;
     }

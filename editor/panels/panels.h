@@ -25,7 +25,8 @@ void draw_body_overlay(Editor& editor, const ViewPlace& place);
 void draw_slice_overlay(Editor& editor, const ViewPlace& place);
 bool draw_weight_legend(Editor& editor, const Rect& view);  // true where there is one
 bool draw_fem_legend(Editor& editor, const Rect& view);  // the same of finite elements
-bool draw_difference_legend(Editor& editor, const Rect& view);  // and of two volumes that are compared
+// Of marked voxels: where volumes differ, or claim a voxel twice. Returns how much of the corner it takes, in pixels at scale 1.
+float draw_marks_legend(Editor& editor, const Rect& view);
 void draw_side_chip(Editor& editor, const ViewPlace& place);  // in a title's place: whose side it is
 void put_swatch(const Look& look, const glm::vec2& corner, Colour colour);
 void draw_weights_at_pointer(Editor& editor);

@@ -196,7 +196,7 @@ void draw_results(Editor& editor, const Rect& rect) {
     put_text(editor, look.fonts.semibold, look.theme.text2, from_im(ImGui::GetCursorScreenPos()) + glm::vec2(look.px(8), look.px(2)), chosen_result(editor) ? chosen_result(editor)->name : "Result");
     ImGui::Dummy({look.px(190), look.px(22)});
     ImGui::Separator();
-    for (const char* id : {"result.toggle", "compare.side_by_side", "compare.wipe", "compare.difference", "-", "report.open", "file.export", "result.copy_report", "-", "result.rename", "result.delete", "result.delete_stale"})
+    for (const char* id : {"result.toggle", "compare.side_by_side", "compare.wipe", "compare.difference", "result.overlap", "-", "report.open", "file.export", "result.copy_report", "-", "result.rename", "result.delete", "result.delete_stale"})
       if (*id == '-') ImGui::Separator();
       else operator_menu_item(editor, id);
     pop_path(editor);

@@ -89,13 +89,13 @@ void draw_slice_overlay(Editor& editor, const ViewPlace& place) {
   const int axis = grid_axis_of(grid, frame.normal);
   const int slice = static_cast<int>(std::lround((voxel_from_world(grid) * editor.views->cross_hair)[axis]));
   draw_cross_hair(editor, camera, frame, rect);
-  draw_view_title(editor, rect, (editor.layout.by_sides ? side_a ? "A \u00b7 " : "B \u00b7 " : "") + name_of(id), std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]) + (scene.volume != editor.document().volume || scene.pose ? " \u00b7 posed" : ""));
+  draw_view_title(editor, rect, (editor.layout.by_sides ? side_a ? "A \u00b7 " : "B \u00b7 " : "") + name_of(id), std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]) + (rect.width() > editor.look.px(300) && (scene.volume != editor.document().volume || scene.pose) ? " \u00b7 posed" : ""));
   draw_letters(editor, frame, rect);
   draw_slice_bar(editor, grid, axis, rect);
   draw_scale_bar(editor, rect, camera.millimetres_per_pixel);
   if (editor.layout.place_of(ViewId::Body) || side_a) return;
   draw_fem_legend(editor, rect);
-  draw_difference_legend(editor, rect);
+  draw_marks_legend(editor, rect);
 }
 
 }  // namespace limber::editor

@@ -211,6 +211,7 @@ void put_options(Editor& editor, Header& header) {
     if (header.fits(3 * header.toggle_width(88), kCompared)) header.segments(kCompared, true);
     const auto kColours = {"fem.show_tissues", "fem.show_volume_ratio", "fem.show_energy", "fem.show_gap"};
     if (header.fits(150, kColours)) header.choice("Colours", kColours);
+    if (header.fits(header.toggle_width(90), {"result.overlap"})) header.toggle("result.overlap");
     if (header.fits(header.toggle_width(120), {"fem.tets"})) header.toggle("fem.tets");
     header.line();
     for (const char* id : {"report.open", "file.export"})

@@ -62,12 +62,12 @@ void draw_divider(Editor& editor, const Rect& a, const Rect& b) {
   put_icon(look.fonts.small, look.theme.view_text, grip, icon::kWipe);
 }
 
-// The line between a and b, with their names at its sides.
+// The line between a and b, with their names at its sides; their letters alone where names would cover the picture.
 void draw_wipe(Editor& editor, const Rect& rect) {
   if (!editor.views->other_scene || editor.layout.by_sides) return;
   const Look& look = editor.look;
   Comparison& comparison = editor.comparison;
-  const float x = wipe_line(editor, rect), y = std::round(rect.high.y - look.px(72));
+  const float x = wipe_line(editor, rect), y = std::round(rect.high.y - look.px(rect.height() > look.px(260) ? 72 : 34));
   const Pressed pressed = press_divider(editor, "wipe", x, rect, 0.02f);
   const Colour colour = pressed.hovered || pressed.held ? look.theme.accent : look.theme.view_text;
   fill({{x - look.line(), rect.low.y}, {x + look.line(), rect.high.y}}, colour);
@@ -75,10 +75,11 @@ void draw_wipe(Editor& editor, const Rect& rect) {
   fill(grip, look.theme.view_plate, look.px(4));
   outline(grip, colour, look.px(4), look.line());
   put_icon(look.fonts.small, look.theme.view_text, grip, icon::kWipe);
+  const bool roomy = rect.height() > look.px(260);
   const auto chip = [&](const std::string& letter, const std::string& name, bool left) {
-    const std::string text = letter + "  " + name;
+    const std::string text = roomy ? letter + "  " + name : letter;
     const float width = std::min(text_size(look.fonts.regular, text).x + look.px(42), (left ? x - rect.low.x : rect.high.x - x) - look.px(32));
-    if (width < look.px(60)) return;
+    if (width < look.px(roomy ? 60 : 40)) return;
     const Rect place = left ? Rect{{x - look.px(16) - width, y - look.px(13)}, {x - look.px(16), y + look.px(13)}} : Rect{{x + look.px(16), y - look.px(13)}, {x + look.px(16) + width, y + look.px(13)}};
     fill(place, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
     put_swatch(look, {place.low.x + look.px(10), place.centre().y - look.px(7)}, left ? kColourOfA : kColourOfB);
@@ -204,11 +205,13 @@ void draw_side_chip(Editor& editor, const ViewPlace& place) {
   const Look& look = editor.look;
   const std::string& name = place.side_a ? editor.comparison.a : editor.comparison.b;
   const auto result = result_named(editor.document(), name);
-  const std::string letter = place.side_a ? "A" : "B", title = name_of_side(editor, name);
+  const std::string letter = place.side_a ? "A" : "B";
+  std::string title = name_of_side(editor, name);
   char words[64] = "";
   if (const auto facts = result ? facts_of(editor, result) : nullptr; facts && facts->seconds > 0) std::snprintf(words, sizeof words, facts->seconds < 10 ? "%.1f s" : "%.0f s", facts->seconds);
   const float high = look.px(26), text_left = look.px(54), seconds = *words ? text_size(look.fonts.regular, words).x + look.px(10) : 0;
   const float room = place.rect.width() - look.px(24) - (place.side_a ? 0 : look.px(100));  // the axis ball
+  if (result && text_left + text_size(look.fonts.semibold, title).x + look.px(12) > room) title = method_name(result->method);
   const float width = std::min(text_left + text_size(look.fonts.semibold, title).x + seconds + look.px(12), room);
   if (width < look.px(80)) return;
   const glm::vec2 low = place.rect.low + glm::vec2(look.px(12), look.px(10));

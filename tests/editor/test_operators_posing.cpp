@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Bones are chosen and posed, results compared.
 #include "editor/difference.h"
+#include "editor/overlap.h"
 #include "editor/posing.h"
 #include "editor/results.h"
 #include "tests/editor/operator_proofs.h"
@@ -52,6 +53,10 @@ void add_result(Stage& s) {
   result->volume = volume;
   result->from_volume = next.volume;
   result->from_pose = std::make_shared<const Pose>(rest_pose(*next.armature));
+  Overlap overlap;
+  for (std::int64_t i = 0; i < std::ssize(volume->voxels); ++i)
+    if (volume->voxels[static_cast<std::size_t>(i)] != 0) overlap.tissue.push_back(i);
+  result->overlap = std::make_shared<const Overlap>(std::move(overlap));
   next.results.push_back(result);
   s.editor().history.commit("Add result", next);
   show_result(s.editor(), "Bare");
@@ -121,10 +126,13 @@ std::vector<Proof> proofs_of_comparing() {
       {"compare.swap", "click \"Edit/Resample/Swap A and B\"", [](Stage& s, const Seen&) { return s.editor().comparison.a == "Bare"; }},
       {"compare.side_by_side", "key 3", [](Stage& s, const Seen&) { return side_by_side(s.editor()) && s.editor().layout.view_places.size() == 2; }, Shows::Nothing, "move \"3D view/view\"\n key 4\n wait-idle"},
       {"compare.difference", "key D\n wait-idle", [](Stage& s, const Seen&) { return shows_difference(s.editor()) && s.editor().views->scene.weights.has_value(); }, Shows::InBody},
+      {"result.overlap", "key O\n wait-idle",
+       [](Stage& s, const Seen&) { return shows_overlap(s.editor()) && s.editor().views->scene.weights && s.editor().views->scene.volume == s.document().results.back()->volume; }, Shows::InBody,
+       "key 2\n wait-idle"},
       {"result.rename", "click \"Edit/Resample/Rename result...\"\n wait-idle\n key Ctrl+A\n type \"Skinless\"\n key Return",
        [](Stage& s, const Seen&) { return s.document().results.back()->name == "Skinless"; }},
       {"file.export", "key Ctrl+E\n type posed\n key Return\n wait-job", [](Stage& s, const Seen& b) { return std::filesystem::exists(s.home / "posed.nrrd") && read_volume(s.home / "posed.nrrd").volume.voxels == b.document.results.back()->volume->voxels; }},
-      {"report.open", "key Shift+Ctrl+R\n type judged\n key Return\n wait-job", [](Stage& s, const Seen&) { return std::filesystem::exists(s.home / "judged.txt") && read_file(s.home / "judged.txt").find("Joint limits") != std::string::npos; }},
+      {"report.open", "key Shift+Ctrl+R\n type judged.txt\n key Return\n wait-job", [](Stage& s, const Seen&) { return std::filesystem::exists(s.home / "judged.txt") && read_file(s.home / "judged.txt").find("Joint limits") != std::string::npos; }},
   };
 }
 

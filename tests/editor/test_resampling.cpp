@@ -7,10 +7,12 @@
 #include <unistd.h>
 
 #include "core/resample/resample.h"
+#include "editor/exporting.h"
 #include "editor/panels/running.h"
 #include "editor/panels/steps.h"
 #include "editor/results.h"
 #include "tests/editor/small_limb.h"
+#include "tests/support/program.h"
 
 using namespace limber;
 using namespace limber::editor;
@@ -110,6 +112,12 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   CHECK(facts->tissues.size() == 4);
   CHECK(facts->change_percent);
   CHECK(facts->seconds > 0);
+  // With the voxels that `limber resample --overlap` would have marked.
+  const auto marked = resample(*document.volume, *document.tissues, *document.armature, *document.weights, *document.pose, DualQuaternion{}, {.overlap = true}).overlap;
+  REQUIRE(result.overlap);
+  CHECK(std::ssize(result.overlap->tissue) == std::count(marked.begin(), marked.end(), 1));
+  CHECK(std::ssize(result.overlap->bones) == std::count(marked.begin(), marked.end(), 2));
+  CHECK(facts->overlap_voxels >= std::ssize(result.overlap->tissue));
 
   // Shown in place of the volume, and no longer.
   test.play("click \"Fore 30\u00b0, DQ/row\"");
@@ -134,6 +142,34 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   CHECK(exact->volume->voxels == resample(*now.volume, *now.tissues, *now.armature, *now.weights, *now.pose, DualQuaternion{}, {.mass_exact = true}).volume.voxels);
   const auto& settings = facts_of(*test.editor, exact)->settings;
   CHECK(std::any_of(settings.begin(), settings.end(), [](const auto& line) { return line.name == "Mass exact" && line.value == "yes"; }));
+
+  // One page of all results, which the studies' writer makes.
+  const TemporaryFolder folder;
+  export_report(*test.editor, exact, folder / "both.html");
+  test.play("wait-job");
+  const std::string page = read_file(folder / "both.html");
+  for (const char* part : {"Limber results", "2 results: 1 pose, 2 techniques", "Fore 30\u00b0", "Dual quaternions, mass-exact", "data:image/png;base64,", "time by the clock", "Joint limits", "claimed by two bones"}) {
+    INFO(std::string(part));
+    CHECK(page.find(part) != std::string::npos);
+  }
+  for (const char* part : {"CPU s", "cells.csv", "limber job", "no pictures"}) {
+    INFO(std::string(part));
+    CHECK(page.find(part) == std::string::npos);
+  }
+
+  // By its name a file is a volume, surfaces, or a simulation's input, as the command line writes it.
+  for (const char* name : {"posed.mha", "posed.obj", "posed.dat"}) export_result(*test.editor, exact, folder / name);
+  test.play("wait-job");
+  CHECK(read_volume(folder / "posed.mha").volume.voxels == exact->volume->voxels);
+  CHECK(read_file(folder / "posed.obj").find("\nf ") != std::string::npos);
+  CHECK(std::filesystem::exists(folder / "posed_organs.dat"));
+  export_result(*test.editor, exact, folder / "posed.xml");
+  test.play("wait-idle\n expect \"text:Frequency\"\n double-click Frequency/value\n type 450\n key Return\n key Return\n wait-job");
+  const std::string xml = read_file(folder / "posed.xml");
+  CHECK(xml.find("450000000") != std::string::npos);
+  CHECK(xml.find("<Box") != std::string::npos);
+  CHECK_THROWS_AS(export_result(*test.editor, exact, folder / "posed.node"), Error);  // nothing was meshed
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 7);
 }
 
 TEST_CASE("resample: a result becomes stale when what it was made from changes, and says why") {

@@ -81,7 +81,7 @@ bool equal(const Clip& a, const Clip& b) {
 bool equal(const Result& a, const Result& b) {
   return a.name == b.name && a.method == b.method && a.report == b.report && equal(a.volume, b.volume) && equal(a.from_volume, b.from_volume) &&
          equal(a.from_tissues, b.from_tissues) && equal(a.from_armature, b.from_armature) && equal(a.from_weights, b.from_weights) &&
-         equal(a.from_pose, b.from_pose);
+         equal(a.from_pose, b.from_pose) && !a.overlap == !b.overlap && (!a.overlap || *a.overlap == *b.overlap);
 }
 
 template <class T>

@@ -58,6 +58,27 @@ TEST_CASE("project: a document with every part comes back bit for bit, and parts
   CHECK(back.document.results[0]->from_pose == back.document.pose);
 }
 
+TEST_CASE("project: a result's overlap comes back, with a mesh or without") {
+  const TemporaryFolder folder;
+  DocumentWriter writer;
+  Project project = small_project();
+  auto result = std::make_shared<Result>(*project.document.results[0]);
+  result->overlap = std::make_shared<const Overlap>(Overlap{{1, 5, 9}, {5}});
+  project.document.results = {result};
+  create_project(project, folder / "a.limber", writer);
+  const Document back = read_project(folder / "a.limber").document;
+  REQUIRE(back.results[0]->overlap);
+  CHECK(*back.results[0]->overlap == *result->overlap);
+  CHECK_FALSE(back.results[0]->solved);
+
+  // Voxels that the posed volume lacks are no overlap of it.
+  auto beyond = std::make_shared<Result>(*result);
+  beyond->overlap = std::make_shared<const Overlap>(Overlap{{std::ssize(result->volume->voxels)}, {}});
+  project.document.results = {beyond};
+  create_project(project, folder / "b.limber", writer);
+  CHECK_THROWS_AS(read_project(folder / "b.limber"), Error);
+}
+
 TEST_CASE("project: an empty document is a project too") {
   const TemporaryFolder folder;
   DocumentWriter writer;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files of a command that belong together: when a later one fails, the earlier ones are taken away again.
+// Files that belong together: when a later one fails, the earlier ones are taken away again.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,13 @@
 
 #include "core/base/file.h"
 
-namespace limber::cmd {
+namespace limber {
 
 class Outputs {
  public:
+  Outputs() = default;
+  Outputs(const Outputs&) = delete;
+  Outputs& operator=(const Outputs&) = delete;
   ~Outputs() {
     std::error_code ignored;
     if (!complete_)
@@ -36,4 +39,4 @@ class Outputs {
   bool complete_ = false;
 };
 
-}  // namespace limber::cmd
+}  // namespace limber

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/study/session_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/report/fem_measures.h"
+#include "core/study/html_report.h"
+#include "core/volume/volume_io.h"
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::json;
+
+Technique technique_of(const Result& result, const Json& report) {
+  const Json settings = report.is_object() ? report.value("settings", Json::object()) : Json::object();
+  const bool exact = settings.is_object() && settings.value("mass_exact", Json(false)) == Json(true);
+  const std::vector<Technique> found = techniques_of({result.method + (exact ? "-mass-exact" : "")}, result.name);
+  return found.front();
+}
+
+// 1 where two places of tissue claim a voxel, 2 where two bones do.
+LabelVolume volume_of(const Overlap& overlap, const Grid& grid) {
+  LabelVolume marks{grid, ZeroedVector<Label>(static_cast<std::size_t>(grid.voxel_count()))};
+  for (const std::int64_t voxel : overlap.tissue) marks.voxels[static_cast<std::size_t>(voxel)] = 1;
+  for (const std::int64_t voxel : overlap.bones) marks.voxels[static_cast<std::size_t>(voxel)] = 2;
+  return marks;
+}
+
+// Of the tets that hold the voxels; what no tet holds goes rigidly with its bone.
+LabelVolume ratios_of(const SolvedMesh& solved, const LabelVolume& volume) {
+  const TissueVoxels tissue(volume);
+  const std::vector<std::int32_t> tets = tets_of_voxels(solved.mesh.tets.T, solved.V, volume.grid, tissue);
+  const std::vector<float> ratio = fem_measure(FemMeasure::VolumeRatio, solved.mesh, solved.V);
+  LabelVolume codes{volume.grid, ZeroedVector<Label>(volume.voxels.size())};
+  const glm::ivec3 size = volume.grid.size;
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    const std::int32_t tet = tets[static_cast<std::size_t>(place)];
+    const float value = tet < 0 || std::isnan(ratio[static_cast<std::size_t>(tet)]) ? 1 : ratio[static_cast<std::size_t>(tet)];
+    codes.voxels[static_cast<std::size_t>((std::int64_t{v.z} * size.y + v.y) * size.x + v.x)] = code_of_ratio(value);
+  });
+  return codes;
+}
+
+// As a cell of a study leaves its folder.
+void write_cell(const SessionResult& one, const Json& report, const TissueTable& tissues, const Path& folder) {
+  const Result& result = *one.result;
+  std::filesystem::create_directories(folder);
+  const TissueTable& table = result.from_tissues ? *result.from_tissues : tissues;
+  write_volume(*result.volume, folder / "posed.nrrd", table, {"NRRD", "uint16", false});
+  write_tissue_table(table, folder / "tissues.json");
+  if (result.overlap) write_volume(volume_of(*result.overlap, result.volume->grid), folder / "overlap.nrrd", {}, {"NRRD", "uint8", false});
+  if (result.solved) write_volume(ratios_of(*result.solved, *result.volume), folder / "ratio.nrrd", {}, {"NRRD", "uint8", false});
+  write_file_atomically(folder / "report.json", result.report);
+  const Json seconds = report.is_object() ? report.value("seconds", Json::object()) : Json::object();
+  const double total = seconds.is_object() && seconds.contains("total") && seconds["total"].is_number() ? seconds["total"].get<double>() : 0;
+  write_file_atomically(folder / "cell.json", Json{{"cpu_seconds", total}, {"wall_seconds", total}, {"machine", ""}}.dump());
+}
+
+template <class T>
+int index_of(std::vector<T>& all, const T& one) {
+  const auto found = std::find(all.begin(), all.end(), one);
+  if (found != all.end()) return static_cast<int>(found - all.begin());
+  all.push_back(one);
+  return static_cast<int>(all.size()) - 1;
+}
+
+}  // namespace
+
+std::string session_page(const SessionPage& session, const Path& scratch, const StartPictures& start, Progress& progress) {
+  Study study{.name = session.name, .volume = session.name, .spacings = {std::nullopt}};
+  std::vector<std::string> poses;
+  std::vector<CellOutcome> outcomes;
+  std::set<std::pair<int, int>> taken;
+  for (const SessionResult& one : session.results) {
+    progress.update("results", double(outcomes.size()) / double(session.results.size()));
+    const Json report = Json::parse(one.result->report, nullptr, false);
+    const int technique = index_of(study.techniques, technique_of(*one.result, report));
+    // Two of a pose by one technique: by other settings, or of another rig.
+    int pose = index_of(poses, one.pose);
+    for (int again = 2; !taken.insert({pose, technique}).second; ++again) pose = index_of(poses, one.pose + " (" + std::to_string(again) + ")");
+    const Path folder = scratch / std::to_string(outcomes.size());
+    write_cell(one, report, *session.tissues, folder);
+    outcomes.push_back({{0, pose, technique}, folder, ""});
+  }
+  for (const std::string& name : poses) study.poses.push_back({.name = name});
+  std::vector<CellResult> cells;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const std::string& name = session.results[i].result->name;
+    try {
+      cells.push_back(read_result(study, outcomes[i]));
+    } catch (const Error&) {
+      throw Error("a result has no whole report", name, "resample it again, or delete it");
+    }
+  }
+  const StudyFigures figures = make_figures(study, cells, start, progress);
+  return html_report(study, cells, figures, {.out = scratch, .date = date_text(), .of_session = true});
+}
+
+}  // namespace limber

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/scratch_folder.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "core/base/error.h"
+
+namespace limber::editor {
+
+ScratchFolder::ScratchFolder(const std::string& inside) {
+  std::error_code failure;
+  const Path base = inside.empty() ? std::filesystem::temp_directory_path(failure) : Path(inside);
+  std::string name = (base / "limber-XXXXXX").string();
+  if (!::mkdtemp(name.data())) throw Error("no scratch folder can be made", base.string(), std::string(std::strerror(errno)) + ": choose another one in the preferences");
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace limber::editor
