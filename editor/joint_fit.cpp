@@ -27,9 +27,14 @@ std::shared_ptr<const std::vector<glm::u8vec3>> coloured(const LabelVolume& volu
   return colours;
 }
 
-std::string motion_text(const FittedJoint& fit) {
+bool is_hinge(const ProposedJoint& proposed) {
+  const auto bone = proposed.from->find(proposed.bone);
+  return bone && proposed.from->bones[static_cast<std::size_t>(*bone)].limits.type == JointLimits::Type::Hinge;
+}
+
+std::string motion_text(const ProposedJoint& proposed) {
   char text[96];
-  std::snprintf(text, sizeof text, "The axis moves by %.1f mm and turns by %.1f\u00b0", fit.moved_mm, fit.turned_degrees);
+  std::snprintf(text, sizeof text, is_hinge(proposed) ? "The axis moves by %.1f mm and turns by %.1f\u00b0" : "Becomes a hinge, %.1f mm and %.1f\u00b0 from here", proposed.fit.moved_mm, proposed.fit.turned_degrees);
   return text;
 }
 
@@ -48,7 +53,9 @@ void start_joint_fit(Editor& editor) {
   const Document from = editor.document();
   const int bone = *editor.selection.bone;
   const JointLimits& limits = from.armature->bones[bone].limits;
-  const FitJoint settings{.minimum_degrees = glm::degrees(limits.minimum), .maximum_degrees = glm::degrees(limits.maximum)};
+  // Of a joint that is none, the hinge that it bends by, over the usual range.
+  FitJoint settings;
+  if (limits.type == JointLimits::Type::Hinge) settings = {.minimum_degrees = glm::degrees(limits.minimum), .maximum_degrees = glm::degrees(limits.maximum)};
   const bool both_sides = editor.handling->x_mirror;
   const int id = start_task(editor, "Fit joint axis of " + from.armature->bones[bone].name, [=](Progress& progress) -> Finish {
     ProposedJoint proposed{.volume = from.volume, .from = from.armature, .fitted = nullptr, .bone = from.armature->bones[bone].name, .fit = {}, .tissue = nullptr, .colours = {}};
@@ -117,7 +124,7 @@ void draw_proposed_joint(Editor& editor, const Rect& view) {
   put_text(editor, look.fonts.regular, look.theme.text2, Rect{{left + look.px(22), y}, {right, y + look.px(kRow)}}, "Bone in bone, worst angle");
   line(look.fonts.mono, fit.overlap_after > 0 ? look.theme.warn : look.theme.ok, grouped(fit.overlap_before) + " \u2192 " + grouped(fit.overlap_after), Align::Right);
   y += look.px(kRow);
-  line(look.fonts.regular, look.theme.text2, motion_text(fit));
+  line(look.fonts.regular, look.theme.text2, motion_text(*proposed));
   y += look.px(kRow + 2);
   const float half = (right - left - look.px(1)) / 2;
   const auto side = [&](const char* id, const char* words, float from, bool on) {

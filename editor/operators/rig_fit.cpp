@@ -15,7 +15,6 @@ std::string needs_joint_in_tissue(const Editor& editor) {
   if (const std::string why = needs_bone(editor); !why.empty()) return why;
   const Bone& bone = editor.document().armature->bones[*editor.selection.bone];
   if (bone.parent < 0) return "A root has no joint: choose a bone below one";
-  if (bone.limits.type != JointLimits::Type::Hinge) return "Make the joint a hinge first";
   return needs_volume(editor);
 }
 

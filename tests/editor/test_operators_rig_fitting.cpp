@@ -69,6 +69,24 @@ std::vector<Proof> proofs_of_rig_fitting() {
   };
 }
 
+TEST_CASE("joint axis: a joint without a hinge is fitted as the hinge it bends by, and says that it becomes one") {
+  Stage stage;
+  open_bars(stage);
+  Document document = stage.document();
+  Armature rig = *document.armature;
+  rig.bones[1].limits = {};
+  rig.bones[0].head = {-38, 14, 0};  // not in line, so that there is a way to bend
+  document.armature = std::make_shared<const Armature>(rig);
+  stage.editor().history.commit("Free", document);
+  stage.play("wait-idle\n key Shift+J\n wait-job\n wait-idle");
+  INFO(stage.fact("toast"), ", error ", stage.fact("error"));
+  REQUIRE(proposed_joint(stage.editor()));
+  CHECK(stage.document().armature->bones[1].limits.type == JointLimits::Type::Free);
+  CHECK(proposed_joint(stage.editor())->fit.overlap_before > proposed_joint(stage.editor())->fit.overlap_after);
+  stage.play("expect \"text:Becomes a hinge\"\n click \"3D view/joint axis/rig.take_joint_fit\"");
+  CHECK(stage.document().armature->bones[1].limits.type == JointLimits::Type::Hinge);
+}
+
 TEST_CASE("operators: skeletons are placed and fitted") {
   Stage stage;
   prove(stage, proofs_of_rig_fitting());
