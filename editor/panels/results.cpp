@@ -107,7 +107,7 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
   char seconds[24];
   std::snprintf(seconds, sizeof seconds, "%.1f s", facts->seconds);
   const Colour plain = theme.text, second = theme.text2;
-  const std::string state = reason.empty() ? state_of(side, shown) : (side.empty() ? "" : side + ", ") + "stale: " + reason;
+  const std::string state = reason.empty() ? state_of(side, shown) : (side.empty() ? "" : side + ", ") + "stale: " + reason.substr(0, reason.find(" changed"));  // whole in the tooltip
   put_cells(editor, row, {result->name, method_name(result->method), seconds, percent(facts->change_percent), grouped(facts->overlap_voxels), facts->inverted ? grouped(*facts->inverted) : "-", state},
             {plain, second, plain, colour_of_change(theme, facts->change_percent), facts->overlap_voxels ? theme.warn : theme.ok,
              !facts->inverted ? second : *facts->inverted ? theme.error : theme.ok, reason.empty() ? second : theme.warn},

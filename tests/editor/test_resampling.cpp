@@ -188,7 +188,7 @@ TEST_CASE("resample: a result becomes stale when what it was made from changes, 
   CHECK(steps(*test.editor)[4].state == StepState::Warning);
   test.play(R"(
     key Ctrl+4
-    expect "text:stale: weights changed" shown
+    expect "text:stale: weights" shown
   )");
   run(*test.editor, "edit.undo");
   CHECK(stale_reason(test.editor->document(), *result).empty());
