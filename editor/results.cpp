@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/report/report.h"
 #include "core/resample/pose_path.h"
 #include "editor/editor.h"
 #include "editor/fem_view.h"
@@ -102,7 +103,7 @@ ResultFacts facts_of_report(const std::string& text) {
   facts.gates = quality_gates(text);
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return facts;
-  if (json.contains("seconds")) facts.seconds = number(json["seconds"], "total").value_or(0);
+  facts.seconds = method_seconds(text);
   if (json.contains("total")) {
     const Json& total = json["total"];
     facts.change_percent = number(total, "volume_change_percent");

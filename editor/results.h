@@ -21,7 +21,7 @@ struct ResultTissue {
   std::int64_t overlap_voxels = 0;
 };
 struct ResultFacts {
-  double seconds = 0;
+  double seconds = 0;                    // of the method: not of weights that had to be computed first, of files or the report
   std::optional<double> change_percent;  // of all tissue
   std::int64_t overlap_voxels = 0, hole_voxels = 0, dropped_voxels = 0, trapped_air_voxels = 0;
   std::optional<std::int64_t> inverted;  // cells of a mesh, by finite elements

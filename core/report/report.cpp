@@ -235,6 +235,15 @@ std::string to_json(const Report& report) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+double method_seconds(const std::string& report) {
+  const Json json = Json::parse(report, nullptr, false);
+  double sum = 0;
+  if (const auto seconds = json.find("seconds"); seconds != json.end() && seconds->is_object())
+    for (const char* stage : {"deform", "mesh", "solve", "rasterize"})
+      if (const auto took = seconds->find(stage); took != seconds->end() && took->is_number()) sum += took->get<double>();
+  return sum;
+}
+
 void write_report(const Report& report, const Path& path) { write_file_atomically(path, to_json(report)); }
 
 void print_report(std::ostream& out, const Report& report) {

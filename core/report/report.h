@@ -57,6 +57,8 @@ struct Report {
 
 std::string to_json(const Report& report);
 void write_report(const Report& report, const Path& path);
+// What the method itself took, by such text: not weights that had to be computed first, files, nor the report. 0 where it says nothing.
+double method_seconds(const std::string& report);
 // The same as a table that reads well in a terminal of 100 columns.
 void print_report(std::ostream& out, const Report& report);
 

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/report/fem_measures.h"
+#include "core/report/report.h"
 #include "core/study/html_report.h"
 #include "core/volume/volume_io.h"
 
@@ -50,7 +51,7 @@ LabelVolume ratios_of(const SolvedMesh& solved, const LabelVolume& volume) {
 }
 
 // As a cell of a study leaves its folder.
-void write_cell(const SessionResult& one, const Json& report, const TissueTable& tissues, const Path& folder) {
+void write_cell(const SessionResult& one, const TissueTable& tissues, const Path& folder) {
   const Result& result = *one.result;
   std::filesystem::create_directories(folder);
   const TissueTable& table = result.from_tissues ? *result.from_tissues : tissues;
@@ -59,9 +60,8 @@ void write_cell(const SessionResult& one, const Json& report, const TissueTable&
   if (result.overlap) write_volume(volume_of(*result.overlap, result.volume->grid), folder / "overlap.nrrd", {}, {"NRRD", "uint8", false});
   if (result.solved) write_volume(ratios_of(*result.solved, *result.volume), folder / "ratio.nrrd", {}, {"NRRD", "uint8", false});
   write_file_atomically(folder / "report.json", result.report);
-  const Json seconds = report.is_object() ? report.value("seconds", Json::object()) : Json::object();
-  const double total = seconds.is_object() && seconds.contains("total") && seconds["total"].is_number() ? seconds["total"].get<double>() : 0;
-  write_file_atomically(folder / "cell.json", Json{{"cpu_seconds", total}, {"wall_seconds", total}, {"machine", ""}}.dump());
+  const double seconds = method_seconds(result.report);
+  write_file_atomically(folder / "cell.json", Json{{"cpu_seconds", seconds}, {"wall_seconds", seconds}, {"machine", ""}}.dump());
 }
 
 template <class T>
@@ -87,7 +87,7 @@ std::string session_page(const SessionPage& session, const Path& scratch, const 
     int pose = index_of(poses, one.pose);
     for (int again = 2; !taken.insert({pose, technique}).second; ++again) pose = index_of(poses, one.pose + " (" + std::to_string(again) + ")");
     const Path folder = scratch / std::to_string(outcomes.size());
-    write_cell(one, report, *session.tissues, folder);
+    write_cell(one, *session.tissues, folder);
     outcomes.push_back({{0, pose, technique}, folder, ""});
   }
   for (const std::string& name : poses) study.poses.push_back({.name = name});

@@ -92,6 +92,14 @@ TEST_CASE("report: carries method, settings, inputs, seconds, tissues, totals an
   CHECK(written["bones"][0]["rigid_residual_mm"] == 0.004);
 }
 
+TEST_CASE("report: what the method took is without weights, files and the report, and nothing where nothing is said") {
+  Report report;
+  report.seconds = {.read = 1, .weights = 20, .deform = 0.25, .mesh = 0.5, .solve = 4, .rasterize = 0.125, .report = 2, .write = 1, .total = 30};
+  CHECK(method_seconds(to_json(report)) == 4.875);
+  CHECK(method_seconds("{\"seconds\": 3}") == 0);
+  CHECK(method_seconds("no report") == 0);
+}
+
 TEST_CASE("report: a name that is not UTF-8 does not cost the report") {
   Report report{.metrics = compare(box_of(1, 4), box_of(1, 4), table_of(1, 5, "f\xfc\xdf"))};
   CHECK(json::parse(to_json(report))["tissues"].size() == 1);
