@@ -465,8 +465,8 @@ class Page {
     section("Absorption of radio waves", "sar");
     const SarFigures::Sphere& sphere = sar.sphere;
     html_ += "<p>Specific absorption rate (SAR) of the posed bodies in a plane wave of " + number(sar.frequency_hz / 1e6) + " MHz and 1 W/m², polarized along " + escaped(sar.polarization) + " and going towards +" + escaped(sar.towards) +
-             ", computed by openEMS with cells of " + number(sar.cell_mm) + " mm. The same way gives a ball of muscle, with cells of " + number(sphere.cell_mm) + " mm, an uptake of " + fixed(1e6 * sphere.absorbed, 1) + " µW, where Mie's exact solution has " +
-             fixed(1e6 * sphere.by_mie, 1) + ": " + signed_number(sphere.difference_percent, 1) + " %" + (std::abs(sphere.difference_percent) > 10 ? "; <b>this is more than 10 %: do not trust what follows</b>" : "") + ".</p>\n";
+             ", computed by openEMS with cells of " + number(sar.cell_mm) + " mm. The same way gives a ball of muscle, with cells of " + number(sphere.cell_mm) + " mm, an uptake of " + fixed(1e3 * sphere.absorbed, 2) + " mW, where Mie's exact solution has " +
+             fixed(1e3 * sphere.by_mie, 2) + ": " + signed_number(sphere.difference_percent, 1) + " %" + (std::abs(sphere.difference_percent) > 10 ? "; <b>this is more than 10 %: do not trust what follows</b>" : "") + ".</p>\n";
     if (!sar.outdated.empty()) {
       std::string poses;
       for (const std::string& pose : sar.outdated) poses += (poses.empty() ? "" : ", ") + pose;
