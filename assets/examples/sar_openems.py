@@ -4,7 +4,7 @@
 
   sar_openems.py deck DECK.xml [...] [--cell MM] [--polarization x|y|z] [--towards x|y|z] -o SAR.json [--plot SAR.svg]
   sar_openems.py sphere -o SPHERE.json
-  sar_openems.py study OUT [--method fem] [--spacing MM] [--poses A,B] [--frequency HZ] [--cell MM] [--limber PROGRAM]
+  sar_openems.py study OUT [--method fem-contact] [--spacing MM] [--poses A,B] [--frequency HZ] [--cell MM] [--limber PROGRAM]
 
 DECK.xml is what `limber convert POSED.nrrd DECK.xml --frequency HZ` writes: boxes of tissues with permittivity, conductivity and
 density. For each deck: the SAR averaged over all tissue and its largest average over 10 g, in W/kg for an incident power density
@@ -36,6 +36,7 @@ PADDING = 10  # cells of air between tissue and the box in which the wave is mad
 AROUND = 4  # cells between that box and the absorbing layer
 PML = 8  # cells
 MARGIN = PADDING + AROUND + PML
+SOUNDEST = ("fem-contact", "fem", "dqs", "lbs")  # methods of a study: the mass of a limb that passes through itself is not that of the limb
 
 
 class Deck:
@@ -236,7 +237,10 @@ def result_of_ball(cell, options):
 def chosen_cells(out, options):
     """A study's cells at one spacing, by one method."""
     with open(os.path.join(out, "cells.json")) as file:
-        cells = [cell for cell in json.load(file)["cells"] if "key" in cell and cell["method"] == options.method]
+        cells = [cell for cell in json.load(file)["cells"] if "key" in cell]
+    there = {cell["method"] for cell in cells}
+    options.method = options.method or next((method for method in SOUNDEST if method in there), SOUNDEST[0])
+    cells = [cell for cell in cells if cell["method"] == options.method]
     if options.spacing is None and cells:
         options.spacing = min(cell["spacing_mm"] or 0 for cell in cells)
     poses = options.poses and options.poses.split(",")
@@ -312,7 +316,7 @@ def main():
     parser.add_argument("--polarization", choices="xyz", default="z")
     parser.add_argument("--towards", choices="xyz", default="y")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
-    parser.add_argument("--method", default="fem", help="study: whose bodies (default: fem)")
+    parser.add_argument("--method", help="study: whose bodies (default: finite elements with contact where the study has them, else what comes nearest)")
     parser.add_argument("--spacing", type=float, help="study: of which spacing, mm (default: the finest)")
     parser.add_argument("--poses", help="study: their names, with commas between them (default: all)")
     parser.add_argument("--frequency", type=float, default=900e6, help="study and sphere, Hz (default: 900e6)")

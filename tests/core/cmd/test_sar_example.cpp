@@ -36,7 +36,7 @@ TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth,
   std::ofstream(folder / "study.json") << R"({"phantom": "arm", "spacings_mm": [8], "methods": ["dqs"], "poses": [{"name": "bent", "flex": ["Forearm=60"]}]})";
   const std::vector<std::string> experiment{"experiment", folder / "study.json", "-o", folder / "out"};
   REQUIRE(run_limber(experiment).exit_code == 0);
-  const auto study = sar({"study", folder / "out", "--method", "dqs", "--limber", LIMBER_PROGRAM});
+  const auto study = sar({"study", folder / "out", "--limber", LIMBER_PROGRAM});
   REQUIRE_MESSAGE(study.exit_code == 0, study.out, study.err);
   const auto figures = read(folder / "out" / "sar.json");
   CHECK(std::abs(figures["sphere"]["difference_percent"].get<double>()) < 10);
@@ -49,7 +49,7 @@ TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth,
   const std::string html{std::istreambuf_iterator<char>(page), {}};
   CHECK(html.find("id=\"sar\"") != html.npos);
   CHECK(html.find("Left out") == html.npos);
-  const auto none = sar({"study", folder / "out", "--limber", LIMBER_PROGRAM});
+  const auto none = sar({"study", folder / "out", "--method", "fem", "--limber", LIMBER_PROGRAM});
   CHECK(none.exit_code == 1);
   CHECK(none.err.find("no such cells") != none.err.npos);
 
