@@ -92,7 +92,7 @@ def write_simulation(deck, path, polarization, towards):
     cell = deck.cell
     total = [n + 2 * MARGIN for n in deck.index.shape]
     root = ET.Element("openEMS")
-    fdtd = ET.SubElement(root, "FDTD", NumberOfTimesteps="30000", endCriteria="1e-4", f_max=str(1.5 * deck.frequency))
+    fdtd = ET.SubElement(root, "FDTD", NumberOfTimesteps="30000", endCriteria="1e-5", f_max=str(1.5 * deck.frequency))
     ET.SubElement(fdtd, "Excitation", Type="0", f0=str(deck.frequency), fc=str(deck.frequency / 2))
     ET.SubElement(fdtd, "BoundaryCond", {side: f"PML_{PML}" for side in ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax")})
     structure = ET.SubElement(root, "ContinuousStructure", CoordSystem="0")
