@@ -75,7 +75,7 @@ void BlockGraphBuilder::add(std::span<const int> element) {
   first_.push_back(std::ssize(node_));
 }
 
-BlockGraph BlockGraphBuilder::build() const {
+BlockGraph BlockGraphBuilder::build(const BlockGraph& base) const {
   // The elements of every node.
   std::vector<std::int64_t> first(node_count_ + 1, 0);
   for (int node : node_) ++first[node + 1];
@@ -91,6 +91,14 @@ BlockGraph BlockGraphBuilder::build() const {
   for (int i = 0; i < node_count_; ++i) {
     seen_by[i] = i;
     const auto begin = std::ssize(graph.neighbour);
+    if (base.node_count() > 0) {
+      graph.neighbour.insert(graph.neighbour.end(), base.neighbour.begin() + base.first[i], base.neighbour.begin() + base.first[i + 1]);
+      if (first[i] == first[i + 1]) {
+        graph.first.push_back(std::ssize(graph.neighbour));
+        continue;
+      }
+      for (auto k = begin; k < std::ssize(graph.neighbour); ++k) seen_by[graph.neighbour[k]] = i;
+    }
     for (auto k = first[i]; k < first[i + 1]; ++k)
       for (auto n = first_[element[k]]; n < first_[element[k] + 1]; ++n)
         if (std::exchange(seen_by[node_[n]], i) != i) graph.neighbour.push_back(node_[n]);
@@ -258,7 +266,7 @@ Cholesky::Place Cholesky::place(int row, int column) const {
   const std::int64_t first = factor_->column[3 * c];
   if (r == c) return {first, stride};
   const auto at = std::lower_bound(factor_->below.begin() + begin, factor_->below.begin() + end, r);
-  assert(at != factor_->below.begin() + end && *at == r);
+  if (at == factor_->below.begin() + end || *at != r) return {-1, 0};
   return {first + 3 * (1 + (at - factor_->below.begin() - begin)), stride};
 }
 

@@ -26,7 +26,8 @@ class BlockGraphBuilder {
  public:
   explicit BlockGraphBuilder(int node_count) : node_count_(node_count) {}
   void add(std::span<const int> element);
-  BlockGraph build() const;
+  // What is in `base` (of as many nodes, or empty) meets too.
+  BlockGraph build(const BlockGraph& base = {}) const;
 
  private:
   int node_count_;
@@ -54,7 +55,7 @@ class Cholesky {
   // Of the ordering that keeps the factor sparse. Only blocks whose row node comes at or after their column node are stored;
   // of a node's own block only the lower triangle is read.
   int rank(int node) const;
-  // row, column  nodes that are the same or meet in the graph, rank(row) >= rank(column)
+  // row, column  nodes with rank(row) >= rank(column); at -1 where they neither are the same nor meet in the graph
   Place place(int row, int column) const;
 
   std::span<double> values();

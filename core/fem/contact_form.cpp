@@ -12,12 +12,11 @@ namespace limber {
 
 namespace {
 constexpr double kOfRest = 0.5;      // of what a pair is apart at rest: no thickness is more
-constexpr double kSoon = 1.4;        // thicknesses: pairs this near are in the matrix before they touch; at 2, where what is as near as at
+constexpr double kSoon = 1.2;        // thicknesses: pairs this near are in the matrix before they touch; at 2, where what is as near as at
                                      // rest counts, skin's own neighbours would double the cost of a factorization
+constexpr double kPressed = 0.6;     // of the thickness: pairs nearer than this must be in the matrix, which is ordered anew for them
 constexpr double kParallel = 1e-3;   // of the squared product of two edges at rest, below which they count as parallel
 constexpr std::int64_t kGrain = 2048;
-
-std::uint64_t key_of(int a, int b) { return std::uint64_t(std::min(a, b)) << 32 | std::uint32_t(std::max(a, b)); }
 
 // b(d / h) and its derivatives by d.
 struct Barrier {
@@ -120,7 +119,7 @@ void ContactForm::touch(const Places& x) {
     const Barrier b = barrier(nearest.distance, h);
     const Fade faded = fade(pair, x);
     const double scale = scale_ * share_of(pair.kind);
-    Touch touch{pair, scale * b.slope * faded.value, scale * b.curvature * faded.value, {}, faded.slope, scale * b.value, {}, {0, 1, 2, 3}};
+    Touch touch{pair, scale * b.slope * faded.value, scale * b.curvature * faded.value, nearest.distance < kPressed * h, {}, faded.slope, scale * b.value, {}, {0, 1, 2, 3}};
     for (int a = 0; a < 4; ++a) touch.way.col(a) = nearest.weight[a] * nearest.direction;
     touching_.push_back(touch);
   }
@@ -146,28 +145,17 @@ void ContactForm::add_curvature(std::span<double> values) const {
 }
 
 void ContactForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x) {
-  connected_.clear();
   for (const ContactPair& pair : surface_.near(x, Places::Zero(x.rows(), 3), 0, kSoon * settings_.thickness_mm, kSoon * kOfRest)) {
     std::array<int, 4> element;
-    for (int a = 0; a < 4; ++a) {
-      element[a] = unknown[pair.node[a]];
-      for (int b = 0; b < a; ++b) connected_.insert(key_of(pair.node[a], pair.node[b]));
-    }
+    for (int a = 0; a < 4; ++a) element[a] = unknown[pair.node[a]];
     graph.add(element);
   }
 }
 
-bool ContactForm::connected() const {
-  for (const Touch& touch : touching_)
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < a; ++b)
-        if (!connected_.contains(key_of(touch.pair.node[a], touch.pair.node[b]))) return false;
-  return true;
-}
-
-void ContactForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
+bool ContactForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
   const auto rank = [&](int node) { return unknown[node] < 0 ? -1 : matrix.rank(unknown[node]); };
   for (Touch& touch : touching_) {
+    bool unforeseen = false;
     std::sort(touch.order.begin(), touch.order.end(), [&](int a, int b) {
       const int rank_a = rank(touch.pair.node[a]), rank_b = rank(touch.pair.node[b]);
       return rank_a != rank_b ? rank_a < rank_b : a < b;
@@ -176,8 +164,16 @@ void ContactForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
       for (int b = 0; b <= a; ++b, ++k) {
         const int row = unknown[touch.pair.node[touch.order[a]]], column = unknown[touch.pair.node[touch.order[b]]];
         touch.place[k] = row < 0 || column < 0 ? Cholesky::Place{-1, 0} : matrix.place(row, column);
+        unforeseen = unforeseen || (row >= 0 && column >= 0 && touch.place[k].at < 0);
       }
+    if (!unforeseen) continue;
+    if (touch.pressed) return false;
+    const int sides = touch.pair.kind == ContactPair::Kind::EdgeEdge ? 2 : 1;  // nodes before it are of the one, the others of the other
+    for (int a = 0, k = 0; a < 4; ++a)
+      for (int b = 0; b <= a; ++b, ++k)
+        if ((touch.order[a] < sides) != (touch.order[b] < sides)) touch.place[k].at = -1;
   }
+  return true;
 }
 
 }  // namespace limber

@@ -14,7 +14,6 @@
 #pragma once
 
 #include <span>
-#include <unordered_set>
 #include <vector>
 
 #include "core/base/cholesky.h"
@@ -23,7 +22,7 @@
 namespace limber {
 
 struct ContactSettings {
-  double barrier_kpa = 20;  // c
+  double barrier_kpa = 40;  // c
   double thickness_mm = 2;  // H
 };
 
@@ -60,10 +59,10 @@ class ContactForm {
   void add_gradient(Places& gradient) const;
   void add_curvature(std::span<double> values) const;
 
-  // The matrix must know who may touch: who does at x, and who soon may.
+  // The matrix must know who may touch: who does at x, and who soon may. What begins to touch unforeseen pushes weakly: in the
+  // matrix each side then meets the other as if that stood still, until it is pressed.
   void connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x);
-  bool connected() const;  // after touch()
-  void bind(const Cholesky& matrix, std::span<const int> unknown);  // after touch(), when connected()
+  bool bind(const Cholesky& matrix, std::span<const int> unknown);  // after touch(); false where the matrix must know more
 
   std::int64_t touching() const { return std::ssize(touching_); }
 
@@ -71,6 +70,7 @@ class ContactForm {
   struct Touch {
     ContactPair pair;
     double slope, curvature;                  // of the energy by the distance
+    bool pressed;                             // nearer than a share of the thickness
     Eigen::Matrix<double, 3, 4> way, fading;  // of the distance and of the fading by the nodes' places
     double faded;                             // energy without the fading
     std::array<Cholesky::Place, 10> place;    // as in ElasticForm
@@ -91,7 +91,6 @@ class ContactForm {
   std::vector<ContactPair> watched_;
   std::vector<char> blocked_;  // of those watched
   std::vector<Touch> touching_;
-  std::unordered_set<std::uint64_t> connected_;  // pairs of nodes
 };
 
 }  // namespace limber

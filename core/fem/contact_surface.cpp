@@ -88,34 +88,29 @@ double relative_motion(ContactPair::Kind kind, Corners& step) {
   return std::max(length[0], length[1]) + std::max(length[2], length[3]);
 }
 
-using Lanes = Eigen::Array4d;  // x y z 0: four are added at once, three are not
-Lanes lanes(double x, double y, double z) { return {x, y, z, 0}; }
-
-struct Box {
-  Lanes low = lanes(INFINITY, INFINITY, INFINITY), high = lanes(-INFINITY, -INFINITY, -INFINITY);
-  void add(const Box& other) { low = low.min(other.low), high = high.max(other.high); }
-};
+// Boxes are compared in single precision, four numbers at once; what that rounds is allowed for where they are compared.
+using Lanes = Eigen::Array4f;  // x y z 0
+constexpr double kRounding = 4 * 1.2e-7;  // of the furthest coordinate
 
 // Where something is, and what way it goes.
 struct Moving {
-  Box place, motion;
-  void add(const Moving& other) { place.add(other.place), motion.add(other.motion); }
+  Lanes low{INFINITY, INFINITY, INFINITY, 0}, high{-INFINITY, -INFINITY, -INFINITY, 0};
+  Lanes slowest = low, fastest = high;
+  void add(const Moving& other) {
+    low = low.min(other.low), high = high.max(other.high);
+    slowest = slowest.min(other.slowest), fastest = fastest.max(other.fastest);
+  }
 };
-
-Moving moving(const Places& x, const Places& step, double limit, int node) {
-  const Lanes place = lanes(x(node, 0), x(node, 1), x(node, 2)), motion = limit * lanes(step(node, 0), step(node, 1), step(node, 2));
-  return {{place, place}, {motion, motion}};
-}
 
 Moving around(Moving a, const Moving& b) {
   a.add(b);
   return a;
 }
 
-// Along one axis at least, by `reach` or more, all the way.
-bool apart(const Moving& a, const Moving& b, double reach) {
-  const Lanes before = a.place.low - b.place.high + (a.motion.low - b.motion.high).min(0.0);
-  const Lanes behind = b.place.low - a.place.high + (b.motion.low - a.motion.high).min(0.0);
+// Along one axis at least, by more than `reach`, all the way.
+[[gnu::always_inline]] inline bool apart(const Moving& a, const Moving& b, float reach) {
+  const Lanes before = a.low - b.high + (a.slowest - b.fastest).min(0.0f);
+  const Lanes behind = b.low - a.high + (b.slowest - a.fastest).min(0.0f);
   return before.max(behind).maxCoeff() > reach;
 }
 }  // namespace
@@ -195,6 +190,18 @@ void ContactSurface::grow(std::vector<int>& order, const std::vector<Eigen::Vect
 
 std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& step, double limit, double reach, double of_rest) const {
   if (faces_.empty()) return {};
+  std::vector<Moving> node(x.rows()), face(faces_.size());
+  double furthest = 0;
+  for (Eigen::Index v = 0; v < x.rows(); ++v) {
+    const Eigen::RowVector3d motion = limit * step.row(v);
+    furthest = std::max(furthest, x.row(v).cwiseAbs().maxCoeff() + motion.cwiseAbs().maxCoeff());
+    node[v].low.head<3>() = node[v].high.head<3>() = x.row(v).transpose().array().cast<float>();
+    node[v].slowest.head<3>() = node[v].fastest.head<3>() = motion.transpose().array().cast<float>();
+  }
+  for (std::size_t f = 0; f < faces_.size(); ++f)
+    for (const int v : faces_[f].node) face[f].add(node[v]);
+  const float reach_of_boxes = float(reach + kRounding * furthest);
+
   // Of every branch, last first, so that what is below is known: its place, and its whole step.
   std::vector<Moving> branch(tree_.size());
   std::vector<int> rigid_as(tree_.size());
@@ -207,12 +214,10 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
       }
       continue;
     }
-    for (int f = tree_[b].begin; f < tree_[b].end; ++f)
-      for (int k = 0; k < 3; ++k) {
-        const int node = faces_[f].node[k];
-        branch[b].add(moving(x, step, limit, node));
-        join(b, rigid_[node], f == tree_[b].begin && k == 0);
-      }
+    for (int f = tree_[b].begin; f < tree_[b].end; ++f) {
+      branch[b].add(face[f]);
+      for (int k = 0; k < 3; ++k) join(b, rigid_[faces_[f].node[k]], f == tree_[b].begin && k == 0);
+    }
   }
 
   // Pairs of leaves.
@@ -226,7 +231,7 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
       else leaves.emplace_back(a, a);
       continue;
     }
-    if (apart(branch[a], branch[b], reach)) continue;
+    if (apart(branch[a], branch[b], reach_of_boxes)) continue;
     const bool split_a = tree_[a].right && (!tree_[b].right || tree_[a].end - tree_[a].begin >= tree_[b].end - tree_[b].begin);
     if (split_a) open.insert(open.end(), {{tree_[a].right, b}, {a + 1, b}});
     else if (tree_[b].right) open.insert(open.end(), {{a, tree_[b].right}, {a, b + 1}});
@@ -235,58 +240,46 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
 
   constexpr std::int64_t kGrain = 256;
   std::vector<std::vector<ContactPair>> found((leaves.size() + kGrain - 1) / kGrain);
-  const auto one_rigid = [&](const std::array<int, 4>& node) {
-    return rigid_[node[0]] >= 0 && rigid_[node[0]] == rigid_[node[1]] && rigid_[node[0]] == rigid_[node[2]] && rigid_[node[0]] == rigid_[node[3]];
+  const auto one_rigid = [&](const std::array<int, 4>& four) {
+    return rigid_[four[0]] >= 0 && rigid_[four[0]] == rigid_[four[1]] && rigid_[four[0]] == rigid_[four[2]] && rigid_[four[0]] == rigid_[four[3]];
   };
   parallel_for(std::ssize(leaves), kGrain, [&](std::int64_t begin, std::int64_t end) {
     auto& mine = found[begin / kGrain];
     // What of two faces stays apart by its boxes alone is left out first: most of it.
-    const auto consider = [&](ContactPair::Kind kind, const std::array<int, 4>& node) {
-      if (one_rigid(node)) return;
-      const ContactPair pair{node, kind};
+    const auto consider = [&](ContactPair::Kind kind, const std::array<int, 4>& four) {
+      if (one_rigid(four)) return;
+      const ContactPair pair{four, kind};
       Corners s = at(pair, step);
       const double nearest = distance(kind, at(pair, x)) - limit * relative_motion(kind, s);
       if (nearest < reach && (of_rest == INFINITY || nearest < of_rest * distance(kind, at(pair, rest_)))) mine.push_back(pair);
     };
-    struct MovingFace {
-      std::array<Moving, 3> corner, edge;
-      Moving all;
-    };
-    const auto points = [&](const Face& a, const MovingFace& moving_a, const Face& b, const MovingFace& moving_b) {
+    const auto points = [&](const Face& a, const Face& b, const Moving& all_of_b) {
       for (int k = 0; k < 3; ++k) {
-        if (!(a.own_nodes >> k & 1) || a.node[k] == b.node[0] || a.node[k] == b.node[1] || a.node[k] == b.node[2]) continue;
-        if (!apart(moving_a.corner[k], moving_b.all, reach)) consider(ContactPair::Kind::PointTriangle, {a.node[k], b.node[0], b.node[1], b.node[2]});
+        const int v = a.node[k];
+        if (!(a.own_nodes >> k & 1) || v == b.node[0] || v == b.node[1] || v == b.node[2]) continue;
+        if (!apart(node[v], all_of_b, reach_of_boxes)) consider(ContactPair::Kind::PointTriangle, {v, b.node[0], b.node[1], b.node[2]});
       }
     };
-    const auto edges = [&](const Face& a, const MovingFace& moving_a, const Face& b, const MovingFace& moving_b) {
-      for (int k = 0; k < 3; ++k)
+    const auto edges = [&](const Face& a, const Face& b) {
+      for (int k = 0; k < 3; ++k) {
+        if (!(a.own_edges >> k & 1)) continue;
+        const int v = a.node[k], w = a.node[(k + 1) % 3];
+        const Moving edge = around(node[v], node[w]);
         for (int l = 0; l < 3; ++l) {
-          if (!(a.own_edges >> k & 1) || !(b.own_edges >> l & 1)) continue;
-          const std::array<int, 4> node{a.node[k], a.node[(k + 1) % 3], b.node[l], b.node[(l + 1) % 3]};
-          if (node[0] == node[2] || node[0] == node[3] || node[1] == node[2] || node[1] == node[3]) continue;
-          if (!apart(moving_a.edge[k], moving_b.edge[l], reach)) consider(ContactPair::Kind::EdgeEdge, node);
+          const int other_v = b.node[l], other_w = b.node[(l + 1) % 3];
+          if (!(b.own_edges >> l & 1) || v == other_v || v == other_w || w == other_v || w == other_w) continue;
+          if (!apart(edge, around(node[other_v], node[other_w]), reach_of_boxes)) consider(ContactPair::Kind::EdgeEdge, {v, w, other_v, other_w});
         }
-    };
-    std::array<MovingFace, kLeaf> moving_a, moving_b;
-    const auto load = [&](const Branch& leaf, std::array<MovingFace, kLeaf>& faces) {
-      for (int f = leaf.begin; f < leaf.end; ++f) {
-        MovingFace& face = faces[f - leaf.begin];
-        for (int k = 0; k < 3; ++k) face.corner[k] = moving(x, step, limit, faces_[f].node[k]);
-        for (int k = 0; k < 3; ++k) face.edge[k] = around(face.corner[k], face.corner[(k + 1) % 3]);
-        face.all = around(face.edge[0], face.edge[1]);
       }
     };
     for (auto l = begin; l < end; ++l) {
       const Branch &a = tree_[leaves[l].first], &b = tree_[leaves[l].second];
-      load(a, moving_a);
-      load(b, moving_b);
       for (int i = a.begin; i < a.end; ++i)
         for (int j = leaves[l].first == leaves[l].second ? i + 1 : b.begin; j < b.end; ++j) {
-          const MovingFace &one = moving_a[i - a.begin], &other = moving_b[j - b.begin];
-          if (apart(one.all, other.all, reach)) continue;
-          points(faces_[i], one, faces_[j], other);
-          points(faces_[j], other, faces_[i], one);
-          edges(faces_[i], one, faces_[j], other);
+          if (apart(face[i], face[j], reach_of_boxes)) continue;
+          points(faces_[i], faces_[j], face[j]);
+          points(faces_[j], faces_[i], face[i]);
+          edges(faces_[i], faces_[j]);
         }
     }
   });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <sys/resource.h>
 
@@ -46,7 +47,7 @@ FemEnergy::FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::v
   }
   flesh_ = ElasticForm(rest, flesh_tets_, energy, {order.first.begin() + 1, order.first.end()});
   patches_ = PatchForm(flesh_, order.first, ordered_bulk, node_count_);
-  bounded_ = flesh_tets_;
+  guard(Eigen::MatrixX4i(0, 4));
 }
 
 void FemEnergy::hold(PinForm pins, std::vector<int> carried, Places carried_target) {
@@ -59,6 +60,13 @@ void FemEnergy::hold(PinForm pins, std::vector<int> carried, Places carried_targ
 void FemEnergy::guard(const Eigen::MatrixX4i& guarded) {
   bounded_.resize(flesh_tets_.rows() + guarded.rows(), 4);
   bounded_ << flesh_tets_, guarded;
+  first_at_.assign(node_count_ + 1, 0);
+  for (const int node : bounded_.reshaped()) ++first_at_[node + 1];
+  std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
+  tet_at_.resize(4 * bounded_.rows());
+  std::vector<int> next(first_at_.begin(), first_at_.end() - 1);
+  for (int t = 0; t < int(bounded_.rows()); ++t)
+    for (const int node : bounded_.row(t)) tet_at_[next[node]++] = t;
 }
 
 void FemEnergy::set_contact(ContactForm contact) {
@@ -67,8 +75,24 @@ void FemEnergy::set_contact(ContactForm contact) {
 }
 
 void FemEnergy::prepare(const Places& x) {
-  if (matrix_ && contact_.connected()) return;
   const CpuTimer timer(seconds_.analysis);
+  if (matrix_ && contact_.bind(*matrix_, unknown_)) return;
+  if (!matrix_) number();
+  BlockGraphBuilder touching(int(node_of_.size()));
+  contact_.connect(touching, unknown_, x);
+  const BlockGraph graph = touching.build(graph_);
+  {
+    const CpuTimer ordering(seconds_.ordering);
+    if (matrix_) matrix_->analyse(graph);
+    else matrix_ = std::make_unique<Cholesky>(graph);
+  }
+  ++analyses_;
+  flesh_.bind(*matrix_, unknown_);
+  patches_.bind(flesh_, *matrix_, unknown_);
+  contact_.bind(*matrix_, unknown_);
+}
+
+void FemEnergy::number() {
   // Nodes that nothing pulls at are no unknowns either: a matrix has no row for them.
   std::vector<char> used(node_count_, 0);
   for (const int node : pins_.node) used[node] = 1;
@@ -82,11 +106,7 @@ void FemEnergy::prepare(const Places& x) {
   BlockGraphBuilder graph(int(node_of_.size()));
   flesh_.connect(graph, unknown_);
   patches_.connect(graph, unknown_);
-  contact_.connect(graph, unknown_, x);
-  if (matrix_) matrix_->analyse(graph.build());
-  else matrix_ = std::make_unique<Cholesky>(graph.build());
-  flesh_.bind(*matrix_, unknown_);
-  patches_.bind(flesh_, *matrix_, unknown_);
+  graph_ = graph.build();
 }
 
 Cholesky& FemEnergy::matrix() { return *matrix_; }
@@ -128,7 +148,6 @@ void FemEnergy::assemble(const Places& x, Curvature curvature, Places& gradient)
   patches_.pressures(J_, pressure_);
   flesh_.add_derivatives(x, pressure_, curvature, gradient, values);
   patches_.add_curvature(flesh_, x, values);
-  contact_.bind(*matrix_, unknown_);
   contact_.add_gradient(gradient);
   contact_.add_curvature(values);
   pins_.add_gradient(x, gradient);
@@ -193,14 +212,17 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
   const CpuTimer timer(seconds_.search);
   const auto& T = bounded_;
   Places sum(x.rows(), 3), there = x + step;
-  std::vector<int> count(x.rows(), 0), nodes;
-  std::vector<char> flattened(T.rows()), changed(x.rows(), 1);
+  std::vector<int> count(x.rows(), 0), nodes, asked(T.rows());  // tets that may have become flat, or still are
+  std::iota(asked.begin(), asked.end(), 0);
+  std::vector<char> flattened(T.rows(), 0), changed(x.rows(), 1);
   for (int round = 0; round < kRounds; ++round) {
-    parallel_for(T.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
-      for (auto t = begin; t < end; ++t)
-        if (changed[T(t, 0)] || changed[T(t, 1)] || changed[T(t, 2)] || changed[T(t, 3)])
-          flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) < kBorne * determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3));
+    parallel_for(std::ssize(asked), 4096, [&](std::int64_t begin, std::int64_t end) {
+      for (auto k = begin; k < end; ++k) {
+        const int t = asked[k];
+        flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) < kBorne * determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3));
+      }
     });
+    std::erase_if(asked, [&](int t) { return !flattened[t]; });
     const auto smooth = [&](const auto& element) {
       Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
       for (const int v : element) mean += 0.25 * step.row(v);
@@ -210,8 +232,7 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
         sum.row(v) += mean;
       }
     };
-    for (Eigen::Index t = 0; t < T.rows(); ++t)
-      if (flattened[t]) smooth(std::array{T(t, 0), T(t, 1), T(t, 2), T(t, 3)});
+    for (const int t : asked) smooth(std::array{T(t, 0), T(t, 1), T(t, 2), T(t, 3)});
     if (!contact_.empty()) {
       if (round % 10 == 0) {
         contact_.watch(x, step, 1);
@@ -227,7 +248,10 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
       there.row(v) = x.row(v) + step.row(v);
       count[v] = 0;
       changed[v] = 1;
+      for (int k = first_at_[v]; k < first_at_[v + 1]; ++k)
+        if (!flattened[tet_at_[k]]) flattened[tet_at_[k]] = 1, asked.push_back(tet_at_[k]);
     }
+    std::sort(asked.begin(), asked.end());
     nodes.clear();
   }
   return step;

@@ -19,8 +19,9 @@
 namespace limber {
 
 // Nothing of the solver but its cost, in CPU seconds of all threads. `indefinite`: factorizations that ended early, being that.
+// `ordering`: of the analysis, what is CHOLMOD's.
 struct FemSeconds {
-  double contact = 0, analysis = 0, assembly = 0, factorization = 0, indefinite = 0, search = 0, total = 0;
+  double contact = 0, analysis = 0, ordering = 0, assembly = 0, factorization = 0, indefinite = 0, search = 0, total = 0;
 };
 
 // Adds the CPU time of the process, while it lives, to a sum.
@@ -76,15 +77,18 @@ class FemEnergy {
 
   Cholesky& matrix();  // of the last newton_step()
   int factorizations() const { return factorizations_; }  // but those of indefinite matrices
+  int analyses() const { return analyses_; }  // of the matrix's pattern, which contact changes
   FemSeconds& seconds() { return seconds_; }
 
  private:
   void prepare(const Places& x);
+  void number();
   void ratios(const Places& x);
   void assemble(const Places& x, Curvature curvature, Places& gradient);
 
   int node_count_;
   Eigen::MatrixX4i flesh_tets_, bounded_;
+  std::vector<int> first_at_, tet_at_;  // of bounded_, those around each node: tet_at_[first_at_[v] .. first_at_[v + 1])
   ElasticForm flesh_;
   PatchForm patches_;
   PinForm pins_;
@@ -94,9 +98,10 @@ class FemEnergy {
 
   std::vector<int> unknown_;  // #nodes: row of blocks in the matrix, -1 none
   std::vector<int> node_of_;  // #rows
+  BlockGraph graph_;          // of flesh and its patches
   std::unique_ptr<Cholesky> matrix_;
   std::vector<double> J_, pressure_, right_side_;
-  int factorizations_ = 0;
+  int factorizations_ = 0, analyses_ = 0;
   FemSeconds seconds_;
 };
 

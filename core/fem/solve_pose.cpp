@@ -123,6 +123,7 @@ class PoseSolve {
     result_.V = x_;
     result_.min_det_f = energy_.min_ratio(x_);
     result_.factorizations = energy_.factorizations();
+    result_.analyses = energy_.analyses();
     return std::move(result_);
   }
 

@@ -35,7 +35,7 @@ using BonePath = std::function<std::vector<RigidTransform>(double t)>;
 struct SolveSettings {
   bool contact = false;
   double step_degrees = 7.5;        // of the joint that turns furthest
-  double contact_mm = 2;            // from this distance on skin is pushed apart, where it was further apart at rest
+  double contact_mm = 1.4;          // from this distance on skin is pushed apart, where it was further apart at rest
   double step_tolerance_mm = 4;     // a step ends when no node would move further than this: half a tet
   double tolerance_mm = 0.3;        // at the pose
   int step_iterations = 40;         // a step that needs more is done in parts: half of it, a quarter, ...
@@ -56,7 +56,7 @@ struct SolvedPose {
   bool converged = false;    // false: V is the last good step, `reached` of the path, or what has not settled at its end
   double reached = 0;        // [0, 1]
   std::string blocked_by;    // what stands in the way, where it did not converge; else empty
-  int steps = 0, iterations = 0, factorizations = 0;
+  int steps = 0, iterations = 0, factorizations = 0, analyses = 0;
   double residual = 0;       // furthest that a node wanted to move in the last iteration, mm
   double min_det_f = 1;      // of tets with flesh, at the end
   double min_det_f_of_path = 1;  // at the end of any step

@@ -89,6 +89,7 @@ Json mesh_of(const Report& report, const MeshReport& mesh) {
   Json row{{"tets", mesh.tets}, {"nodes", mesh.nodes}, {"inverted", mesh.inverted}, {"min_det_f", mesh.min_det_f},
            {"joint_tets", mesh.joint_tets}, {"share_below_fifth", mesh.share_below_fifth}};
   if (mesh.self_intersections) row["self_intersections"] = *mesh.self_intersections;
+  if (mesh.contact_nodes > 0) row["contact_nodes"] = mesh.contact_nodes;
   if (mesh.min_gap_mm) row["min_gap_mm"] = *mesh.min_gap_mm;
   if (mesh.median_gap_mm) row["median_gap_mm"] = *mesh.median_gap_mm;
   Json change = Json::object();
@@ -102,7 +103,7 @@ Json mesh_of(const Report& report, const MeshReport& mesh) {
 Json solve_of(const SolveReport& solve) {
   Json row{{"converged", solve.converged}, {"reached", solve.reached}};
   if (!solve.blocked_by.empty()) row["blocked_by"] = solve.blocked_by;
-  row.update({{"steps", solve.steps}, {"iterations", solve.iterations}, {"factorizations", solve.factorizations}, {"residual", solve.residual_mm}, {"bone_drift_mm", solve.bone_drift_mm}});
+  row.update({{"steps", solve.steps}, {"iterations", solve.iterations}, {"factorizations", solve.factorizations}, {"analyses", solve.analyses}, {"residual", solve.residual_mm}, {"bone_drift_mm", solve.bone_drift_mm}});
   return row;
 }
 

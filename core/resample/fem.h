@@ -40,7 +40,8 @@ struct MeshReport {
   std::int64_t joint_tets = 0;             // between two bones: soft, not counted in min_det_f
   double share_below_fifth = 0;            // of soft tets, those with det F below 0.2
   std::optional<std::int64_t> self_intersections;  // pairs of triangles of the posed border
-  std::optional<double> min_gap_mm, median_gap_mm;  // of air between parts of the border that came nearer than a tet
+  std::int64_t contact_nodes = 0;          // of the border: nearer to another part of it than 1.5 times what contact pushes from, without contact too
+  std::optional<double> min_gap_mm, median_gap_mm;  // of the air at those nodes
   std::map<Label, double> volume_change_percent;   // of the tets that hold the label's voxels
   std::map<Label, Stretch> stretch;        // of soft tissue that bends
   std::string fallback;                    // what the mesher had to do instead of its best, empty where nothing
@@ -51,6 +52,7 @@ struct SolveReport {
   double reached = 0;                      // of the way from rest to the pose, [0, 1]
   std::string blocked_by;                  // where it did not converge
   int steps = 0, iterations = 0, factorizations = 0;
+  int analyses = 0;                        // of the matrix's pattern, which contact changes
   double residual_mm = 0;                  // furthest that a node wanted to move in the last iteration
   double bone_drift_mm = 0;                // furthest that a node of the mesh is from where its bone is; voxels of bone are where it is
 };

@@ -19,7 +19,8 @@ constexpr double kGive = 16;    // mm around what the pose brings together: pres
 constexpr double kRim = 2.5;    // tets: two layers whole, whatever cells the tissue's border cuts
 constexpr double kJoint = 2;    // tets: so many layers share the sliding of two bones
 constexpr double kDrift = 2;    // mm that a bone may give way at a node, more where tets are so coarse that bones are rough
-constexpr double kContact = 2;  // mm from which skin is pushed apart; less where tets are small
+constexpr double kContact = 1.4;  // mm from which skin is pushed apart; less where tets are small
+constexpr double kTouches = 1.5;   // of that distance: what counts as touching in reports
 constexpr double kBent = 0.9997;  // cosine of half an angle of 3 degrees
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -58,8 +59,8 @@ std::vector<double> places_of(std::size_t poses) {
   return places;
 }
 
-//   spacing  of the mesh, mm
-void measure(const SolvedPose& solved, double spacing, FemShape& shape) {
+//   spacing  of the mesh, mm       contact_mm  from which skin is pushed apart
+void measure(const SolvedPose& solved, double spacing, double contact_mm, FemShape& shape) {
   const TetMesh& mesh = shape.model.fem.mesh;
   const std::vector<double> ratios = volume_ratios(mesh, solved.V);
   MeshReport& report = shape.mesh;
@@ -77,9 +78,10 @@ void measure(const SolvedPose& solved, double spacing, FemShape& shape) {
   if (soft > 0) report.share_below_fifth = double(pressed) / double(soft);
   const Eigen::MatrixX3i border = boundary_of(mesh.T);
   report.self_intersections = std::ssize(crossing_pairs(solved.V, border));
-  if (const auto gap = contact_gap(mesh.V, solved.V, border, 3 * spacing, spacing)) {
+  if (const auto gap = contact_gap(mesh.V, solved.V, border, spacing, kTouches * contact_mm)) {
     report.min_gap_mm = gap->smallest_mm;
     report.median_gap_mm = gap->median_mm;
+    report.contact_nodes = gap->nodes;
   }
   report.volume_change_percent = volume_change_percent(shape.model, solved.V);
   report.stretch = stretches(shape.model, solved.V);
@@ -87,7 +89,7 @@ void measure(const SolvedPose& solved, double spacing, FemShape& shape) {
 
 SolveReport report_of(const SolvedPose& solved) {
   return {.converged = solved.converged, .reached = solved.reached, .blocked_by = solved.blocked_by, .steps = solved.steps,
-          .iterations = solved.iterations, .factorizations = solved.factorizations, .residual_mm = solved.residual, .bone_drift_mm = solved.bone_drift_mm};
+          .iterations = solved.iterations, .factorizations = solved.factorizations, .analyses = solved.analyses, .residual_mm = solved.residual, .bone_drift_mm = solved.bone_drift_mm};
 }
 
 }  // namespace
@@ -138,7 +140,7 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   shape->cpu = solved.seconds;
   shape->solve = report_of(solved);
   shape->mesh = {.fallback = shape->mesh.fallback};
-  measure(solved, spacing_, *shape);
+  measure(solved, spacing_, settings.contact_mm, *shape);
   std::erase_if(shape->mesh.stretch, [&](const auto& tissue) { return is_bone_[tissue.first] != 0; });  // painted rigidly, whatever tets it lies in
   shape->seconds_solve = seconds_since(solving);
   if (ends) return shape;

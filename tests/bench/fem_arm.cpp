@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What finite elements cost on a real arm, beside one factorization of the same matrix and a resampling by dual quaternions. Called as
-//   limber_fem_arm VOLUME RIG [SPACING_MM:DEGREES[:free]...]     free: without contact
+//   limber_fem_arm VOLUME RIG [SPACING_MM:DEGREES[:free|:same]...]     free: without contact     same: without, on the mesh with contact,
+// which is larger: what the pose brings together is pressed, and so in it
 // CPU seconds of one thread, of this process and of TetGen's; what other work on the machine does to them is told by the factorization.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -19,39 +21,76 @@ using bench::cpu_seconds;
 
 struct Row {
   double spacing, degrees;
-  bool contact;
+  std::string kind;  // contact, free, same
 };
 
 Row row_of(const std::string& word) {
-  Row row{std::strtod(word.c_str(), nullptr), 90, !word.ends_with(":free")};
+  Row row{std::strtod(word.c_str(), nullptr), 90, word.ends_with(":free") ? "free" : word.ends_with(":same") ? "same" : "contact"};
   if (const auto colon = word.find(':'); colon != std::string::npos) row.degrees = std::strtod(word.c_str() + colon + 1, nullptr);
   return row;
 }
 
+// The contact mesh's model; nothing of it is solved.
+TissueModel model_with_contact(const test::BentArm& arm, double spacing) {
+  struct Enough {};
+  TissueModel model;
+  try {
+    arm.solved({.contact = true, .spacing_mm = spacing, .on_mesh = [&](const TissueModel& meshed) {
+      model = meshed;
+      throw Enough();
+    }});
+  } catch (const Enough&) {
+  }
+  return model;
+}
+
+// What one row has cost; an iteration is told in factorizations of its matrix, and in factorizations that order the matrix first.
+//   mesh  CPU seconds, where it was meshed for it
+struct Cost {
+  long long tets, crossings;
+  double mesh, solve, min_det_f;
+  FemSeconds seconds;
+  int iterations, factorizations, analyses;
+  std::string end;
+};
+
+void print(const Row& row, const Cost& cost) {
+  const FemSeconds& s = cost.seconds;
+  const double factorization = s.factorization / cost.factorizations, ordering = s.ordering / cost.analyses, iteration = s.total / cost.iterations;
+  std::printf("%4g %5g %-7s %7lld %6.2f %7.1f %6.1f%% %7.1f %5.1f %5.1f %6.2f %5.1f %5d %6d %6.2f %6.2f %6.2f %7.3f %5lld %7.0f  %s\n", row.spacing, row.degrees, row.kind.c_str(), cost.tets,
+              cost.mesh, cost.solve, 100 * cost.mesh / cost.solve, s.factorization, s.assembly, s.contact, s.analysis, s.search, cost.iterations, cost.analyses, factorization,
+              iteration / factorization, iteration / (factorization + ordering), cost.min_det_f, cost.crossings, peak_memory_mb(), cost.end.c_str());
+  std::fflush(stdout);
+}
+
+void measure_same(const test::BentArm& arm, const Row& row) {
+  const TissueModel model = model_with_contact(arm, row.spacing);
+  const double start = cpu_seconds();
+  const SolvedPose solved = solve_pose(model.fem, [&](double t) { return arm.motions(t); }, row.degrees,
+                                       {.step_tolerance_mm = row.spacing / 2, .bone_drift_mm = std::max(2.0, row.spacing / 2)});
+  print(row, {model.fem.mesh.T.rows(), static_cast<long long>(solved.crossings), 0, cpu_seconds() - start, solved.min_det_f, solved.seconds, solved.iterations, solved.factorizations,
+              solved.analyses, solved.converged ? "reached" : solved.blocked_by});
+}
+
 void measure(test::BentArm& arm, const Row& row) {
   arm.bend(row.degrees);
+  if (row.kind == "same") return measure_same(arm, row);
   const double start = cpu_seconds();
   double meshed = 0;
-  const auto shape = arm.solved({.contact = row.contact, .spacing_mm = row.spacing, .on_mesh = [&](const TissueModel&) { meshed = cpu_seconds(); }});
-  const double mesh = meshed - start, solve = cpu_seconds() - meshed;
-  const FemSeconds& s = shape->cpu;
-  const double factorization = s.factorization / shape->solve.factorizations;
-  std::printf("%4g %5g %-7s %7lld %6.2f %7.1f %6.1f%% %7.1f %5.1f %5.1f %6.2f %5.1f %5d %6.2f %6.2f %7.3f %5lld %7.0f  %s\n", row.spacing, row.degrees,
-              row.contact ? "contact" : "free", static_cast<long long>(shape->mesh.tets), mesh, solve, 100 * mesh / solve, s.factorization, s.assembly, s.contact,
-              s.analysis, s.search, shape->solve.iterations, factorization, s.total / shape->solve.iterations / factorization, shape->mesh.min_det_f,
-              static_cast<long long>(shape->mesh.self_intersections.value_or(-1)), peak_memory_mb(),
-              shape->solve.converged ? "reached" : shape->solve.blocked_by.c_str());
-  std::fflush(stdout);
+  const auto shape = arm.solved({.contact = row.kind == "contact", .spacing_mm = row.spacing, .on_mesh = [&](const TissueModel&) { meshed = cpu_seconds(); }});
+  const SolveReport& solve = shape->solve;
+  print(row, {shape->mesh.tets, static_cast<long long>(shape->mesh.self_intersections.value_or(-1)), meshed - start, cpu_seconds() - meshed, shape->mesh.min_det_f, shape->cpu,
+              solve.iterations, solve.factorizations, solve.analyses, solve.converged ? "reached" : solve.blocked_by});
 }
 }  // namespace
 
 int main(int count, char** arguments) try {
   if (count < 3) {
-    std::fprintf(stderr, "usage: limber_fem_arm VOLUME RIG [SPACING_MM:DEGREES[:free]...]\n");
+    std::fprintf(stderr, "usage: limber_fem_arm VOLUME RIG [SPACING_MM:DEGREES[:free|:same]...]\n");
     return 2;
   }
   std::vector<std::string> words(arguments + 3, arguments + count);
-  if (words.empty()) words = {"12:90", "12:90:free", "8:45", "8:90", "8:90:free", "6:90", "4:15"};
+  if (words.empty()) words = {"12:90", "12:90:free", "8:45", "8:90", "8:90:free", "8:90:same", "6:90", "4:15"};
   const ThreadCount one(1);
   test::BentArm arm(arguments[1], arguments[2]);
   const double start = cpu_seconds();
@@ -59,8 +98,8 @@ int main(int count, char** arguments) try {
   const double fitted = cpu_seconds();
   arm.posed(DualQuaternion{});
   std::printf("fitting the joint to +90: %.2f s; resampling by dual quaternions: %.2f s\n", fitted - start, cpu_seconds() - fitted);
-  std::printf("%4s %5s %-7s %7s %6s %7s %7s %7s %5s %5s %6s %5s %5s %6s %6s %7s %5s %7s\n", "h mm", "angle", "", "tets", "mesh s", "solve s", "of it", "factor.", "assem",
-              "cont.", "analys", "search", "iter", "fact.s", "it/fac", "det F", "cross", "peak MB");
+  std::printf("%4s %5s %-7s %7s %6s %7s %7s %7s %5s %5s %6s %5s %5s %6s %6s %6s %6s %7s %5s %7s\n", "h mm", "angle", "", "tets", "mesh s", "solve s", "of it", "factor.", "assem", "cont.",
+              "analys", "search", "iter", "analys", "fact.s", "it/fac", "it/new", "det F", "cross", "peak MB");
   for (const std::string& word : words) measure(arm, row_of(word));
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());

@@ -89,8 +89,8 @@ void show(test::BentArm& arm, double spacing, double degrees) {
   std::printf("  at the end: inverted %lld, det F of flesh at least %.3f, %.3f %% below 0.2, crossing pairs %lld, by CGAL %lld\n", static_cast<long long>(mesh.inverted), mesh.min_det_f,
               100 * mesh.share_below_fifth, static_cast<long long>(mesh.self_intersections.value_or(-1)), crossings_by_cgal(posed.shape->V, path.border));
   std::printf("  at each of %lld iterations: inverted %lld, det F of flesh at least %.3f, crossing pairs by CGAL %lld\n", path.seen, path.inverted, path.smallest, path.crossings);
-  std::printf("  air between what touches: least %.2f, median %.2f mm; voxels covered twice %lld, torn open %lld\n", mesh.min_gap_mm.value_or(NAN), mesh.median_gap_mm.value_or(NAN),
-              static_cast<long long>(report.overlap_voxels), static_cast<long long>(report.new_hole_voxels));
+  std::printf("  air between what touches: least %.2f, median %.2f mm at %lld nodes; voxels covered twice %lld, torn open %lld\n", mesh.min_gap_mm.value_or(NAN), mesh.median_gap_mm.value_or(NAN),
+              static_cast<long long>(mesh.contact_nodes),              static_cast<long long>(report.overlap_voxels), static_cast<long long>(report.new_hole_voxels));
 
   const VolumeMetrics voxels = compare(arm.volume, posed.volume, arm.tissues);
   std::printf("  by voxels: all tissue %+.3f %%, skin on %.3f %% of the surface (rest %.3f %%), air trapped %lld voxels\n", voxels.volume_change_percent, 100 * voxels.skin_share_after,
