@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "core/base/parallel.h"
+#include "core/fem/principal.h"
 
 namespace limber {
 
@@ -190,9 +191,13 @@ void ElasticForm::add_gradient(const Places& x, std::span<const double> pressure
 void ElasticForm::add_derivatives(const Places& x, std::span<const double> pressure, Curvature curvature, Places& gradient,
                                   std::span<double> matrix) const {
   chunks_.for_each([&](const ColouredChunks::Chunk& chunk) {
+    std::vector<Eigen::Matrix3d> deformation(chunk.end - chunk.begin);
+    for (auto t = chunk.begin; t < chunk.end; ++t) deformation[t - chunk.begin] = deformation_of(tets_[t], x);
+    std::vector<Principal> axes_of(curvature == Curvature::Projected ? deformation.size() : 0);
+    if (curvature == Curvature::Projected) principal(deformation, axes_of);
     for (auto t = chunk.begin; t < chunk.end; ++t) {
       const Tet& tet = tets_[t];
-      const Eigen::Matrix3d F = deformation_of(tet, x), C = cofactor(F);
+      const Eigen::Matrix3d &F = deformation[t - chunk.begin], C = cofactor(F);
       const double J = F.col(0).dot(C.col(0));
       const VolumeTerm term = volume_term(tet.energy, J);
       const double p = pressure.empty() ? 0 : pressure[t];
@@ -210,7 +215,7 @@ void ElasticForm::add_derivatives(const Places& x, std::span<const double> press
           H[pair] = exact_block(F, tet.slope[a], tet.slope[b], c[a], c[b], tet.volume * tet.energy.shear, tet.volume * g, tet.volume * term.curvature);
 
       if (curvature == Curvature::Projected) {
-        const Principal axes = principal(F);
+        const Principal& axes = axes_of[t - chunk.begin];
         const NegativeCurvature negative = negative_curvature(tet.energy.shear, g, term.curvature, axes.sigma);
         for (int k = 0; k < negative.count; ++k) {
           const Eigen::Matrix3d Q = axes.U * negative.direction[k].mode * axes.V.transpose();

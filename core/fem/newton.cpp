@@ -18,7 +18,16 @@ constexpr double kJam = 0.05;          // a step this short is a jam;
 constexpr int kJams = 3;               // after so many in a row the solve is given up
 constexpr double kLeft = 0.25;         // of the tolerance, that a step shorter than the full one may leave undone and be the last
 
+constexpr double kStraggle = 3;        // times the tolerance, for the few nodes that may
+
 double longest(const Places& step) { return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0; }
+
+bool settled(const Places& step, double longest, const NewtonSettings& settings) {
+  if (longest < settings.tolerance_mm) return true;
+  if (longest >= kStraggle * settings.tolerance_mm) return false;
+  const auto moving = (step.rowwise().squaredNorm().array() >= settings.tolerance_mm * settings.tolerance_mm).count();
+  return double(moving) <= settings.stragglers * double(step.rows());
+}
 
 // The exact curvature's turn.
 class ExactTurns {
@@ -109,7 +118,7 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
       result.converged = result.residual < settings.tolerance_mm;
       break;
     }
-    if (result.residual < settings.tolerance_mm && (1 - length) * result.residual < kLeft * settings.tolerance_mm) {
+    if (settled(step, result.residual, settings) && (1 - length) * result.residual < kLeft * settings.tolerance_mm) {
       result.converged = true;
       break;
     }

@@ -17,6 +17,7 @@ namespace limber {
 
 struct NewtonSettings {
   double tolerance_mm = 0.3;  // ends when no node would move further than this
+  double stragglers = 0;      // share of the nodes that may, up to 3 times as far: a few of many thousands hover for long
   int iterations = 40;
   std::vector<char> fixed;    // #nodes: 1 where a step is not made smoother (FemEnergy::yielding); empty: nowhere
 };

@@ -21,6 +21,7 @@ constexpr double kJointPinStiffness = 0.1;  // of nodes of tets between two bone
                                             // would often not pass each other
 constexpr TetMaterial kBoneTet{100, 0.3};   // of a rigid tet where flesh pulls at it
 constexpr int kSettling = 3;                  // times the iterations of a step, at the end
+constexpr double kStragglers = 1e-3;           // of the nodes, while the end settles
 constexpr double kTight = 0.25;               // of a step's tolerance, where the next one does not succeed
 constexpr double kLeastWay = 0.8;           // of a guess that is worth a solve; with less, half the way is tried first
 constexpr double kWeakBarrier = 100;        // kPa, on flesh: halves the iterations of a deep bend, for no tet gets nearly flat on the way
@@ -283,7 +284,7 @@ std::string PoseSolve::obstacle(const FemEnergy::Bound& bound, const Places& x) 
 // To the least energy, with the bones where they are held.
 NewtonResult PoseSolve::relax(double at, double from, double tolerance_mm, int iterations, Places& x) {
   const int before = result_.iterations;
-  const NewtonResult solved = minimise(energy_, x, {tolerance_mm, iterations, held_}, progress_, [&](int iteration, double residual) {
+  const NewtonResult solved = minimise(energy_, x, {tolerance_mm, result_.reached == 1 ? kStragglers : 0, iterations, held_}, progress_, [&](int iteration, double residual) {
     progress_.update("solving", from);
     if (on_step_) {
       const Eigen::MatrixX3d V = x;

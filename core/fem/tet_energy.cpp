@@ -2,7 +2,6 @@
 #include "core/fem/tet_energy.h"
 
 #include <cmath>
-#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -23,51 +22,6 @@ VolumeTerm volume_term(const TetEnergy& e, double J) {
 
 double energy_density(const TetEnergy& e, const Eigen::Matrix3d& F, double J) {
   return 0.5 * e.shear * (F.squaredNorm() - 3) + volume_term(e, J).value;
-}
-
-// Rotates pairs of columns until all are perpendicular: one-sided Jacobi, which finds small singular values as exactly as
-// large ones [Demmel & Veselic 1992].
-Principal principal(const Eigen::Matrix3d& F) {
-  Principal p;
-  Eigen::Matrix3d B = F;
-  p.V.setIdentity();
-  constexpr double kPerpendicular = 1e-15;
-  for (int sweep = 0; sweep < 12; ++sweep) {
-    bool turned = false;
-    for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
-      const double ii = B.col(i).squaredNorm(), jj = B.col(j).squaredNorm(), ij = B.col(i).dot(B.col(j));
-      if (ij * ij <= kPerpendicular * kPerpendicular * ii * jj) continue;
-      turned = true;
-      const double half = (jj - ii) / (2 * ij);
-      const double t = (half >= 0 ? 1.0 : -1.0) / (std::abs(half) + std::sqrt(1 + half * half));
-      const double c = 1 / std::sqrt(1 + t * t), s = c * t;
-      for (auto* M : {&B, &p.V}) {
-        const Eigen::Vector3d a = M->col(i);
-        M->col(i) = c * a - s * M->col(j);
-        M->col(j) = s * a + c * M->col(j);
-      }
-    }
-    if (!turned) break;
-  }
-
-  // Falling, by swaps that stay rotations.
-  Eigen::Vector3d squared = B.colwise().squaredNorm();
-  for (const auto& [i, j] : {std::pair{0, 1}, {1, 2}, {0, 1}}) {
-    if (squared[i] >= squared[j]) continue;
-    std::swap(squared[i], squared[j]);
-    for (auto* M : {&B, &p.V}) {
-      const Eigen::Vector3d a = M->col(i);
-      M->col(i) = M->col(j);
-      M->col(j) = -a;
-    }
-  }
-  p.sigma[0] = std::sqrt(squared[0]);
-  p.sigma[1] = std::sqrt(squared[1]);
-  p.U.col(0) = p.sigma[0] > 0 ? Eigen::Vector3d(B.col(0) / p.sigma[0]) : Eigen::Vector3d::UnitX();
-  p.U.col(1) = p.sigma[1] > 1e-150 ? Eigen::Vector3d(B.col(1) / p.sigma[1]) : p.U.col(0).unitOrthogonal();
-  p.U.col(2) = p.U.col(0).cross(p.U.col(1));
-  p.sigma[2] = p.U.col(2).dot(B.col(2));
-  return p;
 }
 
 NegativeCurvature negative_curvature(double shear, double g, double h, const Eigen::Vector3d& s) {

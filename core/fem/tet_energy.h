@@ -28,13 +28,6 @@ VolumeTerm volume_term(const TetEnergy& energy, double J);
 
 double energy_density(const TetEnergy& energy, const Eigen::Matrix3d& F, double J);
 
-// F = U diag(sigma) V^T with rotations U and V; only the smallest singular value, the last, is negative where det F is.
-struct Principal {
-  Eigen::Matrix3d U, V;
-  Eigen::Vector3d sigma;  // falling
-};
-Principal principal(const Eigen::Matrix3d& F);
-
 // Directions in which the curvature of W is negative: curvature -value along the unit matrix U mode V^T.
 struct NegativeCurvature {
   struct Direction {
