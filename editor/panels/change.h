@@ -9,6 +9,7 @@
 
 namespace limber::editor {
 
+std::string figure_of_change(double percent);  // "+1.25"; what rounds to nothing is "+0.00"
 std::string percent(const std::optional<double>& value);  // "+1.25 %"; "-" for none
 constexpr double kSmallChange = 1;  // percent: nothing to worry about
 Colour colour_of_change(const Theme& theme, const std::optional<double>& percent);

@@ -71,8 +71,9 @@ void draw_lines(const Look& look, const Axis& axis, float left, float width, con
 // "+0.12", without the unit that the head names.
 std::string figure(const std::optional<double>& percent) {
   if (!percent) return "-";
+  if (std::abs(*percent) < 99.95) return figure_of_change(*percent);
   char text[24];
-  std::snprintf(text, sizeof text, std::abs(*percent) < 99.95 ? "%+.2f" : "%+.0f", *percent);
+  std::snprintf(text, sizeof text, "%+.0f", *percent);
   return text;
 }
 

@@ -14,6 +14,7 @@
 #include "core/report/metrics.h"
 #include "core/volume/volume_io.h"
 #include "tests/support/program.h"
+#include "tests/support/random_blobs.h"
 #include "tests/support/shared_data.h"
 
 using namespace limber;
@@ -90,29 +91,13 @@ void check(const LabelVolume& before, const LabelVolume& after, const TissueTabl
   }
 }
 
-// Each voxel that of one of some seeds nearest to it.
-LabelVolume blobs(std::mt19937& random, Label labels) {
-  LabelVolume volume{{.size = {30, 26, 22}}, ZeroedVector<Label>(30 * 26 * 22)};
-  std::vector<std::pair<glm::ivec3, Label>> seeds;
-  for (int s = 0; s < 300; ++s) seeds.push_back({{int(random() % 30), int(random() % 26), int(random() % 22)}, Label(random() % (labels + 1u))});
-  for (std::int64_t i = 0; i < volume.grid.voxel_count(); ++i) {
-    const glm::ivec3 v(i % 30, i / 30 % 26, i / 780);
-    int nearest = 1 << 20;
-    for (const auto& [at, label] : seeds) {
-      const glm::ivec3 d = v - at;
-      if (const int squared = d.x * d.x + d.y * d.y + d.z * d.z; squared < nearest) nearest = squared, volume.voxels[i] = label;
-    }
-  }
-  return volume;
-}
-
 }  // namespace
 
 TEST_CASE("known figures: ITK finds the same voxels, pieces, enclosed air and Dice in random blobs") {
   std::mt19937 random(11);
   TissueTable table;
   for (Label label = 1; label < 6; ++label) table.tissues.push_back({.label = label, .file_value = double(label), .name = std::to_string(label)});
-  const LabelVolume a = blobs(random, 5), b = blobs(random, 5);
+  const LabelVolume a = random_blobs(random, {30, 26, 22}, 300, 5), b = random_blobs(random, {30, 26, 22}, 300, 5);
   check(a, b, table);
 }
 

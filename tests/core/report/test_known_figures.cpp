@@ -16,6 +16,7 @@
 #include "core/volume/volume_io.h"
 #include "tests/support/bent_tube.h"
 #include "tests/support/program.h"
+#include "tests/support/random_blobs.h"
 
 using namespace limber;
 
@@ -157,23 +158,12 @@ TEST_CASE("known figures: numpy and scipy find the same voxels, pieces, surface,
     CHECK(theirs.at({"enclosed", 0}) == std::vector<double>{double(ours.enclosed_air_before), double(ours.enclosed_air_after)});
   };
 
-  // Blobs: random labels, each voxel that of one of 400 seeds nearest to it.
   std::mt19937 random(7);
   TissueTable table;
   for (Label label = 1; label < 6; ++label) table.tissues.push_back({.label = label, .file_value = double(label), .name = std::to_string(label)});
   std::vector<LabelVolume> blobs;
   for (int which = 0; which < 2; ++which) {
-    LabelVolume volume{{.size = {40, 30, 24}}, ZeroedVector<Label>(40 * 30 * 24)};
-    std::vector<std::pair<glm::ivec3, Label>> seeds;
-    for (int s = 0; s < 400; ++s) seeds.push_back({{int(random() % 40), int(random() % 30), int(random() % 24)}, Label(random() % 6)});
-    for (std::int64_t i = 0; i < volume.grid.voxel_count(); ++i) {
-      const glm::ivec3 v(i % 40, i / 40 % 30, i / 1200);
-      int nearest = 1 << 20;
-      for (const auto& [at, label] : seeds) {
-        const glm::ivec3 d = v - at;
-        if (const int squared = d.x * d.x + d.y * d.y + d.z * d.z; squared < nearest) nearest = squared, volume.voxels[i] = label;
-      }
-    }
+    LabelVolume volume = test::random_blobs(random, {40, 30, 24}, 400, 5);
     write_volume(volume, folder / (which ? "after.nrrd" : "before.nrrd"), table);
     blobs.push_back(std::move(volume));
   }
