@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] POSE-OPTIONS --method lbs|dqs|fem [--fit-joints]
-//        [--contact] [--quality draft|normal|fine] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2]
+//        [--contact] [--quality draft|normal|fine] [--mesher lattice|tetgen] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2]
 //        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--threads N] [--progress json]
 #include "core/resample/resample.h"
 
@@ -37,7 +37,7 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method, output, report, grey, field, jacobian, overlap, quality, mesh_out, mesh_unit = "mm", landmarks, steps;
+  std::string weights, method, output, report, grey, field, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps;
   std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
@@ -140,7 +140,7 @@ void check_method(const Options& options) {
   if (options.mass_exact && options.nearest)
     throw Error("masses are kept by what a voxel is nearly, which --nearest does not ask", "--mass-exact", "leave one of the two out");
   if (options.method == "fem") return;
-  for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"}, {!options.quality.empty(), "--quality"}, {!options.mesh_out.empty(), "--mesh-out"}, {options.mesh_unit != "mm", "--mesh-unit"}, {!options.steps.empty(), "--steps"}})
+  for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"}, {!options.quality.empty(), "--quality"}, {!options.mesher.empty(), "--mesher"}, {!options.mesh_out.empty(), "--mesh-out"}, {options.mesh_unit != "mm", "--mesh-unit"}, {!options.steps.empty(), "--steps"}})
     if (is_given) throw Error(std::string(name) + " needs finite elements", "--method " + options.method, "use --method fem, or leave it out");
 }
 
@@ -184,6 +184,7 @@ Method method_of(const Options& options, SolveProgress& solve) {
   fem.contact = options.contact;
   if (options.quality == "draft") fem.quality = FemQuality::Draft;
   if (options.quality == "fine") fem.quality = FemQuality::Fine;
+  if (options.mesher == "tetgen") fem.mesher = Mesher::tetgen;
   fem.on_mesh = [&solve](const TissueModel& model) { solve.begin(model); };
   fem.on_step = [&solve](const SolveStep& step) { solve.show(step); };
   return fem;
@@ -203,15 +204,15 @@ void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bo
                 (deform.solve->blocked_by.empty() ? "" : ": what stands in the way: " + deform.solve->blocked_by)});
 }
 
-// The posed mesh with organ numbers as regions: that of the label with most voxels of a tet.
+// The posed mesh with organ numbers as regions: that of the label that fills most of a tet.
 TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
   const TissueModel& model = shape.model;
   const TetMesh& mesh = model.fem.mesh;
   std::vector<Label> labels(mesh.T.rows(), 0);
   for (int t = 0; t < mesh.T.rows(); ++t) {
-    int most = 0;
+    double most = 0;
     for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i)
-      if (model.counts[i].voxels > most) most = model.counts[i].voxels, labels[t] = model.counts[i].label;
+      if (model.parts[i].mm3 > most) most = model.parts[i].mm3, labels[t] = model.parts[i].label;
   }
   return organ_mesh(shape.V, mesh.T, labels, tissues);
 }
@@ -227,6 +228,7 @@ void describe(Report& report, const Options& options, const Armature& rig, const
   if (options.method == "fem") {
     settings["contact"] = options.contact;
     settings["quality"] = options.quality.empty() ? std::string("normal") : options.quality;
+    if (!options.mesher.empty()) settings["mesher"] = options.mesher;
   }
   if (options.spacing) settings["spacing_mm"] = *options.spacing;
   if (!options.pose.flex.empty()) settings["flex"] = options.pose.flex;
@@ -408,6 +410,7 @@ void add_resample(CLI::App& app) {
   command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions) or fem (finite elements)")->required()->check(CLI::IsMember({"lbs", "dqs", "fem"}));
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));
+  command->add_option("--mesher", options->mesher, "fem: who fills the body's surface with tets: lattice, as regular as can be (default), or tetgen, with larger ones inside")->check(CLI::IsMember({"lattice", "tetgen"}));
   command->add_option("--mesh-out", options->mesh_out, "fem: the posed mesh as NAME.node and NAME.ele, with the tissue of each tet, and NAME.material for particle codes")->type_name("NAME");
   command->add_option("--mesh-unit", options->mesh_unit, "fem: of the mesh: mm, or cm as in the phantoms of ICRP 145")->check(CLI::IsMember({"mm", "cm"}));
   command->add_option("--steps", options->steps, "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step")->type_name("NAME");

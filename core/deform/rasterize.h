@@ -120,6 +120,7 @@ void visit_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& range, 
       Whole first = range.low.x, last = range.high.x;
       for (int f = 0; f < 4 && first <= last; ++f)
         clip_row<Whole>(faces.side(f, {int(first), y, z}), faces.step_x(f), first, last);
+      if (first > last) continue;  // where a face is nearly parallel to the row `first` may be far beyond an int
       for (int x = int(first); x <= int(last); ++x) visit(glm::ivec3(x, y, z), orientation);
     }
 }

@@ -36,17 +36,18 @@ FemEnergy::FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::v
   const PatchOrder order = grow_patches(rest, T, bulk, shear, patch_size);
 
   std::vector<TetEnergy> energy(T.rows());
-  std::vector<double> ordered_bulk(T.rows());
+  std::vector<double> ordered_bulk(T.rows()), filled(T.rows());
   flesh_tets_.resize(T.rows(), 4);
   for (Eigen::Index k = 0; k < T.rows(); ++k) {
     const auto t = order.tet[k];
     flesh_tets_.row(k) = T.row(t);
     ordered_bulk[k] = bulk[t];
+    filled[k] = material[t].filled;
     // A barrier's c h b(J / h): c such that it is as strong as weak_barrier_kpa b(J / h).
     energy[k] = {shear[t], tet_bulk(material[t]), weak_barrier_kpa / kWeakBelow, kWeakBelow};
   }
   flesh_ = ElasticForm(rest, flesh_tets_, energy, {order.first.begin() + 1, order.first.end()});
-  patches_ = PatchForm(flesh_, order.first, ordered_bulk, node_count_);
+  patches_ = PatchForm(flesh_, order.first, ordered_bulk, std::move(filled), node_count_);
   guard(Eigen::MatrixX4i(0, 4));
 }
 

@@ -14,6 +14,7 @@ namespace limber {
 struct TetMaterial {
   double shear_modulus = 1;    // mu, kPa, above 0
   double poisson_ratio = 0.4;  // [0, 0.5)
+  double filled = 1;           // above 0: volume of tissue by volume of tet, whose mean counts among others (patch_form.h)
 };
 
 inline double lame_lambda(double shear_modulus, double poisson_ratio) {

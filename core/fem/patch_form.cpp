@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -93,19 +94,20 @@ PatchOrder grow_patches(const Places& rest, const Eigen::MatrixX4i& T, const std
   return result;
 }
 
-PatchForm::PatchForm(const ElasticForm& tets, const std::vector<std::int64_t>& first, const std::vector<double>& bulk, int node_count) {
-  tet_volume_.resize(tets.size());
+PatchForm::PatchForm(const ElasticForm& tets, const std::vector<std::int64_t>& first, const std::vector<double>& bulk, std::vector<double> filled, int node_count)
+    : filled_(std::move(filled)) {
+  tissue_.resize(tets.size());
   corner_.resize(tets.size());
-  for (std::int64_t t = 0; t < tets.size(); ++t) tet_volume_[t] = tets.tet(t).volume;
+  for (std::int64_t t = 0; t < tets.size(); ++t) tissue_[t] = filled_[t] * tets.tet(t).volume;
   for (std::size_t p = 0; p + 1 < first.size(); ++p) {
     Patch patch{first[p], first[p + 1], 0, 0, std::ssize(node_), 0, 0};
     std::vector<int> nodes;
     for (auto t = patch.begin; t < patch.end; ++t) {
-      patch.volume += tet_volume_[t];
-      patch.bulk += tet_volume_[t] * bulk[t];
+      patch.tissue += tissue_[t];
+      patch.bulk += tissue_[t] * bulk[t];
       nodes.insert(nodes.end(), tets.tet(t).node.begin(), tets.tet(t).node.end());
     }
-    patch.bulk /= patch.volume;
+    patch.bulk /= patch.tissue;
     if (!(patch.bulk > 0)) continue;
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -150,8 +152,8 @@ void PatchForm::bind(const ElasticForm& tets, const Cholesky& matrix, std::span<
 
 double PatchForm::mean_ratio(const Patch& patch, const std::vector<double>& J) const {
   double sum = 0;
-  for (auto t = patch.begin; t < patch.end; ++t) sum += tet_volume_[t] * J[t];
-  return sum / patch.volume;
+  for (auto t = patch.begin; t < patch.end; ++t) sum += tissue_[t] * J[t];
+  return sum / patch.tissue;
 }
 
 double PatchForm::value(const std::vector<double>& J) const {
@@ -159,7 +161,7 @@ double PatchForm::value(const std::vector<double>& J) const {
     double sum = 0;
     for (auto p = begin; p < end; ++p) {
       const double off = mean_ratio(patches_[p], J) - 1;
-      sum += 0.5 * patches_[p].bulk * patches_[p].volume * off * off;
+      sum += 0.5 * patches_[p].bulk * patches_[p].tissue * off * off;
     }
     return sum;
   });
@@ -167,7 +169,10 @@ double PatchForm::value(const std::vector<double>& J) const {
 
 void PatchForm::pressures(const std::vector<double>& J, std::vector<double>& pressure) const {
   pressure.assign(J.size(), 0);
-  for (const Patch& patch : patches_) std::fill(pressure.begin() + patch.begin, pressure.begin() + patch.end, patch.bulk * (mean_ratio(patch, J) - 1));
+  for (const Patch& patch : patches_) {
+    const double whole = patch.bulk * (mean_ratio(patch, J) - 1);
+    for (auto t = patch.begin; t < patch.end; ++t) pressure[t] = filled_[t] * whole;
+  }
 }
 
 void PatchForm::add_curvature(const ElasticForm& tets, const Places& x, std::span<double> matrix) const {
@@ -181,10 +186,10 @@ void PatchForm::add_curvature(const ElasticForm& tets, const Places& x, std::spa
         const Eigen::Matrix3d F = tets.deformation(x, t);
         Eigen::Matrix3d C;
         C << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
-        C *= tet.volume;
+        C *= tissue_[t];
         for (int a = 0; a < 4; ++a) G[corner_[t][a]] += C * tet.slope[a];
       }
-      const double weight = patch.bulk / patch.volume;
+      const double weight = patch.bulk / patch.tissue;
       const Cholesky::Place* place = &place_[patch.place_begin];
       for (std::size_t a = 0; a < G.size(); ++a)
         for (std::size_t b = 0; b <= a; ++b, ++place) {

@@ -2,7 +2,8 @@
 // Nearly incompressible flesh without locking: the stiff part of the volume term acts on the mean of J over a patch of about
 // eight tets that share faces, not on each tet [after de Souza Neto, Pires & Owen 2005, F-bar patches]:
 //   K/2 V (Jbar - 1)^2,   Jbar = sum of V_t J_t / V
-// On its tets it acts as a pressure p = K (Jbar - 1), and its own curvature is of rank one.
+// with V_t the tissue that the tet holds: a mesh has some room around its tissue, which has no volume to keep. On its tets it
+// acts as a pressure K (Jbar - 1), by how full they are, and its own curvature is of rank one.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +30,9 @@ PatchOrder grow_patches(const Places& rest, const Eigen::MatrixX4i& T, const std
 class PatchForm {
  public:
   PatchForm() = default;
-  // first  as in PatchOrder, over the tets of `tets`, in whose order `bulk` stands; a patch takes the mean of its tets' by volume
-  PatchForm(const ElasticForm& tets, const std::vector<std::int64_t>& first, const std::vector<double>& bulk, int node_count);
+  // first  as in PatchOrder, over the tets of `tets`, in whose order `bulk` and `filled` (TetMaterial) stand; a patch takes the mean
+  //        of its tets' bulk by tissue
+  PatchForm(const ElasticForm& tets, const std::vector<std::int64_t>& first, const std::vector<double>& bulk, std::vector<double> filled, int node_count);
 
   void connect(BlockGraphBuilder& graph, std::span<const int> unknown) const;
   void bind(const ElasticForm& tets, const Cholesky& matrix, std::span<const int> unknown);
@@ -43,14 +45,14 @@ class PatchForm {
  private:
   struct Patch {
     std::int64_t begin, end;  // of its tets
-    double bulk, volume;
+    double bulk, tissue;
     std::int64_t node_begin, node_end;    // in node_
     std::int64_t place_begin;             // in place_: lower triangle of node pairs, row by row
   };
   double mean_ratio(const Patch& patch, const std::vector<double>& J) const;
 
   std::vector<Patch> patches_;  // with bulk above 0
-  std::vector<double> tet_volume_;
+  std::vector<double> filled_, tissue_;  // #T: share of a tet, mm3 in it
   std::vector<int> node_;
   std::vector<std::array<std::uint8_t, 4>> corner_;  // #T: places of a tet's nodes among its patch's
   std::vector<Cholesky::Place> place_;

@@ -17,18 +17,18 @@ constexpr std::array<double, 3> kShares{0.05, 0.5, 0.95};
 
 struct Weighed {
   double stretch;
-  std::int64_t voxels;
+  double mm3;
 };
 
 std::array<double, 3> percentiles(std::vector<Weighed> values) {
   std::sort(values.begin(), values.end(), [](const Weighed& a, const Weighed& b) { return a.stretch < b.stretch; });
-  std::int64_t all = 0, below = 0;
-  for (const Weighed& value : values) all += value.voxels;
+  double all = 0, below = 0;
+  for (const Weighed& value : values) all += value.mm3;
   std::array<double, 3> result{};
   std::size_t next = 0;
   for (const Weighed& value : values) {
-    below += value.voxels;
-    for (; next < 3 && double(below) >= kShares[next] * double(all); ++next) result[next] = value.stretch;
+    below += value.mm3;
+    for (; next < 3 && below >= kShares[next] * all; ++next) result[next] = value.stretch;
   }
   return result;
 }
@@ -55,9 +55,9 @@ std::map<Label, Stretch> stretches(const TissueModel& model, const Eigen::Matrix
     const Eigen::Matrix3d F = edges(V, t) * edges(mesh.V, t).inverse();
     const Eigen::Vector3d principal = Eigen::JacobiSVD<Eigen::Matrix3d>(F).singularValues();
     for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i) {
-      auto& [least, most] = seen[model.counts[i].label];
-      least.push_back({principal[2], model.counts[i].voxels});
-      most.push_back({principal[0], model.counts[i].voxels});
+      auto& [least, most] = seen[model.parts[i].label];
+      least.push_back({principal[2], model.parts[i].mm3});
+      most.push_back({principal[0], model.parts[i].mm3});
     }
   }
   std::map<Label, Stretch> result;

@@ -7,13 +7,14 @@
 #include <Eigen/LU>
 
 #include "core/deform/box_bins.h"
-#include "core/deform/rasterize.h"
 
 namespace limber {
 
 namespace {
 
 constexpr int kReach = 16;               // voxels: as far as tissue is looked for from a node that lies in air
+constexpr int kPlaces = 4;               // along each edge of a tet, less one, that are asked for their label
+constexpr double kLeastFilled = 0.1;     // of a tet where tissue ends, so that it keeps some volume of its own
 constexpr double kMostPoisson = 0.4999;  // what volume terms are made for; 0.5 cannot be computed with
 
 TetMaterial material_of(const Tissue& tissue, double stiffest) {
@@ -86,24 +87,33 @@ std::vector<BoneWeight> influences_around(const SkinWeights& weights, const Labe
   return result;
 }
 
-// Counts by tet of the labels whose voxels lie in it.
-void count_voxels(TissueModel& model, const LabelVolume& volume) {
+// What of each tet which label fills: of 35 places in it, each stands for as much.
+void find_parts(TissueModel& model, const LabelVolume& volume) {
   const TetMesh& mesh = model.fem.mesh;
   const AffineTransform voxel = voxel_from_world(volume.grid);
-  std::vector<FixedPoint> node;
-  for (int i = 0; i < mesh.V.rows(); ++i)
-    node.push_back(FixedPoint(glm::round(voxel * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2)) * double(kFixedOne))));
-  const VoxelRange whole{glm::ivec3(0), volume.grid.size - 1};
-  std::map<Label, int> counts;
+  std::vector<glm::dvec3> node;
+  for (int i = 0; i < mesh.V.rows(); ++i) node.push_back(voxel * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2)));
+  std::vector<Label> found;
   for (int t = 0; t < mesh.T.rows(); ++t) {
-    model.first.push_back(static_cast<std::int32_t>(model.counts.size()));
-    counts.clear();
-    rasterize_tet({node[mesh.T(t, 0)], node[mesh.T(t, 1)], node[mesh.T(t, 2)], node[mesh.T(t, 3)]}, whole, [&](const glm::ivec3& v, int) {
-      if (const Label label = volume.at(v)) ++counts[label];
-    });
-    for (const auto& [label, voxels] : counts) model.counts.push_back({label, voxels});
+    model.first.push_back(static_cast<std::int32_t>(model.parts.size()));
+    found.clear();
+    for (int i = 0; i <= kPlaces; ++i)
+      for (int j = 0; i + j <= kPlaces; ++j)
+        for (int k = 0; i + j + k <= kPlaces; ++k) {
+          const glm::dvec4 share = (glm::dvec4(i, j, k, kPlaces - i - j - k) + 0.25) / (kPlaces + 1.0);
+          glm::dvec3 place(0);
+          for (int corner = 0; corner < 4; ++corner) place += share[corner] * node[mesh.T(t, corner)];
+          found.push_back(volume.at_or_air(glm::ivec3(glm::floor(place + 0.5))));
+        }
+    std::sort(found.begin(), found.end());
+    const double each = signed_volume(mesh.V, mesh.T.row(t)) / double(found.size());
+    for (auto first = found.begin(); first != found.end();) {
+      const auto end = std::upper_bound(first, found.end(), *first);
+      if (*first != 0) model.parts.push_back({*first, each * double(end - first)});
+      first = end;
+    }
   }
-  model.first.push_back(static_cast<std::int32_t>(model.counts.size()));
+  model.first.push_back(static_cast<std::int32_t>(model.parts.size()));
 }
 
 void choose_materials(TissueModel& model, const LabelVolume& volume, const TissueTable& tissues,
@@ -122,22 +132,20 @@ void choose_materials(TissueModel& model, const LabelVolume& volume, const Tissu
       model.fem.material.push_back(model.joint[t] ? settings.joint : settings.bone);
       continue;
     }
-    double mu = 0, lambda = 0;
-    int voxels = 0;
-    const auto add = [&](Label label, int count) {
-      mu += count * of_label[label].shear_modulus;
-      lambda += count * lame_lambda(of_label[label].shear_modulus, of_label[label].poisson_ratio);
-      voxels += count;
+    double mu = 0, lambda = 0, soft = 0;
+    const auto add = [&](Label label, double mm3) {
+      mu += mm3 * of_label[label].shear_modulus;
+      lambda += mm3 * lame_lambda(of_label[label].shear_modulus, of_label[label].poisson_ratio);
+      soft += mm3;
     };
-    for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i) {
-      const auto& [label, count] = model.counts[i];
-      if (is_soft[label]) add(label, count);
-    }
+    const double whole = signed_volume(mesh.V, mesh.T.row(t));
+    for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i)
+      if (const auto& [label, mm3] = model.parts[i]; is_soft[label]) add(label, mm3);
     glm::ivec3 nearest(0);
-    if (voxels == 0 && around.nearest((mesh.V.row(mesh.T(t, 0)) + mesh.V.row(mesh.T(t, 1)) + mesh.V.row(mesh.T(t, 2)) + mesh.V.row(mesh.T(t, 3))) / 4,
-                                      [&](const glm::ivec3& v) { return is_soft[volume.at(v)] != 0; }, nearest))
-      add(volume.at(nearest), 1);
-    model.fem.material.push_back(voxels > 0 ? TetMaterial{mu / voxels, lambda / (2 * (lambda + mu))} : settings.joint);
+    if (soft == 0 && around.nearest((mesh.V.row(mesh.T(t, 0)) + mesh.V.row(mesh.T(t, 1)) + mesh.V.row(mesh.T(t, 2)) + mesh.V.row(mesh.T(t, 3))) / 4,
+                                    [&](const glm::ivec3& v) { return is_soft[volume.at(v)] != 0; }, nearest))
+      add(volume.at(nearest), kLeastFilled * whole);
+    model.fem.material.push_back(soft > 0 ? TetMaterial{mu / soft, lambda / (2 * (lambda + mu)), std::max(kLeastFilled, soft / whole)} : settings.joint);
   }
 }
 
@@ -248,7 +256,7 @@ TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, 
   model.fem.mesh = std::move(mesh);
   model.fem.bone_names = weights.bones();
   choose_holders(model, volume, tissue, weights, moving, settings.joint_mm);
-  count_voxels(model, volume);
+  find_parts(model, volume);
   choose_materials(model, volume, tissues, settings);
   return model;
 }
@@ -270,9 +278,9 @@ std::map<Label, double> volume_change_percent(const TissueModel& model, const Ei
   for (size_t t = 0; t < ratios.size(); ++t) {
     if (model.joint[t]) continue;
     for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i) {
-      auto& [before, after] = before_after[model.counts[i].label];
-      before += model.counts[i].voxels;
-      after += model.counts[i].voxels * ratios[t];
+      auto& [before, after] = before_after[model.parts[i].label];
+      before += model.parts[i].mm3;
+      after += model.parts[i].mm3 * ratios[t];
     }
   }
   std::map<Label, double> change;

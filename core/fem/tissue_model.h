@@ -30,13 +30,13 @@ struct TissueModelSettings {
 };
 
 struct TissueModel {
-  struct VoxelCount {
+  struct Part {
     Label label;
-    int voxels;
+    double mm3;
   };
   FemModel fem;
-  std::vector<std::int32_t> first;  // #T + 1: where a tet's counts begin
-  std::vector<VoxelCount> counts;   // of the voxels whose centres lie in each tet
+  std::vector<std::int32_t> first;  // #T + 1: where a tet's parts begin
+  std::vector<Part> parts;          // what of each tet which label fills
   std::vector<std::uint8_t> joint;  // #T: 1 between two bones
 };
 
@@ -49,7 +49,7 @@ LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissu
 TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const SkinWeights& weights,
                          const MovingTissue& moving, TetMesh mesh, const TissueModelSettings& settings = {});
 
-// How much the voxels of each label, with the tets they lie in, gained or lost; without the joint, which may.    V  #V posed nodes
+// How much each label, with the tets it lies in, gained or lost; without the joint, which may.    V  #V posed nodes
 std::map<Label, double> volume_change_percent(const TissueModel& model, const Eigen::MatrixX3d& V);
 
 // det F of every tet.

@@ -2,41 +2,44 @@
 #include "core/mesh/mesh_tissue.h"
 
 #include <chrono>
+#include <cmath>
 
-#include "core/mesh/bcc_split.h"
+#include "core/base/error.h"
 #include "core/mesh/improve.h"
 
 namespace limber {
 
 namespace {
 
-// The mesh of a net, or why there is none.
-std::string fill_net(const LatticeNet& net, const VoxelRegions& voxels, const MeshSettings& settings, Progress& progress, TetMesh& mesh) {
-  progress.update("tetrahedra", 0);
+const double kLatticePerSpacing = std::cbrt(2.0);  // the body-centred cubic lattice has two nodes for each cube
+
+std::string find_fault_of(const TetMesh& mesh, const LatticeNet& net) { return find_fault(mesh, enclosed_volumes(net.surface, mesh.V)); }
+
+// Empty, or why there is no mesh by TetGen.
+std::string fill_by_tetgen(TissueMesh& result, const LatticeNet& net, const VoxelRegions& voxels, const MeshSettings& settings, Progress& progress) {
   Tetrahedralized filled = tetrahedralize_inside(net.surface, settings.limits, progress);
   if (!filled.mesh) return filled.failure;
-  mesh = std::move(*filled.mesh);
-  improve(mesh, net, voxels, ImproveSettings{}, progress);
-  return find_fault(mesh, enclosed_volumes(net.surface, mesh.V));
+  improve(*filled.mesh, net, voxels, ImproveSettings{}, progress);
+  if (std::string fault = find_fault_of(*filled.mesh, net); !fault.empty()) return fault;
+  result.mesh = std::move(*filled.mesh);
+  result.mesher = Mesher::tetgen;
+  return {};
 }
 
 void make_mesh(TissueMesh& result, const VoxelRegions& voxels, const MeshSettings& settings, Progress& progress) {
-  LatticeNetSettings lattice{.spacing_mm = settings.spacing_mm, .fine_around = settings.fine_around, .fine_radius_mm = settings.fine_radius_mm};
-  LatticeNet net = lattice_net(voxels, lattice, progress);
+  const bool by_tetgen = settings.mesher == Mesher::tetgen;
+  LatticeNet net = lattice_net(voxels, {.spacing_mm = settings.spacing_mm * (by_tetgen ? 1 : kLatticePerSpacing), .fine_around = settings.fine_around,
+                                        .fine_radius_mm = settings.fine_radius_mm}, progress);
   result.spacing_mm = net.spacing_mm;
-  const std::string fitted = fill_net(net, voxels, settings, progress, result.mesh);
-  if (fitted.empty()) return;
-
-  result.method = MeshMethod::plain;
-  result.warning = "the mesh follows the body's surface less closely than usual: the mesher failed on the closer surface: " + fitted;
-  lattice.shape = NetShape::plain;
-  net = lattice_net(voxels, lattice, progress);
-  const std::string plain = fill_net(net, voxels, settings, progress, result.mesh);
-  if (plain.empty()) return;
-
-  result.method = MeshMethod::split;
-  result.warning = "the mesh is made of blocks, without a smooth surface: the mesher failed on the smooth one: " + fitted + ", and on a plainer one: " + plain;
-  result.mesh = bcc_split(voxels, settings.spacing_mm);
+  progress.update("tetrahedra", 0);
+  if (by_tetgen) {
+    const std::string failure = fill_by_tetgen(result, net, voxels, settings, progress);
+    if (failure.empty()) return;
+    result.warning = "the mesh is made of the lattice's own tetrahedra: TetGen failed on its surface: " + failure;
+  }
+  result.mesh = std::move(net.mesh);
+  improve(result.mesh, net, voxels, ImproveSettings{}, progress);
+  if (const std::string fault = find_fault_of(result.mesh, net); !fault.empty()) throw Error("a tet mesh is not sound", fault, "try another spacing of nodes");
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A body's tissue as tetrahedra: a surface net fitted to the voxels, filled by TetGen, its flat tets improved, and all of it
-// checked. Where TetGen fails on it, the plain net, which is coarser but as regular as can be; where it fails again, a split
-// of lattice cells that cannot fail. Which of them it is, and why, is part of the answer, to be said to the user.
+// A body's tissue as tetrahedra: a surface net fitted to the voxels with the lattice's own tets inside it, the flat ones improved,
+// and all of it checked. That needs no library and cannot fail. TetGen may fill the same net instead, with larger tets inside;
+// where it fails, the lattice's tets stand, and that is part of the answer, to be said to the user.
 #pragma once
 
 #include <string>
@@ -11,19 +11,20 @@
 
 namespace limber {
 
-enum class MeshMethod { fitted, plain, split };
+enum class Mesher { lattice, tetgen };
 
 struct MeshSettings {
-  double spacing_mm = 8;
-  std::vector<glm::dvec3> fine_around;  // world, mm: joints that bend; nodes are half as far apart there (not by `split`)
+  double spacing_mm = 8;                // of nodes: one for each cube of this side, by the lattice; of the net's samples for TetGen
+  Mesher mesher = Mesher::lattice;
+  std::vector<glm::dvec3> fine_around;  // world, mm: joints that bend; nodes are half as far apart there
   double fine_radius_mm = 40;
-  TetrahedralizeLimits limits = {};     // of TetGen, for each of its two attempts
+  TetrahedralizeLimits limits = {};     // of TetGen
 };
 
 struct TissueMesh {
   TetMesh mesh;            // no tets for a body without voxels
-  MeshMethod method = MeshMethod::fitted;
-  std::string warning;     // for the user, when the method is another: which and why; else empty
+  Mesher mesher = Mesher::lattice;  // that made it
+  std::string warning;     // for the user, when it is not the one asked for: why; else empty
   MeshQuality quality;
   double spacing_mm = 0;   // as it became
   double seconds = 0;

@@ -195,7 +195,7 @@ std::array<SampleLattice::Cell, 4> SampleLattice::cells_around_edge(const glm::i
   return cells;
 }
 
-SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSettings& settings, SolidWhen solid) {
+SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSettings& settings) {
   SampleLattice lattice;
   place(lattice, voxels, settings);
   refine(lattice, settings);
@@ -215,7 +215,7 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
         for (p.x = 0; p.x < lattice.size.x; p.x += stride) {
           const std::int64_t at = lattice.index(p);
           if (filling.tissue[at] == 0 || !is_of_stride(p)) continue;
-          if (solid == SolidWhen::any || filling.tissue[at] >= 0.5 * volume) lattice.label[at] = TetMesh::kSoft;
+          if (filling.tissue[at] >= 0.5 * volume) lattice.label[at] = TetMesh::kSoft;
           while (next < filling.bone.size() && std::int64_t(filling.bone[next].first >> 16) < at) ++next;
           for (; next < filling.bone.size() && std::int64_t(filling.bone[next].first >> 16) == at; ++next)
             bones.push_back({static_cast<float>(filling.bone[next].second / volume), static_cast<float>(volume), at,

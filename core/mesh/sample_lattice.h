@@ -45,10 +45,8 @@ struct SampleLattice {
   std::array<Cell, 4> cells_around_edge(const glm::ivec3& p, int axis) const;
 };
 
-// When a sample is tissue: by how much of its surroundings, a cube of one spacing, voxels fill.
-enum class SolidWhen { half, any };
-
-// Samples spaced as the settings say over the voxels and a border of air around them. A body must have voxels.
-SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSettings& settings, SolidWhen solid = SolidWhen::half);
+// Samples spaced as the settings say over the voxels and a border of air around them; tissue where voxels fill half of the cube of
+// one spacing around them. A body must have voxels.
+SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSettings& settings);
 
 }  // namespace limber

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "core/fem/stretch.h"
+#include "core/mesh/mesh_tissue.h"
 #include "core/volume/label_volume.h"
 
 namespace limber {
@@ -28,6 +29,7 @@ struct Fem {
   bool contact = false;                    // skin touches skin instead of passing through
   FemQuality quality = FemQuality::Normal;  // tets of 12 mm, 8 mm, or 8 mm and 4 mm around joints that bend
   std::optional<double> spacing_mm;        // another size of tets everywhere
+  Mesher mesher = Mesher::lattice;
   std::function<void(const TissueModel&)> on_mesh;  // before the first iteration
   std::function<void(const SolveStep&)> on_step;  // after every iteration
 };

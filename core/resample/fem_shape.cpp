@@ -112,7 +112,7 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   if (moving.empty()) return;
 
   const LabelVolume regions = regions_to_mesh(volume, tissue, is_bone, weights, moving);
-  MeshSettings settings{.spacing_mm = spacing_};
+  MeshSettings settings{.spacing_mm = spacing_, .mesher = fem_.mesher};
   if (fem_.quality == FemQuality::Fine) settings.fine_around = bent_joints(armature, poses_);
   finest_ = settings.fine_around.empty() ? spacing_ : spacing_ / 2;
   TissueMesh meshed = mesh_tissue(regions, settings, progress);

@@ -34,7 +34,6 @@ using Triangulation = CGAL::Mesh_triangulation_3<Domain>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
-// Of this process and the children it waited for: TetGen runs in one.
 void print(const char* who, const TetMesh& mesh, const VoxelRegions& voxels, double seconds) {
   const MeshQuality quality = quality_of(mesh, voxels);
   std::printf("%-28s %8ld tets %7.2f s CPU %7.2f us/tet  smallest angle %5.2f  below 5 degrees %.4f %%  covered %.3f %%\n", who, long(mesh.T.rows()), seconds,

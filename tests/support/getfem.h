@@ -51,8 +51,8 @@ inline Places read_places(const std::filesystem::path& path, Eigen::Index rows) 
 inline GetfemAnswer ask_getfem(const Flesh& flesh, bool newton = false) {
   const TemporaryFolder folder;
   const std::size_t tets = flesh.material.size();
-  std::vector<double> shear, bulk, patch, pins(4 * flesh.rest.rows(), 0.0);
-  for (const TetMaterial& m : flesh.material) shear.push_back(m.shear_modulus), bulk.push_back(tet_bulk(m)), patch.push_back(patch_bulk(m));
+  std::vector<double> shear, bulk, patch, filled, pins(4 * flesh.rest.rows(), 0.0);
+  for (const TetMaterial& m : flesh.material) shear.push_back(m.shear_modulus), bulk.push_back(tet_bulk(m)), patch.push_back(patch_bulk(m)), filled.push_back(m.filled);
   const PatchOrder order = grow_patches(flesh.rest, flesh.T, patch, shear);
   std::vector<std::int32_t> patch_of(tets);
   for (std::size_t p = 0; p + 1 < order.first.size(); ++p)
@@ -70,6 +70,7 @@ inline GetfemAnswer ask_getfem(const Flesh& flesh, bool newton = false) {
   detail::write_numbers(folder / "shear.f64", shear.data(), tets);
   detail::write_numbers(folder / "bulk.f64", bulk.data(), tets);
   detail::write_numbers(folder / "patch_bulk.f64", patch.data(), tets);
+  detail::write_numbers(folder / "filled.f64", filled.data(), tets);
   detail::write_numbers(folder / "patch.i32", patch_of.data(), tets);
   detail::write_numbers(folder / "weak.f64", weak, 2);
   detail::write_numbers(folder / "pins.f64", pins.data(), pins.size());

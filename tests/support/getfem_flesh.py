@@ -18,7 +18,7 @@ import numpy as np
 F = '(Id(3)+Grad_u)'
 J = f'Det{F}'
 TET = f'mu/2*(Norm_sqr{F} - 3) - mu*log({J}) + k/2*sqr({J} - 1) - 2*weak*half_sqr_pos_part(1 - {J}/below)*log({J}/below)'
-PATCH = f' + p*({J} - 1) - softness/2*sqr(p)'
+PATCH = f' + filled*(p*({J} - 1) - softness/2*sqr(p))'
 
 
 class Flesh:
@@ -46,13 +46,13 @@ class Flesh:
         self.of_tet.set_fem(gf.Fem('FEM_PK_DISCONTINUOUS(3,0)'))
         tet_of = np.empty(len(T), int)
         tet_of[[int(self.of_tet.basic_dof_from_cvid(t)[0][0]) for t in range(len(T))]] = np.arange(len(T))
-        self.mu, self.k, patch_k = (read(name)[tet_of] for name in ('shear.f64', 'bulk.f64', 'patch_bulk.f64'))
+        self.mu, self.k, patch_k, self.filled = (read(name)[tet_of] for name in ('shear.f64', 'bulk.f64', 'patch_bulk.f64', 'filled.f64'))
         self.gather_patches(patch[tet_of], patch_k)
 
     def gather_patches(self, patch, bulk):
         """A field that is constant over patches: one of tets, reduced to one unknown for each patch that has a bulk modulus."""
-        volume = self.integral(1, 'Test_q', ('q', 1, self.of_tet, np.zeros(len(patch))))
-        stiff = np.bincount(patch, volume * bulk)
+        tissue = self.filled * self.integral(1, 'Test_q', ('q', 1, self.of_tet, np.zeros(len(patch))))
+        stiff = np.bincount(patch, tissue * bulk)
         number = np.where(stiff > 0, np.cumsum(stiff > 0) - 1, -1)[patch]
         tets, patches = np.flatnonzero(number >= 0), int((stiff > 0).sum())
         share = 1 / np.bincount(number[tets], minlength=patches)
@@ -63,17 +63,17 @@ class Flesh:
         self.of_patch = gf.MeshFem(self.of_tet.linked_mesh(), 1)
         self.of_patch.set_fem(gf.Fem('FEM_PK_DISCONTINUOUS(3,0)'))
         self.of_patch.reduction_matrices(gather, spread)
-        self.bulk = (stiff / np.bincount(patch, volume))[stiff > 0]
+        self.bulk = (stiff / np.bincount(patch, tissue))[stiff > 0]
 
-        of = ('q', 1, self.of_patch, np.zeros(patches)), ('u', 0, self.field, self.u)
-        mean = self.integral(1, J + '*Test_q', *of) / self.integral(1, 'Test_q', of[0])
+        of = ('q', 1, self.of_patch, np.zeros(patches)), ('filled', 0, self.of_tet, self.filled), ('u', 0, self.field, self.u)
+        mean = self.integral(1, 'filled*' + J + '*Test_q', *of) / self.integral(1, 'filled*Test_q', *of[:2])
         self.pressure = self.bulk * (mean - 1)
 
     def integral(self, order, what, *fields):
         return gf.asm_generic(self.mim, order, what, -1, *[word for field in fields for word in field])
 
     def constants(self):
-        return (('mu', 0, self.of_tet, self.mu), ('k', 0, self.of_tet, self.k), ('softness', 0, self.of_patch, 1 / self.bulk),
+        return (('mu', 0, self.of_tet, self.mu), ('k', 0, self.of_tet, self.k), ('softness', 0, self.of_patch, 1 / self.bulk), ('filled', 0, self.of_tet, self.filled),
                 ('weak', 0, self.weak), ('below', 0, self.below))
 
     def energy(self, order):

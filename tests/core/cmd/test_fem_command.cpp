@@ -46,7 +46,7 @@ TEST_CASE("fem command: options of finite elements are refused with other method
   const Arm arm;
   const std::string out = arm.folder / "out.nrrd";
   for (const std::vector<std::string>& wrong :
-       {std::vector<std::string>{"--method", "dqs", "--contact"}, {"--method", "lbs", "--quality", "fine"}, {"--method", "dqs", "--mesh-out", arm.folder / "m"}}) {
+       {std::vector<std::string>{"--method", "dqs", "--contact"}, {"--method", "lbs", "--quality", "fine"}, {"--method", "lbs", "--mesher", "tetgen"}, {"--method", "dqs", "--mesh-out", arm.folder / "m"}}) {
     auto words = wrong;
     words.insert(words.end(), {"--flex", "Forearm=20", "-o", out});
     const auto run = arm.resample(words);
@@ -56,6 +56,7 @@ TEST_CASE("fem command: options of finite elements are refused with other method
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
   }
   CHECK(arm.resample({"--method", "fem", "--quality", "perfect", "-o", out}).exit_code == 2);
+  CHECK(arm.resample({"--method", "fem", "--mesher", "cubes", "-o", out}).exit_code == 2);
   CHECK(arm.resample({"--method", "fem", "--friction", "-o", out}).exit_code == 2);
   const auto no_mesh = arm.resample({"--method", "fem", "--mesh-out", arm.folder / "m", "-o", out});
   CHECK(no_mesh.exit_code == 1);
@@ -68,7 +69,7 @@ TEST_CASE("fem command: options of finite elements are refused with other method
 
 TEST_CASE("fem command: the steps that it leaves for a watcher end where the mesh does") {
   const Arm arm;
-  const auto run = arm.resample({"--method", "fem", "--quality", "draft", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--mesh-out", arm.folder / "posed", "--steps", arm.folder / "solve"});
+  const auto run = arm.resample({"--method", "fem", "--quality", "draft", "--mesher", "tetgen", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--mesh-out", arm.folder / "posed", "--steps", arm.folder / "solve"});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   const auto mesh = read_fem_mesh(arm.folder / "solve");

@@ -57,6 +57,25 @@ TEST_CASE("rasterize: every voxel inside a jittered lattice is claimed exactly o
     }
 }
 
+TEST_CASE("rasterize: a tet with a face all but parallel to the rows of voxels has the voxels inside it, and no others") {
+  for (int k = 0; k < 40; ++k) {
+    const int s = 8 * kFixedOne + 12345 * k;
+    const std::array<FixedPoint, 4> tet{FixedPoint(0), FixedPoint(s, -1, -1), FixedPoint(0, s, s - 1), FixedPoint(s / 2, 0, s)};
+    const VoxelRange box = voxels_in_box(tet);
+    std::vector<glm::ivec3> expected, visited;
+    const TetFaces<__int128> faces(tet);
+    for (int z = box.low.z; z <= box.high.z; ++z)
+      for (int y = box.low.y; y <= box.high.y; ++y)
+        for (int x = box.low.x; x <= box.high.x; ++x)
+          if (faces.contains({x, y, z})) expected.push_back({x, y, z});
+    rasterize_tet(tet, kEverywhere, [&](const glm::ivec3& v, int) {
+      if (visited.size() <= expected.size()) visited.push_back(v);
+    });
+    CHECK(expected.size() > 20);
+    CHECK(visited == expected);
+  }
+}
+
 TEST_CASE("rasterize: a turned cube gives back the rest points of its voxels, as many as its volume holds") {
   const glm::dmat3 turn = glm::mat3_cast(glm::angleAxis(0.8, glm::normalize(glm::dvec3(1, 2, 3))));
   std::array<FixedPoint, 8> corners;

@@ -42,14 +42,15 @@ struct Shaken {
     const PatchOrder order = grow_patches(rest, mesh.T, bulk, shear);
     Eigen::MatrixX4i T(mesh.T.rows(), 4);
     std::vector<TetEnergy> energy(mesh.T.rows());
-    std::vector<double> ordered(mesh.T.rows());
+    std::vector<double> ordered(mesh.T.rows()), filled(mesh.T.rows());
     for (Eigen::Index k = 0; k < T.rows(); ++k) {
       T.row(k) = mesh.T.row(order.tet[k]);
       ordered[k] = bulk[order.tet[k]];
+      filled[k] = 0.3 + 0.1 * double(k % 9);
       energy[k] = {shear[order.tet[k]], 2, 5, 0.7};
     }
     tets = ElasticForm(rest, T, energy, {order.first.begin() + 1, order.first.end()});
-    patches = PatchForm(tets, order.first, ordered, 27);
+    patches = PatchForm(tets, order.first, ordered, filled, 27);
     unknown.resize(27);
     std::iota(unknown.begin(), unknown.end(), 0);
     tets.bind(matrix, unknown);

@@ -10,7 +10,6 @@
 #include <doctest/doctest.h>
 
 #include "core/base/parallel.h"
-#include "core/mesh/bcc_split.h"
 #include "core/mesh/crossings.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bone_parts.h"
@@ -43,7 +42,6 @@ LabelVolume ball() {
 void check_sound(const TissueMesh& result) {
   CHECK(find_fault(result.mesh, region_volumes(result.mesh)) == "");
   CHECK(std::ssize(result.mesh.region) == result.mesh.T.rows());
-  CHECK(result.warning.empty() == (result.method == MeshMethod::fitted));
 }
 
 void check_sound(const TissueMesh& result, const LabelVolume& regions) {
@@ -80,7 +78,7 @@ void check_body(const Regions& regions, const std::string& name, MeshSettings se
   const TissueMesh result = mesh_tissue(regions.voxels(), settings);
   MESSAGE(name, ", ", settings.spacing_mm, " mm: ", result.mesh.V.rows(), " nodes, ", result.mesh.T.rows(), " tets, covered ", 100 * result.quality.covered,
           " %, smallest angle ", result.quality.min_dihedral_degrees, ", below 5 degrees ", 100 * result.quality.share_below_5_degrees, " %, ", result.seconds, " s");
-  CHECK(result.method == MeshMethod::fitted);
+  CHECK(result.warning == "");
   check_sound(result);
   check_quality(result);
   // The skin crosses itself nowhere.
@@ -105,7 +103,7 @@ class SharedCount {
 TEST_CASE("mesh tissue: a ball with two bones is meshed well, as it lies, with its three regions") {
   const LabelVolume regions = ball();
   const TissueMesh result = mesh_tissue(regions);
-  CHECK(result.method == MeshMethod::fitted);
+  CHECK(result.warning == "");
   check_sound(result, regions);
   check_quality(result);
   const auto volumes = region_volumes(result.mesh);
@@ -116,40 +114,38 @@ TEST_CASE("mesh tissue: a ball with two bones is meshed well, as it lies, with i
   MeshSettings fine;
   fine.fine_around = {{0, 0, 0}};
   const TissueMesh finer = mesh_tissue(regions, fine);
-  CHECK(finer.method == MeshMethod::fitted);
+  CHECK(finer.warning == "");
   check_quality(finer);
   CHECK(finer.mesh.T.rows() > 3 * result.mesh.T.rows());
 }
 
-TEST_CASE("mesh tissue: where TetGen fails on the fitted surface the plain one is meshed, and that is said") {
+TEST_CASE("mesh tissue: TetGen fills the same surface, with fewer and larger tets inside") {
   const LabelVolume regions = ball();
-  const SharedCount calls;
-  MeshSettings settings;
-  settings.limits.at_start = [&] {
-    if (calls.next() == 0) ::raise(SIGSEGV);
-  };
-  const TissueMesh result = mesh_tissue(regions, settings);
-  CHECK(calls.count() == 2);
-  CHECK(result.method == MeshMethod::plain);
-  CHECK(result.warning.find("it crashed (signal 11)") != std::string::npos);
+  const TissueMesh result = mesh_tissue(regions, {.mesher = Mesher::tetgen});
+  CHECK(result.mesher == Mesher::tetgen);
+  CHECK(result.warning == "");
   check_sound(result, regions);
   check_quality(result);
 }
 
-TEST_CASE("mesh tissue: where TetGen always crashes, hangs or fails, blocks are meshed, and that is said") {
+TEST_CASE("mesh tissue: where TetGen crashes, hangs or fails the lattice's own tets stand, and that is said") {
   const LabelVolume regions = ball();
   const auto with = [&](double seconds, std::function<void()> at_start) {
-    MeshSettings settings;
+    const SharedCount calls;
+    MeshSettings settings{.mesher = Mesher::tetgen};
     settings.limits.seconds = seconds;
-    settings.limits.at_start = std::move(at_start);
+    settings.limits.at_start = [&] {
+      calls.next();
+      at_start();
+    };
     const TissueMesh result = mesh_tissue(regions, settings);
-    CHECK(result.method == MeshMethod::split);
+    CHECK(calls.count() == 1);
+    CHECK(result.mesher == Mesher::lattice);
     check_sound(result, regions);
-    CHECK(result.quality.covered == 1);
-    CHECK(result.quality.min_dihedral_degrees > 44.9);
+    check_quality(result);
     return result.warning;
   };
-  CHECK(with(120, [] { ::raise(SIGSEGV); }).find("it crashed (signal 11), and on a plainer one: it crashed (signal 11)") != std::string::npos);
+  CHECK(with(120, [] { ::raise(SIGSEGV); }).find("TetGen failed on its surface: it crashed (signal 11)") != std::string::npos);
   CHECK(with(0.05, [] { std::this_thread::sleep_for(std::chrono::hours(1)); }).find("it took too long") != std::string::npos);
   CHECK(with(120, [] { std::_Exit(3); }).find("it gave up (exit code 3)") != std::string::npos);
 }
@@ -160,7 +156,7 @@ TEST_CASE("mesh tissue: no voxels make no mesh, and no fuss") {
   const TissueMesh result = mesh_tissue(regions);
   CHECK(result.mesh.T.rows() == 0);
   CHECK(result.warning == "");
-  CHECK(bcc_split({regions.grid, TissueVoxels(regions), {}}, 8).T.rows() == 0);
+  CHECK(mesh_tissue(regions, {.mesher = Mesher::tetgen}).mesh.T.rows() == 0);
 }
 
 TEST_CASE("mesh tissue: the same for one thread and for two") {
@@ -189,39 +185,28 @@ TEST_CASE("mesh tissue: a cancel is heard") {
 TEST_CASE("mesh tissue: random bodies are meshed, whatever they are") {
   const char* asked = std::getenv("LIMBER_RANDOM_BODIES");
   const unsigned count = asked ? unsigned(std::atoi(asked)) : 60;
-  int by_method[3] = {};
+  int by_tetgen = 0, fell_back = 0;
   for (unsigned seed = 0; seed < count; ++seed) {
     const test::RandomBody body = test::random_body(seed);
     CAPTURE(seed);
     CAPTURE(body.kind);
     MeshSettings settings{.spacing_mm = 3.0 + seed % 7};
     if (seed % 3 == 0) settings.fine_around = {world_from_voxel(body.regions.grid) * (glm::dvec3(body.regions.grid.size) * 0.5)}, settings.fine_radius_mm = 12;
-    const TissueMesh result = mesh_tissue(body.regions, settings);
-    check_sound(result, body.regions);
-    CHECK(result.quality.covered >= 0.999);
-    CHECK(crossing_pairs(result.mesh.V, boundary_of(result.mesh.T)).empty());
-    ++by_method[int(result.method)];
-    if (result.method != MeshMethod::fitted) MESSAGE("seed ", seed, ", ", body.kind, ": ", result.warning);
+    for (const Mesher mesher : {Mesher::lattice, Mesher::tetgen}) {
+      if (mesher == Mesher::tetgen && seed % 4 != 0) continue;
+      settings.mesher = mesher;
+      const TissueMesh result = mesh_tissue(body.regions, settings);
+      check_sound(result, body.regions);
+      CHECK(result.quality.covered >= 0.999);
+      CHECK(crossing_pairs(result.mesh.V, boundary_of(result.mesh.T)).empty());
+      if (mesher == Mesher::lattice) CHECK(result.warning == "");
+      by_tetgen += result.mesher == Mesher::tetgen;
+      fell_back += result.warning != "";
+      if (result.warning != "") MESSAGE("seed ", seed, ", ", body.kind, ": ", result.warning);
+    }
   }
-  MESSAGE("fitted ", by_method[0], ", plain ", by_method[1], ", split ", by_method[2]);
-  CHECK(by_method[2] <= int(count) / 50);
-}
-
-TEST_CASE("mesh tissue: blocks of random bodies hold every voxel and have no flat tet") {
-  for (unsigned seed = 0; seed < 60; ++seed) {
-    const test::RandomBody body = test::random_body(seed);
-    CAPTURE(seed);
-    CAPTURE(body.kind);
-    const TissueVoxels tissue(body.regions);
-    std::vector<std::uint16_t> region(tissue.size());
-    tissue.for_each([&](std::int64_t place, const glm::ivec3& v) { region[place] = body.regions.at(v) - 1; });
-    const VoxelRegions voxels{body.regions.grid, tissue, region};
-    const TetMesh mesh = bcc_split(voxels, 3.0 + seed % 7);
-    CHECK(find_fault(mesh, region_volumes(mesh)) == "");
-    const MeshQuality quality = quality_of(mesh, voxels);
-    CHECK(quality.covered == 1);
-    if (tissue.size() > 0) CHECK(quality.min_dihedral_degrees > 44.9);
-  }
+  MESSAGE(count, " bodies by the lattice, ", by_tetgen, " by TetGen, which failed on ", fell_back);
+  CHECK(by_tetgen > 5 * fell_back);
 }
 
 TEST_CASE("mesh tissue: the quality of a mesh with a fault is seen") {

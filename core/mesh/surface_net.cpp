@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/mesh/surface_net.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber {
+
+namespace {
+
+constexpr std::uint16_t kAir = RegionSurface::kAir;
+constexpr double kMargin = 0.1;      // of a cell, face or edge: points keep this far from its ends
+constexpr double kPushShare = 0.04;  // of a cell, outwards, for each time that its point was pushed
+
+// Where along an edge, in [0, 1], one region ends and the other begins. Between tissue and air: where the outermost tissue
+// ends; between two tissues: where the fewest places are on the wrong side.
+double border_along(const VoxelLookup& voxel_at, const glm::dvec3& from, int axis, int length, std::uint16_t first, std::uint16_t second) {
+  const int steps = std::clamp(static_cast<int>(std::ceil(2 * length / voxel_at.voxel_along(axis))), 4, 64);
+  int least_wrong = steps + 1, wrong = 0, best = 0;
+  std::uint16_t seen[64];
+  for (int k = 0; k < steps; ++k) {
+    glm::dvec3 place = from;
+    place[axis] += (k + 0.5) * length / steps;
+    seen[k] = voxel_at(place);
+  }
+  if (second == kAir) {
+    for (int k = 0; k < steps; ++k)
+      if (seen[k] != kAir) best = k + 1;
+    return double(best) / steps;
+  }
+  if (first == kAir) {
+    best = steps;
+    for (int k = steps; k-- > 0;)
+      if (seen[k] != kAir) best = k;
+    return double(best) / steps;
+  }
+  for (int k = 0; k < steps; ++k) wrong += seen[k] == first;
+  for (int k = 0; k <= steps; ++k) {  // `first` ends before place k
+    if (wrong < least_wrong) least_wrong = wrong, best = k;
+    if (k < steps) wrong += (seen[k] == second) - (seen[k] == first);
+  }
+  return double(best) / steps;
+}
+
+}  // namespace
+
+VoxelLookup::VoxelLookup(const VoxelRegions& voxels, const SampleLattice& lattice) : voxels_(voxels), offset_(lattice.fine_from_voxel.offset) {
+  for (int i = 0; i < 3; ++i) scale_[i] = lattice.fine_from_voxel.linear[i][i];
+}
+
+std::uint16_t VoxelLookup::operator()(const glm::dvec3& fine) const {
+  const glm::ivec3 v(glm::floor((fine - offset_) / scale_ + 0.5));
+  if (!voxels_.grid.contains(v)) return kAir;
+  const std::int64_t place = voxels_.tissue.index_of(v);
+  return place < 0 ? kAir : voxels_.region[place];
+}
+
+Pushes::Pushes(std::size_t samples) : cell(samples, 0) {
+  for (auto& of_axis : edge) of_axis.assign(samples, 0);
+}
+
+SurfaceNet::SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at) : lattice_(lattice) {
+  number_edges(voxel_at);
+  number_cells();
+  number_faces();
+}
+
+// body(from, at, axis, length, first, second): the edges of the lattice that are not air at both ends, with the place of their first
+// sample among all and the regions of both.
+template <class Body>
+void SurfaceNet::for_each_edge(const Body& body) const {
+  const std::int64_t strides[3] = {1, lattice_.size.x, std::int64_t{lattice_.size.x} * lattice_.size.y};
+  std::int64_t at = -1;
+  glm::ivec3 from;
+  for (from.z = 0; from.z < lattice_.size.z; ++from.z)
+    for (from.y = 0; from.y < lattice_.size.y; ++from.y)
+      for (from.x = 0; from.x < lattice_.size.x; ++from.x) {
+        ++at;
+        for (int axis = 0; axis < 3; ++axis) {
+          // Most places are air.
+          const std::int64_t stride = strides[axis];
+          if (from[axis] + 1 >= lattice_.size[axis]) continue;
+          const bool far = lattice_.block == 2 && from[axis] + 2 < lattice_.size[axis];
+          const std::uint16_t first = lattice_.label[at];
+          if (first == kAir && lattice_.label[at + stride] == kAir && (!far || lattice_.label[at + 2 * stride] == kAir)) continue;
+          const int length = lattice_.edge_length(from, axis);
+          if (length == 0) continue;
+          const std::uint16_t second = lattice_.label[at + length * stride];
+          if (first != kAir || second != kAir) body(from, at, axis, length, first, second);
+        }
+      }
+}
+
+void SurfaceNet::number_edges(const VoxelLookup& voxel_at) {
+  for (auto& of_axis : edge_node_) of_axis.assign(lattice_.label.size(), -1);
+  for_each_edge([&](const glm::ivec3& from, std::int64_t at, int axis, int length, std::uint16_t first, std::uint16_t second) {
+    if (first == second) return;
+    Node node{from, from, from};
+    node.low[axis] += kMargin * length;
+    node.high[axis] += (1 - kMargin) * length;
+    const int number = static_cast<int>(nodes_.size());
+    edge_node_[axis][at] = number;
+    nodes_.push_back(node);
+    edges_.push_back({from, axis, length, number, first, second, static_cast<float>(border_along(voxel_at, from, axis, length, first, second)), {}, {-1, -1, -1, -1}});
+  });
+}
+
+void SurfaceNet::number_cells() {
+  cell_node_.assign(lattice_.label.size(), -1);
+  touches_air_.assign(lattice_.label.size(), 0);
+  for (Edge& edge : edges_) {
+    const auto around = lattice_.cells_around_edge(edge.from, edge.axis);
+    for (int slot = 0; slot < 4; ++slot) {
+      const Cell& cell = around[slot];
+      const std::int64_t at = lattice_.index(cell.corner);
+      int& node = cell_node_[at];
+      if (node < 0) {
+        node = static_cast<int>(nodes_.size());
+        const glm::dvec3 corner(cell.corner);
+        nodes_.push_back({corner + 0.5 * cell.size, corner + kMargin * cell.size, corner + (1 - kMargin) * cell.size});
+        cells_.push_back(cell);
+      }
+      if (edge.first == kAir || edge.second == kAir) touches_air_[at] = 1;
+      edge.cell[slot] = node;
+    }
+  }
+}
+
+// The face between the cells of a slot around an edge and the next one: that of the smaller cell.
+std::int64_t SurfaceNet::face_between(const glm::ivec3& from, int axis, int slot) const {
+  // Slots lie at (-,-), (+,-), (+,+), (-,+) of the other two axes: the faces between them at -v, +u, +v, -u.
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  glm::ivec3 corner = from;
+  if (slot == 0) --corner[v];
+  if (slot == 3) --corner[u];
+  return 3 * lattice_.index(corner) + (slot % 2 == 0 ? u : v);
+}
+
+void SurfaceNet::number_faces() {
+  if (lattice_.block == 1) return;
+  for (Edge& edge : edges_) {
+    if (edge.length != 1) continue;
+    const auto around = lattice_.cells_around_edge(edge.from, edge.axis);
+    for (int slot = 0; slot < 4; ++slot) {
+      if (around[slot].size == around[(slot + 1) % 4].size) continue;
+      const std::int64_t face = face_between(edge.from, edge.axis, slot);
+      const auto [known, is_new] = face_node_.emplace(face, static_cast<int>(nodes_.size()));
+      if (is_new) {
+        const std::int64_t at = face / 3;
+        const glm::dvec3 corner(at % lattice_.size.x, at / lattice_.size.x % lattice_.size.y, at / (std::int64_t{lattice_.size.x} * lattice_.size.y));
+        Node node{corner + 0.5, corner + kMargin, corner + (1 - kMargin)};
+        const int axis = static_cast<int>(face % 3);
+        node.place[axis] = node.low[axis] = node.high[axis] = corner[axis];
+        nodes_.push_back(node);
+      }
+      edge.face[slot] = known->second;
+    }
+  }
+}
+
+void SurfaceNet::place(const Pushes& pushes) {
+  struct Sum {
+    glm::dvec3 place{0}, outwards{0};
+    int count = 0;
+  };
+  const int first_cell = static_cast<int>(edges_.size());
+  std::vector<Sum> sums(nodes_.size() - edges_.size());
+  const auto meet = [&](int node, const Edge& edge) {
+    Sum& sum = sums[node - first_cell];
+    sum.place += nodes_[edge.node].place;
+    if (edge.second == kAir) sum.outwards[edge.axis] += 1;
+    if (edge.first == kAir) sum.outwards[edge.axis] -= 1;
+    ++sum.count;
+  };
+  for (const Edge& edge : edges_) {
+    const std::uint8_t pushed = pushes.edge[edge.axis][lattice_.index(edge.from)];
+    double share = edge.border;
+    if (edge.second == kAir) share += kPushShare * pushed;
+    if (edge.first == kAir) share -= kPushShare * pushed;
+    Node& node = nodes_[edge.node];
+    node.place[edge.axis] = std::clamp(edge.from[edge.axis] + share * edge.length, node.low[edge.axis], node.high[edge.axis]);
+    for (int slot = 0; slot < 4; ++slot) {
+      if (edge.cell[slot] != edge.cell[(slot + 3) % 4]) meet(edge.cell[slot], edge);  // a coarse cell has two slots
+      if (edge.face[slot] >= 0) meet(edge.face[slot], edge);
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    Node& node = nodes_[first_cell + i];
+    node.place = sums[i].place / double(sums[i].count);
+    if (i < cells_.size())
+      if (const double length = glm::length(sums[i].outwards); length > 0)
+        node.place += sums[i].outwards * (kPushShare * cells_[i].size * pushes.cell[lattice_.index(cells_[i].corner)] / length);
+    node.place = glm::clamp(node.place, node.low, node.high);
+  }
+}
+
+// Where the surface passes the face of a cell, nothing where it does not.
+std::optional<glm::dvec3> SurfaceNet::middle_of_face(const Cell& cell, const Cell& other, const glm::ivec3& corner, int axis) const {
+  if (cell.size != other.size) {
+    const auto node = face_node_.find(3 * lattice_.index(corner) + axis);
+    if (node == face_node_.end()) return std::nullopt;
+    return nodes_[node->second].place;
+  }
+  if (node_of(other) < 0) return std::nullopt;
+  const glm::dvec3 &a = nodes_[node_of(cell)].place, &b = nodes_[node_of(other)].place;
+  return a + (b - a) * ((corner[axis] - a[axis]) / (b[axis] - a[axis]));
+}
+
+// On a face the borders run from its middle to the points of its edges: the region is that of the rim, seen from the middle.
+std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dvec3& place, const glm::ivec3& corner, int axis, int size) const {
+  const glm::dvec3 along = place - middle;
+  double reach = 1e300;
+  int rim_axis = (axis + 1) % 3;
+  for (int w : {(axis + 1) % 3, (axis + 2) % 3}) {
+    if (along[w] == 0) continue;
+    const double to = ((along[w] > 0 ? corner[w] + size : corner[w]) - middle[w]) / along[w];
+    if (to < reach) reach = to, rim_axis = w;
+  }
+  glm::ivec3 from = corner;
+  if (along[rim_axis] > 0) from[rim_axis] += size;
+  const int w = 3 - axis - rim_axis;  // the rim's own direction
+  const double at = reach < 1e300 ? middle[w] + along[w] * reach : middle[w];
+  int length = size;
+  if (size > 1 && lattice_.edge_length(from, w) == 1) {
+    length = 1;
+    from[w] += std::clamp(static_cast<int>(std::floor(at)) - corner[w], 0, size - 1);
+  }
+  const int node = edge_node_[w][lattice_.index(from)];
+  if (node < 0 || at < nodes_[node].place[w]) return lattice_.at(from);
+  from[w] += length;
+  return lattice_.at(from);
+}
+
+std::uint16_t SurfaceNet::region_at(const glm::dvec3& place) const {
+  const Cell cell = cell_of(place);
+  if (node_of(cell) < 0) return lattice_.at(cell.corner);
+  // From the cell's vertex through the place to a face.
+  const glm::dvec3& from = nodes_[node_of(cell)].place;
+  const glm::dvec3 along = place - from;
+  double reach = 1e300;
+  int axis = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (along[i] == 0) continue;
+    const double to = ((along[i] > 0 ? cell.corner[i] + cell.size : cell.corner[i]) - from[i]) / along[i];
+    if (to < reach) reach = to, axis = i;
+  }
+  if (reach == 1e300) return lattice_.at(cell.corner);
+  const glm::dvec3 exit = from + along * reach;
+  const bool high = along[axis] > 0;
+
+  glm::ivec3 corner = cell.corner, across = cell.corner;
+  if (high) corner[axis] += cell.size, across[axis] += cell.size;
+  else --across[axis];
+  int size = cell.size;
+  if (cell.size > 1)
+    for (int w : {(axis + 1) % 3, (axis + 2) % 3}) across[w] += std::clamp(static_cast<int>(std::floor(exit[w])) - cell.corner[w], 0, cell.size - 1);
+  const Cell other = lattice_.cell(across);
+  if (other.size < cell.size) {
+    size = other.size;
+    for (int w : {(axis + 1) % 3, (axis + 2) % 3}) corner[w] = across[w];
+  }
+  const auto middle = middle_of_face(cell, other, corner, axis);
+  if (!middle) return lattice_.at(corner);
+  return region_on_face(*middle, exit, corner, axis, size);
+}
+
+TetMesh SurfaceNet::tets() const {
+  std::vector<glm::dvec3> places;
+  places.reserve(3 * nodes_.size());
+  for (const Node& node : nodes_) places.push_back(node.place);
+  std::vector<std::int32_t> sample_node(lattice_.label.size(), -1), cell_node = cell_node_;
+  auto face_node = face_node_;
+  const auto number = [&](std::int32_t& node, const glm::dvec3& place) {
+    if (node < 0) node = static_cast<std::int32_t>(places.size()), places.push_back(place);
+    return node;
+  };
+  const auto of_cell = [&](const Cell& cell) { return number(cell_node[lattice_.index(cell.corner)], glm::dvec3(cell.corner) + 0.5 * cell.size); };
+  const auto of_face = [&](std::int64_t face) {
+    const std::int64_t at = face / 3;
+    glm::dvec3 middle = glm::dvec3(at % lattice_.size.x, at / lattice_.size.x % lattice_.size.y, at / (std::int64_t{lattice_.size.x} * lattice_.size.y)) + 0.5;
+    middle[int(face % 3)] -= 0.5;
+    return number(face_node.try_emplace(face, -1).first->second, middle);
+  };
+
+  TetMesh mesh;
+  std::vector<std::array<int, 4>> tets;
+  const bool mirrored = glm::determinant(lattice_.world_from_lattice.linear) < 0;
+  const auto add = [&](int from, int to, int a, int b, std::uint16_t region) {
+    if (mirrored) std::swap(a, b);
+    tets.push_back({from, to, a, b});
+    mesh.region.push_back(region);
+  };
+  for_each_edge([&](const glm::ivec3& from, std::int64_t at, int axis, int length, std::uint16_t first, std::uint16_t second) {
+    glm::ivec3 to = from;
+    to[axis] += length;
+    const int point = edge_node_[axis][at];
+    const int begin = first == kAir ? -1 : number(sample_node[at], from), end = second == kAir ? -1 : number(sample_node[lattice_.index(to)], to);
+    const auto stand = [&](int a, int b) {
+      if (point < 0) return add(begin, end, a, b, first);
+      if (first != kAir) add(begin, point, a, b, first);
+      if (second != kAir) add(point, end, a, b, second);
+    };
+    const auto around = lattice_.cells_around_edge(from, axis);
+    for (int slot = 0; slot < 4; ++slot) {
+      const Cell &one = around[slot], &other = around[(slot + 1) % 4];
+      if (one == other) continue;
+      const int a = of_cell(one), b = of_cell(other);
+      if (one.size == other.size) {
+        stand(a, b);
+      } else {
+        const int middle = of_face(face_between(from, axis, slot));
+        stand(a, middle);
+        stand(middle, b);
+      }
+    }
+  });
+
+  mesh.V.resize(places.size(), 3);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const glm::dvec3 world = lattice_.world_from_lattice * (places[i] * lattice_.step);
+    mesh.V.row(i) << world.x, world.y, world.z;
+  }
+  mesh.T.resize(tets.size(), 4);
+  for (std::size_t i = 0; i < tets.size(); ++i) mesh.T.row(i) << tets[i][0], tets[i][1], tets[i][2], tets[i][3];
+  return mesh;
+}
+
+}  // namespace limber
