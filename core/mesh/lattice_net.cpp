@@ -120,7 +120,7 @@ bool make_room(const SurfaceNet& net, SampleLattice& lattice, const std::vector<
 LatticeNet finished(const SurfaceNet& net, const SampleLattice& lattice) {
   LatticeNet result;
   result.world_from_lattice = lattice.world_from_lattice;
-  result.spacing_mm = lattice.step * lattice.block;
+  result.spacing_mm = lattice.spacing_mm;
   result.mesh = net.tets();
   const auto count = static_cast<Eigen::Index>(net.nodes().size());
   result.surface.V = result.mesh.V.topRows(count);

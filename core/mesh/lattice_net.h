@@ -24,7 +24,7 @@ struct VoxelRegions {
 };
 
 struct LatticeNetSettings {
-  double spacing_mm = 8;                 // of samples; made larger where there would be more than 12 million
+  double spacing_mm = 8;                 // of samples near the surface; made larger where there would be more than 12 million
   std::vector<glm::dvec3> fine_around;   // world, mm: joints that bend
   double fine_radius_mm = 40;            // around them samples are half as far apart
   double least_covered = 0.9995;         // share of the voxels whose centre must lie inside

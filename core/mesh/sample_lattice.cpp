@@ -11,7 +11,8 @@ namespace limber {
 namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
-constexpr int kBorder = 3;                     // coarse steps of air around the tissue: room for samples that become tissue
+constexpr int kBorder = 3;                     // usual cells of air around the tissue: room for samples that become tissue
+constexpr int kLargest = 4;                    // times the usual size, of cells deep inside
 constexpr std::int64_t kMostSamples = 12'000'000;
 
 struct Box {
@@ -32,37 +33,64 @@ void place(SampleLattice& lattice, const VoxelRegions& voxels, const LatticeNetS
   const Grid& grid = voxels.grid;
   Box box = extent_of(voxels.tissue);
   box.low *= grid.spacing, box.high *= grid.spacing;
-  lattice.block = settings.fine_around.empty() ? 1 : 2;
-  double coarse = settings.spacing_mm;
+  lattice.usual = settings.fine_around.empty() ? 1 : 2;
+  double& spacing_mm = lattice.spacing_mm = settings.spacing_mm;
   const auto samples = [&](double spacing) {
     const glm::dvec3 count = glm::ceil((box.high - box.low) / spacing) + 2.0 * kBorder;
-    return count.x * count.y * count.z * std::pow(lattice.block, 3);
+    return count.x * count.y * count.z * std::pow(lattice.usual, 3);
   };
-  while (samples(coarse) > double(kMostSamples)) coarse *= 1.1;
-  lattice.step = coarse / lattice.block;
-  const glm::dvec3 count = glm::ceil((box.high - box.low) / coarse);
-  lattice.blocks = glm::ivec3(count) + 2 * kBorder;
-  lattice.size = lattice.blocks * lattice.block + 1;
+  while (samples(spacing_mm) > double(kMostSamples)) spacing_mm *= 1.1;
+  lattice.step = spacing_mm / lattice.usual;
+  const glm::ivec3 cells = glm::ivec3(glm::ceil((box.high - box.low) / spacing_mm)) + 2 * kBorder;
+  lattice.size = cells * lattice.usual + 1;
   // The tissue in the middle.
-  const glm::dvec3 first = (box.low + box.high) * 0.5 - glm::dvec3(lattice.blocks) * (coarse * 0.5);
+  const glm::dvec3 first = (box.low + box.high) * 0.5 - glm::dvec3(cells) * (spacing_mm * 0.5);
   lattice.fine_from_voxel = {glm::dmat3(grid.spacing.x, 0, 0, 0, grid.spacing.y, 0, 0, 0, grid.spacing.z), -first};
   lattice.fine_from_voxel.linear /= lattice.step;
   lattice.fine_from_voxel.offset /= lattice.step;
   lattice.world_from_lattice = {grid.direction, grid.origin + grid.direction * first};
 }
 
+template <class Body>
+void for_each_cell_of(const SampleLattice& lattice, int size, const Body& body) {
+  glm::ivec3 corner;
+  for (corner.z = 0; corner.z + size < lattice.size.z; corner.z += size)
+    for (corner.y = 0; corner.y + size < lattice.size.y; corner.y += size)
+      for (corner.x = 0; corner.x + size < lattice.size.x; corner.x += size) body(corner);
+}
+
+void resize_cell(SampleLattice& lattice, const glm::ivec3& corner, int extent, int size) {
+  for (int z = 0; z < extent; ++z)
+    for (int y = 0; y < extent; ++y) std::fill_n(lattice.cell_size.begin() + lattice.index(corner + glm::ivec3(0, y, z)), extent, static_cast<std::uint8_t>(size));
+}
+
 void refine(SampleLattice& lattice, const LatticeNetSettings& settings) {
-  if (lattice.block == 1) return;
-  lattice.is_fine.assign(std::int64_t{lattice.blocks.x} * lattice.blocks.y * lattice.blocks.z, 0);
-  const double coarse = lattice.step * lattice.block;
-  std::size_t at = 0;
-  for (int z = 0; z < lattice.blocks.z; ++z)
-    for (int y = 0; y < lattice.blocks.y; ++y)
-      for (int x = 0; x < lattice.blocks.x; ++x, ++at) {
-        const glm::dvec3 centre = lattice.world_from_lattice * ((glm::dvec3(x, y, z) + 0.5) * coarse);
-        for (const glm::dvec3& joint : settings.fine_around)
-          if (glm::length(joint - centre) <= settings.fine_radius_mm) lattice.is_fine[at] = 1;
-      }
+  lattice.cell_size.assign(std::int64_t{lattice.size.x} * lattice.size.y * lattice.size.z, static_cast<std::uint8_t>(lattice.usual));
+  if (lattice.usual == 1) return;
+  for_each_cell_of(lattice, lattice.usual, [&](const glm::ivec3& corner) {
+    const glm::dvec3 centre = lattice.world_from_lattice * ((glm::dvec3(corner) + 0.5 * lattice.usual) * lattice.step);
+    for (const glm::dvec3& joint : settings.fine_around)
+      if (glm::length(joint - centre) <= settings.fine_radius_mm) resize_cell(lattice, corner, lattice.usual, 1);
+  });
+}
+
+// Eight cells of one size become one where they lie in one region, and none that touches them is smaller.
+void coarsen(SampleLattice& lattice, int size) {
+  std::vector<glm::ivec3> deep;
+  for_each_cell_of(lattice, 2 * size, [&](const glm::ivec3& corner) {
+    const std::uint16_t region = lattice.at(corner);
+    if (region == kAir || glm::any(glm::lessThan(corner, glm::ivec3(size))) || glm::any(glm::greaterThanEqual(corner + 3 * size, lattice.size))) return;
+    for (int z = 0; z <= 2; ++z)
+      for (int y = 0; y <= 2; ++y)
+        for (int x = 0; x <= 2; ++x)
+          if (lattice.at(corner + glm::ivec3(x, y, z) * size) != region) return;
+    for (int z = -1; z <= 2; ++z)
+      for (int y = -1; y <= 2; ++y)
+        for (int x = -1; x <= 2; ++x)
+          if (lattice.cell_size[lattice.index(corner + glm::ivec3(x, y, z) * size)] != size) return;
+    deep.push_back(corner);
+  });
+  for (const glm::ivec3& corner : deep) resize_cell(lattice, corner, 2 * size, 2 * size);
 }
 
 // How full of tissue each sample's surroundings are, and of which bones.
@@ -108,11 +136,13 @@ Filling fill(const SampleLattice& lattice, const VoxelRegions& voxels, int strid
   return filling;
 }
 
-bool touches_fine(const SampleLattice& lattice, const glm::ivec3& p) {
-  for (const auto& cell : lattice.cells_around(p))
-    if (cell.size == 1) return true;
-  return false;
+int smallest_around(const SampleLattice& lattice, const glm::ivec3& p) {
+  int smallest = 255;
+  for (const auto& cell : lattice.cells_around(p)) smallest = std::min(smallest, cell.size);
+  return smallest;
 }
+
+bool is_multiple(const glm::ivec3& p, int size) { return ((p.x | p.y | p.z) & (size - 1)) == 0; }
 
 struct Candidate {
   float share;  // of the sample's surroundings that the bone fills
@@ -157,10 +187,7 @@ void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all) {
 
 }  // namespace
 
-bool SampleLattice::has_sample(const glm::ivec3& p) const {
-  if (block == 1 || (p.x % block == 0 && p.y % block == 0 && p.z % block == 0)) return true;
-  return touches_fine(*this, p);
-}
+bool SampleLattice::has_sample(const glm::ivec3& p) const { return is_multiple(p, smallest_around(*this, p)); }
 
 std::array<SampleLattice::Cell, 8> SampleLattice::cells_around(const glm::ivec3& p) const {
   std::array<Cell, 8> cells;
@@ -173,13 +200,9 @@ std::array<SampleLattice::Cell, 8> SampleLattice::cells_around(const glm::ivec3&
 
 int SampleLattice::edge_length(const glm::ivec3& p, int axis) const {
   if (p[axis] + 1 >= size[axis]) return 0;
-  if (block == 1) return 1;
-  const auto around = cells_around_edge(p, axis);
-  for (const Cell& cell : around)
-    if (cell.size == 1) return 1;
-  for (int i = 0; i < 3; ++i)
-    if (p[i] % block != 0) return 0;
-  return block;
+  int smallest = 255;
+  for (const Cell& cell : cells_around_edge(p, axis)) smallest = std::min(smallest, cell.size);
+  return is_multiple(p, smallest) ? smallest : 0;
 }
 
 std::array<SampleLattice::Cell, 4> SampleLattice::cells_around_edge(const glm::ivec3& p, int axis) const {
@@ -201,13 +224,13 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
   refine(lattice, settings);
   lattice.label.assign(std::int64_t{lattice.size.x} * lattice.size.y * lattice.size.z, kAir);
 
-  // Where fine cells meet coarse ones their common samples are fine.
+  // Where cells of two sizes meet their common samples are the smaller ones'.
   std::vector<Candidate> bones;
-  for (const int stride : {lattice.block, 1}) {
-    if (stride == 1 && lattice.block > 1 && std::count(lattice.is_fine.begin(), lattice.is_fine.end(), 1) == 0) break;
+  for (const int stride : {lattice.usual, 1}) {
+    if (stride < lattice.usual && std::count(lattice.cell_size.begin(), lattice.cell_size.end(), stride) == 0) break;
     const Filling filling = fill(lattice, voxels, stride);
     const double volume = std::pow(lattice.step * stride, 3);
-    const auto is_of_stride = [&](const glm::ivec3& p) { return lattice.block == 1 || touches_fine(lattice, p) == (stride == 1); };
+    const auto is_of_stride = [&](const glm::ivec3& p) { return lattice.usual == 1 || smallest_around(lattice, p) == stride; };
     std::size_t next = 0;
     glm::ivec3 p;
     for (p.z = 0; p.z < lattice.size.z; p.z += stride)
@@ -221,9 +244,10 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
             bones.push_back({static_cast<float>(filling.bone[next].second / volume), static_cast<float>(volume), at,
                              static_cast<std::uint16_t>(filling.bone[next].first & 0xffff)});
         }
-    if (lattice.block == 1) break;
+    if (lattice.usual == 1) break;
   }
   give_bones(lattice, bones);
+  for (int size = lattice.usual; size < kLargest * lattice.usual; size *= 2) coarsen(lattice, size);
   return lattice;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A lattice of samples over a body, each with its region: what a surface net is drawn over. Cells have one size, or two:
-// blocks of 2^3 fine cells around joints, and whole blocks elsewhere. Coordinates are counted in fine steps.
+// A lattice of samples over a body, each with its region: what a surface net is drawn over. Cells are as large as asked for, half
+// as large around joints, and twice or four times as large deep inside a region, where nothing needs them small; cells that touch
+// differ by no more than a factor of two. Coordinates are counted in steps of the smallest.
 #pragma once
 
 #include <array>
@@ -14,30 +15,29 @@ namespace limber {
 struct SampleLattice {
   struct Cell {
     glm::ivec3 corner;
-    int size;  // fine steps: 1 or `block`
+    int size;  // steps, a power of two, of which `corner` is a multiple
     bool operator==(const Cell&) const = default;
   };
 
-  glm::ivec3 size{0};  // samples, fine
-  double step = 0;     // mm
-  int block = 1;       // fine cells along a coarse one: 1 or 2
-  glm::ivec3 blocks{0};
-  std::vector<std::uint8_t> is_fine;  // #blocks; empty where block is 1
-  std::vector<std::uint16_t> label;   // #samples: a region; kAir where no sample is as well
+  glm::ivec3 size{0};      // places for samples
+  double step = 0;         // mm
+  double spacing_mm = 0;   // of samples, as it became, but for joints and deep inside
+  int usual = 1;           // size of cells of that spacing
+  std::vector<std::uint8_t> cell_size;  // #samples: of the cell in which lies the smallest that begins there
+  std::vector<std::uint16_t> label;     // #samples: a region; kAir where no sample is as well
   AffineTransform world_from_lattice;  // mm, turned only
   AffineTransform fine_from_voxel;
 
   std::int64_t index(const glm::ivec3& p) const { return p.x + std::int64_t{size.x} * (p.y + std::int64_t{size.y} * p.z); }
   std::uint16_t at(const glm::ivec3& p) const { return label[index(p)]; }
-  bool fine_cell(const glm::ivec3& c) const {
-    const glm::ivec3 b = c >> (block - 1);
-    return block == 1 || is_fine[b.x + std::int64_t{blocks.x} * (b.y + std::int64_t{blocks.y} * b.z)];
+  Cell cell(const glm::ivec3& smallest) const {
+    const int s = cell_size[index(smallest)];
+    return {smallest & ~(s - 1), s};
   }
-  Cell cell(const glm::ivec3& fine) const { return fine_cell(fine) ? Cell{fine, 1} : Cell{fine & ~(block - 1), block}; }
 
   // Whether p has a sample: a corner of a cell.
   bool has_sample(const glm::ivec3& p) const;
-  // The cells around sample p, one for each octant; a coarse one comes several times.
+  // The cells around sample p, one for each octant; a large one comes several times.
   std::array<Cell, 8> cells_around(const glm::ivec3& p) const;
   // Length of the shortest edge along `axis` that begins at p, 0 if none does.
   int edge_length(const glm::ivec3& p, int axis) const;

@@ -63,6 +63,7 @@ SurfaceNet::SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at
   number_edges(voxel_at);
   number_cells();
   number_faces();
+  find_air();
 }
 
 // body(from, at, axis, length, first, second): the edges of the lattice that are not air at both ends, with the place of their first
@@ -77,12 +78,15 @@ void SurfaceNet::for_each_edge(const Body& body) const {
       for (from.x = 0; from.x < lattice_.size.x; ++from.x) {
         ++at;
         for (int axis = 0; axis < 3; ++axis) {
-          // Most places are air.
           const std::int64_t stride = strides[axis];
-          if (from[axis] + 1 >= lattice_.size[axis]) continue;
-          const bool far = lattice_.block == 2 && from[axis] + 2 < lattice_.size[axis];
           const std::uint16_t first = lattice_.label[at];
-          if (first == kAir && lattice_.label[at + stride] == kAir && (!far || lattice_.label[at + 2 * stride] == kAir)) continue;
+          // Most places are air; those of larger cells are deep inside.
+          if (first == kAir) {
+            const int reach = std::min(lattice_.usual, lattice_.size[axis] - 1 - from[axis]);
+            bool is_air = true;
+            for (int k = 1; k <= reach; ++k) is_air = is_air && lattice_.label[at + k * stride] == kAir;
+            if (is_air) continue;
+          }
           const int length = lattice_.edge_length(from, axis);
           if (length == 0) continue;
           const std::uint16_t second = lattice_.label[at + length * stride];
@@ -107,7 +111,6 @@ void SurfaceNet::number_edges(const VoxelLookup& voxel_at) {
 
 void SurfaceNet::number_cells() {
   cell_node_.assign(lattice_.label.size(), -1);
-  touches_air_.assign(lattice_.label.size(), 0);
   for (Edge& edge : edges_) {
     const auto around = lattice_.cells_around_edge(edge.from, edge.axis);
     for (int slot = 0; slot < 4; ++slot) {
@@ -120,35 +123,36 @@ void SurfaceNet::number_cells() {
         nodes_.push_back({corner + 0.5 * cell.size, corner + kMargin * cell.size, corner + (1 - kMargin) * cell.size});
         cells_.push_back(cell);
       }
-      if (edge.first == kAir || edge.second == kAir) touches_air_[at] = 1;
       edge.cell[slot] = node;
     }
   }
 }
 
-// The face between the cells of a slot around an edge and the next one: that of the smaller cell.
-std::int64_t SurfaceNet::face_between(const glm::ivec3& from, int axis, int slot) const {
+// The face between the cells of a slot around an edge and the next one: that of the smaller cell, of `size`.
+std::int64_t SurfaceNet::face_between(const glm::ivec3& from, int axis, int slot, int size) const {
   // Slots lie at (-,-), (+,-), (+,+), (-,+) of the other two axes: the faces between them at -v, +u, +v, -u.
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   glm::ivec3 corner = from;
-  if (slot == 0) --corner[v];
-  if (slot == 3) --corner[u];
+  if (slot == 0) corner[v] -= size;
+  if (slot == 3) corner[u] -= size;
   return 3 * lattice_.index(corner) + (slot % 2 == 0 ? u : v);
 }
 
+glm::ivec3 SurfaceNet::sample_at(std::int64_t index) const {
+  return {index % lattice_.size.x, index / lattice_.size.x % lattice_.size.y, index / (std::int64_t{lattice_.size.x} * lattice_.size.y)};
+}
+
 void SurfaceNet::number_faces() {
-  if (lattice_.block == 1) return;
+  if (lattice_.usual == 1) return;  // the surface passes cells of one size only
   for (Edge& edge : edges_) {
-    if (edge.length != 1) continue;
     const auto around = lattice_.cells_around_edge(edge.from, edge.axis);
     for (int slot = 0; slot < 4; ++slot) {
       if (around[slot].size == around[(slot + 1) % 4].size) continue;
-      const std::int64_t face = face_between(edge.from, edge.axis, slot);
+      const std::int64_t face = face_between(edge.from, edge.axis, slot, edge.length);
       const auto [known, is_new] = face_node_.emplace(face, static_cast<int>(nodes_.size()));
       if (is_new) {
-        const std::int64_t at = face / 3;
-        const glm::dvec3 corner(at % lattice_.size.x, at / lattice_.size.x % lattice_.size.y, at / (std::int64_t{lattice_.size.x} * lattice_.size.y));
-        Node node{corner + 0.5, corner + kMargin, corner + (1 - kMargin)};
+        const glm::dvec3 corner(sample_at(face / 3));
+        Node node{corner + 0.5 * edge.length, corner + kMargin * edge.length, corner + (1 - kMargin) * edge.length};
         const int axis = static_cast<int>(face % 3);
         node.place[axis] = node.low[axis] = node.high[axis] = corner[axis];
         nodes_.push_back(node);
@@ -156,6 +160,23 @@ void SurfaceNet::number_faces() {
       edge.face[slot] = known->second;
     }
   }
+}
+
+void SurfaceNet::find_air() {
+  std::vector<std::uint8_t> touches_air(nodes_.size(), 0);
+  for (const Edge& edge : edges_)
+    if (edge.first == kAir || edge.second == kAir)
+      for (const int cell : edge.cell) touches_air[cell] = 1;
+  holds_.assign(lattice_.label.size(), Holds::air);
+  glm::ivec3 smallest;
+  for (smallest.z = 0; smallest.z + 1 < lattice_.size.z; ++smallest.z)
+    for (smallest.y = 0; smallest.y + 1 < lattice_.size.y; ++smallest.y)
+      for (smallest.x = 0; smallest.x + 1 < lattice_.size.x; ++smallest.x) {
+        const Cell cell = lattice_.cell(smallest);
+        const int node = node_of(cell);
+        if (node >= 0 && touches_air[node]) holds_[lattice_.index(smallest)] = Holds::both;
+        else if (lattice_.at(cell.corner) != kAir) holds_[lattice_.index(smallest)] = Holds::tissue;
+      }
 }
 
 void SurfaceNet::place(const Pushes& pushes) {
@@ -220,11 +241,8 @@ std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dv
   if (along[rim_axis] > 0) from[rim_axis] += size;
   const int w = 3 - axis - rim_axis;  // the rim's own direction
   const double at = reach < 1e300 ? middle[w] + along[w] * reach : middle[w];
-  int length = size;
-  if (size > 1 && lattice_.edge_length(from, w) == 1) {
-    length = 1;
-    from[w] += std::clamp(static_cast<int>(std::floor(at)) - corner[w], 0, size - 1);
-  }
+  const int length = size > 1 ? lattice_.edge_length(from, w) : 1;  // of the rim, or of its halves
+  if (length < size && at >= from[w] + length) from[w] += length;
   const int node = edge_node_[w][lattice_.index(from)];
   if (node < 0 || at < nodes_[node].place[w]) return lattice_.at(from);
   from[w] += length;
@@ -232,7 +250,7 @@ std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dv
 }
 
 std::uint16_t SurfaceNet::region_at(const glm::dvec3& place) const {
-  const Cell cell = cell_of(place);
+  const Cell cell = lattice_.cell(smallest_at(place));
   if (node_of(cell) < 0) return lattice_.at(cell.corner);
   // From the cell's vertex through the place to a face.
   const glm::dvec3& from = nodes_[node_of(cell)].place;
@@ -257,7 +275,7 @@ std::uint16_t SurfaceNet::region_at(const glm::dvec3& place) const {
   const Cell other = lattice_.cell(across);
   if (other.size < cell.size) {
     size = other.size;
-    for (int w : {(axis + 1) % 3, (axis + 2) % 3}) corner[w] = across[w];
+    for (int w : {(axis + 1) % 3, (axis + 2) % 3}) corner[w] = other.corner[w];
   }
   const auto middle = middle_of_face(cell, other, corner, axis);
   if (!middle) return lattice_.at(corner);
@@ -275,10 +293,9 @@ TetMesh SurfaceNet::tets() const {
     return node;
   };
   const auto of_cell = [&](const Cell& cell) { return number(cell_node[lattice_.index(cell.corner)], glm::dvec3(cell.corner) + 0.5 * cell.size); };
-  const auto of_face = [&](std::int64_t face) {
-    const std::int64_t at = face / 3;
-    glm::dvec3 middle = glm::dvec3(at % lattice_.size.x, at / lattice_.size.x % lattice_.size.y, at / (std::int64_t{lattice_.size.x} * lattice_.size.y)) + 0.5;
-    middle[int(face % 3)] -= 0.5;
+  const auto of_face = [&](std::int64_t face, int size) {
+    glm::dvec3 middle = glm::dvec3(sample_at(face / 3)) + 0.5 * size;
+    middle[int(face % 3)] -= 0.5 * size;
     return number(face_node.try_emplace(face, -1).first->second, middle);
   };
 
@@ -308,7 +325,7 @@ TetMesh SurfaceNet::tets() const {
       if (one.size == other.size) {
         stand(a, b);
       } else {
-        const int middle = of_face(face_between(from, axis, slot));
+        const int middle = of_face(face_between(from, axis, slot, length), length);
         stand(a, middle);
         stand(middle, b);
       }

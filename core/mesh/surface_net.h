@@ -40,7 +40,7 @@ struct Pushes {
   explicit Pushes(std::size_t samples);
 };
 
-// Coordinates are counted in fine steps.
+// Coordinates are counted in steps of the lattice.
 class SurfaceNet {
  public:
   using Cell = SampleLattice::Cell;
@@ -52,7 +52,7 @@ class SurfaceNet {
     int axis, length, node;
     std::uint16_t first, second;
     float border;  // share of it where one region ends and the other begins
-    int cell[4];   // the nodes of the cells around it, counter-clockwise seen from its end; a coarse one comes twice
+    int cell[4];   // the nodes of the cells around it, counter-clockwise seen from its end; a larger one comes twice
     int face[4];   // that of the face between each and the next, -1 where both are of one size
   };
 
@@ -68,8 +68,8 @@ class SurfaceNet {
   // The region of a place, and whether it is air; the latter is sooner known.
   std::uint16_t region_at(const glm::dvec3& place) const;
   bool is_air(const glm::dvec3& place) const {
-    const Cell cell = cell_of(place);
-    return touches_air_[lattice_.index(cell.corner)] ? region_at(place) == RegionSurface::kAir : lattice_.at(cell.corner) == RegionSurface::kAir;
+    const Holds holds = holds_[lattice_.index(smallest_at(place))];
+    return holds == Holds::both ? region_at(place) == RegionSurface::kAir : holds == Holds::air;
   }
 
   // triangle(a, b, c, edge): nodes of each around an edge, facing the sample further along the axis.
@@ -92,13 +92,17 @@ class SurfaceNet {
   TetMesh tets() const;
 
  private:
-  Cell cell_of(const glm::dvec3& place) const { return lattice_.cell(glm::clamp(glm::ivec3(glm::floor(place)), glm::ivec3(0), lattice_.size - 2)); }
+  enum class Holds : std::uint8_t { tissue, air, both };
+
+  glm::ivec3 smallest_at(const glm::dvec3& place) const { return glm::clamp(glm::ivec3(glm::floor(place)), glm::ivec3(0), lattice_.size - 2); }
   template <class Body>
   void for_each_edge(const Body& body) const;
   void number_edges(const VoxelLookup& voxel_at);
   void number_cells();
   void number_faces();
-  std::int64_t face_between(const glm::ivec3& from, int axis, int slot) const;
+  void find_air();
+  std::int64_t face_between(const glm::ivec3& from, int axis, int slot, int size) const;
+  glm::ivec3 sample_at(std::int64_t index) const;
   std::optional<glm::dvec3> middle_of_face(const Cell& cell, const Cell& other, const glm::ivec3& corner, int axis) const;
   std::uint16_t region_on_face(const glm::dvec3& middle, const glm::dvec3& place, const glm::ivec3& corner, int axis, int size) const;
 
@@ -107,8 +111,8 @@ class SurfaceNet {
   std::vector<Edge> edges_;
   std::vector<Cell> cells_;   // those with samples of two regions
   std::vector<std::int32_t> cell_node_, edge_node_[3];
-  std::vector<std::uint8_t> touches_air_;  // cells with a border to air
-  std::unordered_map<std::int64_t, int> face_node_;  // 3 index of the face's lowest sample + axis
+  std::vector<Holds> holds_;  // of the cell in which lies the smallest that begins at each sample
+  std::unordered_map<std::int64_t, int> face_node_;  // 3 index of the face's lowest sample + axis; the face of the smaller cell
 };
 
 }  // namespace limber

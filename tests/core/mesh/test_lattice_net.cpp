@@ -209,7 +209,7 @@ TEST_CASE("lattice net: its tets stay positive and its skin uncrossed wherever t
 }
 
 TEST_CASE("lattice net: far from the surface its tets are those of the body-centred cubic lattice") {
-  const LatticeNet net = lattice_net(limb().voxels());
+  const LatticeNet net = lattice_net(limb().voxels());  // too thin for larger ones
   int inner = 0;
   for (const auto& tet : net.mesh.T.rowwise()) {
     if (tet.minCoeff() < net.surface.V.rows()) continue;
@@ -218,6 +218,29 @@ TEST_CASE("lattice net: far from the surface its tets are those of the body-cent
     CHECK(smallest_dihedral(net.mesh.V, tet) == doctest::Approx(std::numbers::pi / 3));
   }
   CHECK(inner > 100);
+}
+
+TEST_CASE("lattice net: deep inside a body its tets are larger, step by step, also where a joint makes them small") {
+  const Body ball = body_of({{60, 60, 60}, {2, 2, 2}, {-59, -59, -59}, glm::dmat3(1)}, [](const glm::dvec3& p) { return glm::length(p) < 58 ? 1 : 0; });
+  for (const bool fine : {false, true}) {
+    CAPTURE(fine);
+    LatticeNetSettings settings{.spacing_mm = 5};
+    if (fine) settings.fine_around = {{40, 0, 0}}, settings.fine_radius_mm = 15;
+    const LatticeNet net = lattice_net(ball.voxels(), settings);
+    CHECK(find_fault(net.mesh, enclosed_volumes(net.surface, net.surface.V)) == "");
+    const double usual = std::pow(5.0, 3) / 12;
+    double smallest = 1e300, largest = 0, angle = 1e300;
+    for (const auto& tet : net.mesh.T.rowwise()) {
+      if (tet.minCoeff() < net.surface.V.rows()) continue;
+      smallest = std::min(smallest, signed_volume(net.mesh.V, tet));
+      largest = std::max(largest, signed_volume(net.mesh.V, tet));
+      angle = std::min(angle, smallest_dihedral(net.mesh.V, tet));
+    }
+    CHECK(largest == doctest::Approx(64 * usual));
+    CHECK(smallest < (fine ? 0.2 : 1.01) * usual);
+    CHECK(angle > 30 * std::numbers::pi / 180);
+    if (!fine) CHECK(double(net.mesh.T.rows()) < 0.65 * ball.tissue.size() * 8 / usual);
+  }
 }
 
 TEST_CASE("lattice net: the same for one thread and for two") {
