@@ -45,6 +45,7 @@ std::vector<double> contact_gaps(const Eigen::MatrixX3d& rest, const Eigen::Matr
       const glm::dvec3 p = at(V, i), out = glm::normalize(normal[i]);
       bins.meeting({glm::ivec3(glm::floor(p)) - reach, glm::ivec3(glm::ceil(p)) + reach}, near);
       for (int f : near) {
+        if ((F.row(f).array() == i).any()) continue;  // where two sheets share a node, or triangles are long
         const glm::dvec3 across = normal_of(f);
         if (glm::dot(out, across) > kFacing * glm::length(across)) continue;
         if (glm::distance(at(rest, i), (at(rest, F(f, 0)) + at(rest, F(f, 1)) + at(rest, F(f, 2))) / 3.0) < apart_mm) continue;

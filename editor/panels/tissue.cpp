@@ -5,19 +5,33 @@
 #include "editor/fields.h"
 #include "editor/panels/panels.h"
 #include "editor/tissues.h"
+#include "editor/tooltip.h"
 
 namespace limber::editor {
 
 namespace {
 
+// Whether a number is the usual one of the tissue's kind, and where that comes from.
+std::string where_from(const Tissue& tissue, double Tissue::*member, const char* format, const char* unit, std::string_view source) {
+  Tissue usual;
+  usual.kind = tissue.kind;
+  apply_kind_defaults(usual);
+  const std::string kind(to_string(tissue.kind)), from = " (" + std::string(source) + ").";
+  if (tissue.*member == usual.*member) return "As usual for " + kind + from;
+  char number[40];
+  std::snprintf(number, sizeof number, format, usual.*member);
+  return "From this body's table or by hand; usual for " + kind + " is " + number + (*unit ? " " : "") + unit + from;
+}
+
 // One number of the tissue. The document changes once, when the drag or typing ends.
 void draw_number(Editor& editor, Column& column, const Tissue& tissue, const char* label, double Tissue::*member, double low, double high, const char* format,
-                 const char* unit) {
+                 const char* unit, std::string_view source) {
   const Rect rect = column.property(label);
   auto& edited = editor.edited_number;
   double value = edited.name == label ? edited.value : tissue.*member;
   bool committed = false;
   if (number_field(editor, label, rect, value, low, high, format, unit, false, committed)) edited = {label, value};
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, where_from(tissue, member, format, unit, source));
   if (!committed || edited.name != label) return;
   Tissue next = tissue;
   next.*member = edited.value;
@@ -103,9 +117,9 @@ void draw_tissue(Editor& editor, Column& column) {
     put_text(editor, editor.look.fonts.regular, editor.look.theme.text, kind, to_string(tissue.kind));
     draw_colour(editor, column, tissue);
     draw_opacity(editor, column, tissue);
-    draw_number(editor, column, tissue, "Density", &Tissue::density, 0.001, 25, "%.3f", "g/cm\u00b3");
-    draw_number(editor, column, tissue, "Stiffness", &Tissue::young_modulus, 0.01, 1e6, "%.1f", "kPa");
-    draw_number(editor, column, tissue, "Poisson ratio", &Tissue::poisson_ratio, 0, 0.4999, "%.4f", "");
+    draw_number(editor, column, tissue, "Density", &Tissue::density, 0.001, 25, "%.3f", "g/cm\u00b3", kDensitySource);
+    draw_number(editor, column, tissue, "Stiffness", &Tissue::young_modulus, 0.01, 1e6, "%.1f", "kPa", kStiffnessSource);
+    draw_number(editor, column, tissue, "Poisson ratio", &Tissue::poisson_ratio, 0, 0.4999, "%.4f", "", kPoissonSource);
     column.space(6);
   }
   column.end_section();

@@ -43,3 +43,11 @@ TEST_CASE("contact gap: it is the air between parts that face each other, and no
   CHECK_FALSE(contact_gap(near.V, near.V, near.F, 20, 5));  // they were near at rest
   CHECK_FALSE(contact_gap(near.rest, TwoBoxes(8).V, near.F, 20, 5));
 }
+
+TEST_CASE("contact gap: a node has none to a long triangle of its own, whichever way that faces") {
+  Eigen::MatrixX3d V(7, 3);
+  V << 0, 0, 0, 10, 0, 0, 0, 10, 0, -10, 0, 0, 0, -10, 0, 90, -1, -8, 90, 1, -8;
+  Eigen::MatrixX3i F(5, 3);
+  F << 0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1, 0, 6, 5;
+  CHECK_FALSE(contact_gap(V, V, F, 20, 5));
+}
