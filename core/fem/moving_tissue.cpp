@@ -37,6 +37,7 @@ struct Main {
   double share;
 };
 Main main_motion(const Influence& influence, const std::vector<int>& moves_as) {
+  if (influence.weight[0] == kFullWeight) return {moves_as[influence.bone[0]], 1};
   std::array<std::pair<int, int>, 4> sums{};
   int count = 0;
   for (int i = 0; i < 4 && influence.weight[i]; ++i) {
@@ -85,24 +86,25 @@ class Cells {
     const AffineTransform world = world_from_voxel(grid_);
     for (double t : places) {
       const auto motions = path(t);
-      std::unordered_map<std::uint64_t, std::vector<Placed>> bins;
-      std::vector<std::pair<glm::ivec3, Placed>> all;
+      std::unordered_map<std::uint64_t, Bin> bins;
       for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
         if (motion_[at] == kAir) return;
         const glm::dvec3 rest = world * ((glm::dvec3(cell) + 0.5) * double(kCell) - 0.5), posed = motions[motion_[at]] * rest;
-        const glm::ivec3 bin(glm::floor(posed / near_mm));
-        all.push_back({bin, {at, rest, posed}});
-        bins[key(bin)].push_back(all.back().second);
+        const glm::ivec3 place(glm::floor(posed / near_mm));
+        Bin& bin = bins.try_emplace(key(place), Bin{place, motion_[at], {}}).first->second;
+        if (bin.motion != motion_[at]) bin.motion = kSeveral;
+        bin.cells.push_back({at, rest, posed});
       });
       // Cells of one limb that lie near each other at rest are no news.
       const double far = 3 * std::max({near_mm, spacing().x, spacing().y, spacing().z});
-      for (const auto& [bin, mine] : all)
-        for (int i = 0; i < 27 && !near[mine.at]; ++i) {
-          const auto found = bins.find(key(bin + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
-          if (found == bins.end()) continue;
-          for (const Placed& other : found->second)
-            if (motion_[other.at] != motion_[mine.at] && glm::distance(mine.posed, other.posed) < near_mm && glm::distance(mine.rest, other.rest) > far)
-              near[mine.at] = 1;
+      for (const auto& [own_key, bin] : bins)
+        for (int i = 0; i < 27; ++i) {
+          const auto found = bins.find(key(bin.place + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
+          if (found == bins.end() || (bin.motion != kSeveral && found->second.motion == bin.motion)) continue;
+          for (const Placed& mine : bin.cells)
+            for (const Placed& other : found->second.cells)
+              if (motion_[other.at] != motion_[mine.at] && glm::distance(mine.posed, other.posed) < near_mm && glm::distance(mine.rest, other.rest) > far)
+                near[mine.at] = 1;
         }
     }
     return near;
@@ -125,10 +127,15 @@ class Cells {
   }
 
  private:
-  static constexpr int kAir = -1;
+  static constexpr int kAir = -1, kSeveral = -2;
   struct Placed {
     std::int64_t at;
     glm::dvec3 rest, posed;
+  };
+  struct Bin {
+    glm::ivec3 place;
+    int motion;  // of its cells, or kSeveral
+    std::vector<Placed> cells;
   };
 
   static std::uint64_t key(const glm::ivec3& bin) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <Eigen/LU>
 
@@ -73,13 +74,18 @@ Influence influence_at(const SkinWeights& weights, const TissueVoxels& tissue, c
 // Of the tissue in the 27 voxels around one of tissue.
 std::vector<BoneWeight> influences_around(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
                                           const std::vector<int>& moves_as, const glm::ivec3& voxel) {
-  std::map<int, std::int64_t> sums;
+  std::vector<std::pair<int, std::int64_t>> sums;  // few, rising
   std::int64_t total = 0;
+  const auto add = [&](int bone, int weight) {
+    const auto at = std::lower_bound(sums.begin(), sums.end(), bone, [](const auto& sum, int wanted) { return sum.first < wanted; });
+    if (at != sums.end() && at->first == bone) at->second += weight;
+    else sums.insert(at, {bone, weight});
+  };
   for (int i = 0; i < 27; ++i) {
     const glm::ivec3 v = voxel + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1;
     if (volume.at_or_air(v) == 0) continue;
     const Influence influence = influence_at(weights, tissue, v);
-    for (int k = 0; k < 4 && influence.weight[k]; ++k) sums[moves_as[influence.bone[k]]] += influence.weight[k];
+    for (int k = 0; k < 4 && influence.weight[k]; ++k) add(moves_as[influence.bone[k]], influence.weight[k]);
     total += kFullWeight;
   }
   std::vector<BoneWeight> result;
@@ -93,19 +99,17 @@ void find_parts(TissueModel& model, const LabelVolume& volume) {
   const AffineTransform voxel = voxel_from_world(volume.grid);
   std::vector<glm::dvec3> node;
   for (int i = 0; i < mesh.V.rows(); ++i) node.push_back(voxel * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2)));
-  std::vector<Label> found;
+  std::vector<glm::dvec4> shares;  // of the corners
+  for (int i = 0; i <= kPlaces; ++i)
+    for (int j = 0; i + j <= kPlaces; ++j)
+      for (int k = 0; i + j + k <= kPlaces; ++k) shares.push_back((glm::dvec4(i, j, k, kPlaces - i - j - k) + 0.25) / (kPlaces + 1.0));
+  std::vector<Label> found(shares.size());
   for (int t = 0; t < mesh.T.rows(); ++t) {
     model.first.push_back(static_cast<std::int32_t>(model.parts.size()));
-    found.clear();
-    for (int i = 0; i <= kPlaces; ++i)
-      for (int j = 0; i + j <= kPlaces; ++j)
-        for (int k = 0; i + j + k <= kPlaces; ++k) {
-          const glm::dvec4 share = (glm::dvec4(i, j, k, kPlaces - i - j - k) + 0.25) / (kPlaces + 1.0);
-          glm::dvec3 place(0);
-          for (int corner = 0; corner < 4; ++corner) place += share[corner] * node[mesh.T(t, corner)];
-          found.push_back(volume.at_or_air(glm::ivec3(glm::floor(place + 0.5))));
-        }
-    std::sort(found.begin(), found.end());
+    glm::dmat4x3 corners;
+    for (int c = 0; c < 4; ++c) corners[c] = node[mesh.T(t, c)];
+    std::transform(shares.begin(), shares.end(), found.begin(), [&](const glm::dvec4& share) { return volume.at_or_air(glm::ivec3(glm::floor(corners * share + 0.5))); });
+    if (std::adjacent_find(found.begin(), found.end(), std::not_equal_to()) != found.end()) std::sort(found.begin(), found.end());
     const double each = signed_volume(mesh.V, mesh.T.row(t)) / double(found.size());
     for (auto first = found.begin(); first != found.end();) {
       const auto end = std::upper_bound(first, found.end(), *first);

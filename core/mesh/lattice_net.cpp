@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <unordered_map>
+#include <utility>
 
 #include "core/base/parallel.h"
 #include "core/mesh/surface_net.h"
@@ -15,22 +16,34 @@ namespace {
 constexpr std::uint16_t kAir = RegionSurface::kAir;
 constexpr int kPushes = 12;  // of a point, then samples become tissue
 constexpr int kRounds = 90;
-constexpr std::int64_t kGrain = 64;  // bricks
+constexpr std::int64_t kBricks = 64, kVoxels = 4096;  // that a thread takes at a time
 
 using Cell = SampleLattice::Cell;
 
-// The tissue voxels that lie outside, in brick order.
-std::vector<glm::ivec3> find_outside(const SurfaceNet& net, const SampleLattice& lattice, const TissueVoxels& tissue) {
-  const std::int64_t bricks = std::ssize(tissue.bricks());
-  std::vector<std::vector<glm::ivec3>> found((bricks + kGrain - 1) / kGrain);
-  parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) {
-      if (net.is_air(lattice.fine_from_voxel * glm::dvec3(v))) found[begin / kGrain].push_back(v);
+// Those of `count` voxels that pass, in order.    voxels(begin, end, body): body(voxel) of each
+template <class Voxels, class Passes>
+std::vector<glm::ivec3> select(std::int64_t count, std::int64_t grain, const Voxels& voxels, const Passes& passes) {
+  std::vector<std::vector<glm::ivec3>> found((count + grain - 1) / grain);
+  parallel_for(count, grain, [&](std::int64_t begin, std::int64_t end) {
+    voxels(begin, end, [&](const glm::ivec3& v) {
+      if (passes(v)) found[begin / grain].push_back(v);
     });
   });
-  std::vector<glm::ivec3> outside;
-  for (const auto& part : found) outside.insert(outside.end(), part.begin(), part.end());
-  return outside;
+  std::vector<glm::ivec3> all;
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+// The tissue voxels in cells that hold air, which may lie outside, in brick order.
+std::vector<glm::ivec3> find_near_air(const SurfaceNet& net, const SampleLattice& lattice, const TissueVoxels& tissue) {
+  return select(std::ssize(tissue.bricks()), kBricks,
+                [&](std::int64_t begin, std::int64_t end, const auto& body) { tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) { body(v); }); },
+                [&](const glm::ivec3& v) { return net.is_near_air(lattice.fine_from_voxel * glm::dvec3(v)); });
+}
+
+std::vector<glm::ivec3> find_outside(const SurfaceNet& net, const SampleLattice& lattice, const std::vector<glm::ivec3>& near_air) {
+  return select(std::ssize(near_air), kVoxels, [&](std::int64_t begin, std::int64_t end, const auto& body) { std::for_each(&near_air[begin], &near_air[0] + end, body); },
+                [&](const glm::ivec3& v) { return net.is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
 }
 
 struct Missed {
@@ -152,18 +165,25 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
   Pushes pushes(lattice.label.size());
   const auto allowed = static_cast<std::int64_t>((1 - settings.least_covered) * double(voxels.tissue.size()));
   auto net = std::make_unique<SurfaceNet>(lattice, voxel_at);
-  std::vector<glm::ivec3> outside;
+  std::vector<glm::ivec3> near_air, outside;
+  bool is_known = false;  // near_air, of this net
   for (int round = 0;; ++round) {
     progress.update("surface", 1 - 1 / (1 + 0.3 * (round + 1)));
     net->place(pushes);
     if (round > 0) std::erase_if(outside, [&](const glm::ivec3& v) { return !net->is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
-    if (round == 0 || std::ssize(outside) <= allowed) outside = find_outside(*net, lattice, voxels.tissue);  // a point that moved may have left others outside
+    if (round == 0 || std::ssize(outside) <= allowed) {  // a point that moved may have left others outside
+      if (!std::exchange(is_known, true)) near_air = find_near_air(*net, lattice, voxels.tissue);
+      outside = find_outside(*net, lattice, near_air);
+    }
     if (std::ssize(outside) <= allowed || round == kRounds) {
       LatticeNet result = finished(*net, lattice);
       result.covered = 1 - double(outside.size()) / double(voxels.tissue.size());
       return result;
     }
-    if (make_room(*net, lattice, cells_that_miss(lattice, outside), std::ssize(outside) - allowed, round, pushes)) net = std::make_unique<SurfaceNet>(lattice, voxel_at);
+    if (make_room(*net, lattice, cells_that_miss(lattice, outside), std::ssize(outside) - allowed, round, pushes)) {
+      net = std::make_unique<SurfaceNet>(lattice, voxel_at);
+      is_known = false;
+    }
   }
 }
 

@@ -16,9 +16,8 @@ namespace {
 
 constexpr double kVolumeTolerance = 1e-9;  // of the whole
 
-double covered_share(const TetMesh& mesh, const VoxelRegions& voxels) {
-  if (voxels.tissue.size() == 0) return 1;
-  const Grid& grid = voxels.grid;
+double covered_share(const TetMesh& mesh, const Grid& grid, const TissueVoxels& tissue) {
+  if (tissue.size() == 0) return 1;
   const AffineTransform to_voxel = voxel_from_world(grid);
   const bool mirrored = glm::determinant(to_voxel.linear) < 0;
   std::vector<glm::dvec3> V(mesh.V.rows());
@@ -40,12 +39,12 @@ double covered_share(const TetMesh& mesh, const VoxelRegions& voxels) {
         for_each_row_in_tet(corner, grid, z, z, [&](const glm::ivec3& first, const glm::ivec3& last) { std::fill_n(&hit[grid.index(first)], last.x - first.x + 1, 1); });
       }
   });
-  const double covered = parallel_sum(std::ssize(voxels.tissue.bricks()), 256, [&](std::int64_t begin, std::int64_t end) {
+  const double covered = parallel_sum(std::ssize(tissue.bricks()), 256, [&](std::int64_t begin, std::int64_t end) {
     std::int64_t count = 0;
-    voxels.tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) { count += hit[grid.index(v)]; });
+    tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) { count += hit[grid.index(v)]; });
     return double(count);
   });
-  return covered / double(voxels.tissue.size());
+  return covered / double(tissue.size());
 }
 
 double total(const std::map<std::uint16_t, double>& volumes) {
@@ -76,7 +75,7 @@ bool is_closed(const Eigen::MatrixX3i& F) {
 
 }  // namespace
 
-MeshQuality quality_of(const TetMesh& mesh, const VoxelRegions& voxels) {
+MeshQuality quality_of(const TetMesh& mesh, const Grid& grid, const TissueVoxels& tissue) {
   MeshQuality quality;
   double smallest = std::numbers::pi;
   std::int64_t below = 0;
@@ -87,7 +86,7 @@ MeshQuality quality_of(const TetMesh& mesh, const VoxelRegions& voxels) {
   }
   quality.min_dihedral_degrees = mesh.T.rows() > 0 ? smallest * 180 / std::numbers::pi : 0;
   quality.share_below_5_degrees = mesh.T.rows() > 0 ? double(below) / double(mesh.T.rows()) : 0;
-  quality.covered = covered_share(mesh, voxels);
+  quality.covered = covered_share(mesh, grid, tissue);
   return quality;
 }
 
@@ -115,9 +114,10 @@ std::string find_fault(const TetMesh& mesh, const std::map<std::uint16_t, double
   if (!mesh.V.allFinite()) return "a node has no place";
   for (const auto& tet : mesh.T.rowwise())
     if (!(signed_volume(mesh.V, tet) > 0)) return "a tetrahedron is flat or inverted";
-  for (const auto& of_tet : neighbours_of(mesh.T))
+  const auto neighbours = neighbours_of(mesh.T);
+  for (const auto& of_tet : neighbours)
     if (std::count(of_tet.begin(), of_tet.end(), -2) > 0) return "a face has more than two tetrahedra";
-  if (!is_closed(boundary_of(mesh.T))) return "the boundary is open";
+  if (!is_closed(boundary_of(mesh.T, neighbours))) return "the boundary is open";
   const auto has = region_volumes(mesh);
   const double tolerance = kVolumeTolerance * total(volumes);
   if (!(std::abs(total(has) - total(volumes)) <= tolerance)) return "the volume is not the surface's";

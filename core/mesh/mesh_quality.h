@@ -16,7 +16,7 @@ struct MeshQuality {
   double covered = 0;                // share of tissue voxels whose centre lies in a tet
 };
 
-MeshQuality quality_of(const TetMesh& mesh, const VoxelRegions& voxels);
+MeshQuality quality_of(const TetMesh& mesh, const Grid& grid, const TissueVoxels& tissue);
 
 // mm3 of each region that has tets.
 std::map<std::uint16_t, double> region_volumes(const TetMesh& mesh);

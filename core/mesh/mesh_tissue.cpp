@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/mesh/improve.h"
+#include "core/mesh/mesh_quality.h"
 
 namespace limber {
 
@@ -49,7 +50,6 @@ TissueMesh mesh_tissue(const VoxelRegions& voxels, const MeshSettings& settings,
   TissueMesh result;
   if (voxels.tissue.size() > 0) make_mesh(result, voxels, settings, progress);
   progress.update("tetrahedra", 1);
-  result.quality = quality_of(result.mesh, voxels);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

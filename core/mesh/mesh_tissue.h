@@ -7,7 +7,9 @@
 #include <string>
 
 #include "core/base/progress.h"
-#include "core/mesh/mesh_quality.h"
+#include "core/mesh/lattice_net.h"
+#include "core/mesh/tet_mesh.h"
+#include "core/mesh/tetrahedralize.h"
 
 namespace limber {
 
@@ -25,7 +27,6 @@ struct TissueMesh {
   TetMesh mesh;            // no tets for a body without voxels
   Mesher mesher = Mesher::lattice;  // that made it
   std::string warning;     // for the user, when it is not the one asked for: why; else empty
-  MeshQuality quality;
   double spacing_mm = 0;   // as it became
   double seconds = 0;
 };

@@ -65,12 +65,13 @@ class SurfaceNet {
   const std::vector<Edge>& edges() const { return edges_; }
   int node_of(const Cell& cell) const { return cell_node_[lattice_.index(cell.corner)]; }  // -1 of a cell of one region
 
-  // The region of a place, and whether it is air; the latter is sooner known.
+  // The region of a place; whether it is air, which is sooner known; and whether its cell holds any.
   std::uint16_t region_at(const glm::dvec3& place) const;
   bool is_air(const glm::dvec3& place) const {
     const Holds holds = holds_[lattice_.index(smallest_at(place))];
     return holds == Holds::both ? region_at(place) == RegionSurface::kAir : holds == Holds::air;
   }
+  bool is_near_air(const glm::dvec3& place) const { return holds_[lattice_.index(smallest_at(place))] != Holds::tissue; }
 
   // triangle(a, b, c, edge): nodes of each around an edge, facing the sample further along the axis.
   template <class Triangle>

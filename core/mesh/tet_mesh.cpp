@@ -69,8 +69,9 @@ std::vector<std::array<int, 4>> neighbours_of(const Eigen::MatrixX4i& T) {
   return neighbours;
 }
 
-Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T) {
-  const auto neighbours = neighbours_of(T);
+Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T) { return boundary_of(T, neighbours_of(T)); }
+
+Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T, const std::vector<std::array<int, 4>>& neighbours) {
   Eigen::Index count = 0;
   for (const auto& of_tet : neighbours) count += std::count(of_tet.begin(), of_tet.end(), -1);
   Eigen::MatrixX3i F(count, 3);

@@ -39,7 +39,8 @@ TissueVoxels::TissueVoxels(const LabelVolume& volume) : grid_size_(volume.grid.s
               for (int x = 0; x < end.x - brick.corner.x; ++x) bits |= std::uint64_t{row[x] != 0} << x;
             brick.mask[z & 7] |= bits << (8 * (y & 7));
           }
-        const int count = brick.count();
+        for (int z = 1; z < kBrick; ++z) brick.below[z] = static_cast<std::uint16_t>(brick.below[z - 1] + std::popcount(brick.mask[z - 1]));
+        const int count = brick.below[kBrick - 1] + std::popcount(brick.mask[kBrick - 1]);
         if (count == 0) continue;
         brick_of_[cell] = static_cast<std::int32_t>(bricks_.size());
         bricks_.push_back(brick);

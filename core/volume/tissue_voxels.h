@@ -24,6 +24,7 @@ class TissueVoxels {
     glm::ivec3 corner;                  // lowest voxel
     std::int64_t first;                 // place of its first tissue voxel in the list
     std::array<std::uint64_t, 8> mask;  // one word a z slice: bit x + 8 y
+    std::array<std::uint16_t, 8> below{};  // tissue voxels in the slices before each
     int count() const {
       int bits = 0;
       for (auto word : mask) bits += std::popcount(word);
@@ -50,9 +51,7 @@ class TissueVoxels {
     const Brick& b = bricks_[brick];
     const int z = v.z & 7, bit = (v.x & 7) + 8 * (v.y & 7);
     if (!(b.mask[z] >> bit & 1)) return -1;
-    std::int64_t place = b.first;
-    for (int k = 0; k < z; ++k) place += std::popcount(b.mask[k]);
-    return place + std::popcount(b.mask[z] & ((std::uint64_t{1} << bit) - 1));
+    return b.first + b.below[z] + std::popcount(b.mask[z] & ((std::uint64_t{1} << bit) - 1));
   }
 
   RowSet rows() const;  // that hold tissue

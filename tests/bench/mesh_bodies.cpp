@@ -13,6 +13,7 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/improve.h"
+#include "core/mesh/mesh_quality.h"
 #include "core/mesh/mesh_tissue.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bone_parts.h"
@@ -69,7 +70,7 @@ void measure(const std::filesystem::path& data, const Case& each, double spacing
   const double improved = cpu_seconds();
   const std::string fault = find_fault(net.mesh, enclosed_volumes(net.surface, net.mesh.V));
   const double checked = cpu_seconds();
-  const MeshQuality quality = quality_of(net.mesh, voxels);
+  const MeshQuality quality = quality_of(net.mesh, voxels.grid, voxels.tissue);
   const double end = cpu_seconds();
   long inverted = 0;
   for (const auto& tet : net.mesh.T.rowwise()) inverted += signed_volume(net.mesh.V, tet) <= 0;

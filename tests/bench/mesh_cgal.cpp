@@ -14,6 +14,7 @@
 #include <CGAL/make_mesh_3.h>
 
 #include "core/base/parallel.h"
+#include "core/mesh/mesh_quality.h"
 #include "core/mesh/mesh_tissue.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bone_parts.h"
@@ -35,7 +36,7 @@ using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
 void print(const char* who, const TetMesh& mesh, const VoxelRegions& voxels, double seconds) {
-  const MeshQuality quality = quality_of(mesh, voxels);
+  const MeshQuality quality = quality_of(mesh, voxels.grid, voxels.tissue);
   std::printf("%-28s %8ld tets %7.2f s CPU %7.2f us/tet  smallest angle %5.2f  below 5 degrees %.4f %%  covered %.3f %%\n", who, long(mesh.T.rows()), seconds,
               1e6 * seconds / double(mesh.T.rows()), quality.min_dihedral_degrees, 100 * quality.share_below_5_degrees, 100 * quality.covered);
 }

@@ -154,7 +154,7 @@ TEST_CASE("lattice net: what it says it covers is what its tets cover, and TetGe
     REQUIRE(filled.mesh);
     CAPTURE(fine);
     CHECK(net.covered < 1);
-    for (const TetMesh* mesh : {&net.mesh, &*filled.mesh}) CHECK(quality_of(*mesh, body.voxels()).covered == doctest::Approx(net.covered).epsilon(1e-9));
+    for (const TetMesh* mesh : {&net.mesh, &*filled.mesh}) CHECK(quality_of(*mesh, body.voxels().grid, body.voxels().tissue).covered == doctest::Approx(net.covered).epsilon(1e-9));
   }
 }
 
