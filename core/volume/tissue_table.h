@@ -82,7 +82,7 @@ class FileValueIndex {
 void apply_kind_defaults(Tissue& tissue);
 // Where the kinds' material comes from, for a user to read.
 inline constexpr std::string_view kDensitySource = "ICRP Publication 110, 2009, rounded";
-inline constexpr std::string_view kStiffnessSource = "three times the shear modulus, in the order of finite elements of bodies under load: Int. Wound J. 15(3), 402-416, 2018";
+inline constexpr std::string_view kStiffnessSource = "three times the shear modulus, sized as in finite elements of bodies under load: Int. Wound J. 15(3), 402-416, 2018";
 inline constexpr std::string_view kPoissonSource = "flesh is mostly water: volume changes of fat under load fit 0.49 to 0.4999, and lower ratios lose volume";
 
 // Reads a label table: our JSON, Slicer .ctbl, ITK-SNAP label file; told apart by content. Keys are file values.
