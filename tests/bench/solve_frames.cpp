@@ -58,7 +58,7 @@ class ArmSolved {
     editor_.resampling.method = "dqs";
     if (length_ > 0) player_.play("key Ctrl+4\nkey Ctrl+Return\nwait-job\nwait-idle");
     editor_.resampling.method = "fem";
-    editor_.resampling.quality = "normal";
+    editor_.resampling.quality = "fine";  // that it lasts
     editor_.resampling.contact = true;
     editor_.resampling.fit_joints = true;
   }
@@ -112,6 +112,7 @@ class ArmSolved {
   // ms until the worker has ended.
   double cancel() {
     const double asked = seconds();
+    if (editor_.fem->solves.empty()) throw Error("the solve was over too soon", "to be cancelled", "give fewer seconds");
     const int job = editor_.fem->solves.begin()->first;
     editor_.jobs.cancel(job);
     while (editor_.jobs.status(job).active()) std::this_thread::sleep_for(std::chrono::microseconds(200));
