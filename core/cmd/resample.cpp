@@ -410,7 +410,7 @@ void add_resample(CLI::App& app) {
   command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions) or fem (finite elements)")->required()->check(CLI::IsMember({"lbs", "dqs", "fem"}));
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));
-  command->add_option("--mesher", options->mesher, "fem: who fills the body's surface with tets: lattice, as regular as can be (default), or tetgen, with larger ones inside")->check(CLI::IsMember({"lattice", "tetgen"}));
+  command->add_option("--mesher", options->mesher, "fem: who fills the body's surface with tets: lattice (default) or tetgen")->check(CLI::IsMember({"lattice", "tetgen"}));
   command->add_option("--mesh-out", options->mesh_out, "fem: the posed mesh as NAME.node and NAME.ele, with the tissue of each tet, and NAME.material for particle codes")->type_name("NAME");
   command->add_option("--mesh-unit", options->mesh_unit, "fem: of the mesh: mm, or cm as in the phantoms of ICRP 145")->check(CLI::IsMember({"mm", "cm"}));
   command->add_option("--steps", options->steps, "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step")->type_name("NAME");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A body's tissue as tetrahedra: a surface net fitted to the voxels with the lattice's own tets inside it, the flat ones improved,
-// and all of it checked. That needs no library and cannot fail. TetGen may fill the same net instead, with larger tets inside;
-// where it fails, the lattice's tets stand, and that is part of the answer, to be said to the user.
+// and all of it checked. That needs no library and cannot fail. TetGen may fill the same net instead; where it fails,
+// the lattice's tets stand, and that is part of the answer, to be said to the user.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ namespace limber {
 enum class Mesher { lattice, tetgen };
 
 struct MeshSettings {
-  double spacing_mm = 8;                // of nodes: one for each cube of this side, by the lattice; of the net's samples for TetGen
+  double spacing_mm = 8;                // of nodes, but deep inside: one for each cube of this side, by the lattice; of the net's samples for TetGen
   Mesher mesher = Mesher::lattice;
   std::vector<glm::dvec3> fine_around;  // world, mm: joints that bend; nodes are half as far apart there
   double fine_radius_mm = 40;

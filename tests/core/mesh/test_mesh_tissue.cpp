@@ -123,7 +123,7 @@ TEST_CASE("mesh tissue: a ball with two bones is meshed well, as it lies, with i
   CHECK(finer.mesh.T.rows() > 3 * result.mesh.T.rows());
 }
 
-TEST_CASE("mesh tissue: TetGen fills the same surface, with fewer and larger tets inside") {
+TEST_CASE("mesh tissue: TetGen fills the same surface where it is asked to") {
   const LabelVolume regions = ball();
   const TissueMesh result = mesh_tissue(regions, {.mesher = Mesher::tetgen});
   CHECK(result.mesher == Mesher::tetgen);
