@@ -102,9 +102,9 @@ class Cells {
           const auto found = bins.find(key(bin.place + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
           if (found == bins.end() || (bin.motion != kSeveral && found->second.motion == bin.motion)) continue;
           for (const Placed& mine : bin.cells)
-            for (const Placed& other : found->second.cells)
-              if (motion_[other.at] != motion_[mine.at] && glm::distance(mine.posed, other.posed) < near_mm && glm::distance(mine.rest, other.rest) > far)
-                near[mine.at] = 1;
+            near[mine.at] = near[mine.at] || std::any_of(found->second.cells.begin(), found->second.cells.end(), [&](const Placed& other) {
+              return motion_[other.at] != motion_[mine.at] && glm::distance(mine.posed, other.posed) < near_mm && glm::distance(mine.rest, other.rest) > far;
+            });
         }
     }
     return near;

@@ -84,6 +84,17 @@ bool is_bone(TissueKind kind) {
   return kind == TissueKind::CorticalBone || kind == TissueKind::CancellousBone || kind == TissueKind::Marrow || kind == TissueKind::Bone;
 }
 
+MaterialSources material_sources(TissueKind kind) {
+  constexpr std::string_view kChosen = "chosen by Limber";
+  const bool is_measured = kind != TissueKind::Unknown && kind != TissueKind::Cavity && kind != TissueKind::Nail;
+  MaterialSources sources{is_measured ? "ICRP Publication 110, 2009, rounded" : kChosen, "chosen by Limber: published values spread over two decades", kChosen};
+  if (kind == TissueKind::Skin || kind == TissueKind::Fat || kind == TissueKind::Muscle)
+    sources.stiffness = "3 times a shear modulus of 40 kPa for skin, 1 for fat, 4 for muscle; others take 8, 0.8 and 0.5: Int. Wound J. 15(3), 402-416, 2018";
+  if (defaults_of(kind).poisson_ratio > 0.49) sources.poisson = "flesh is mostly water; lower ratios lose volume";
+  if (is_bone(kind)) sources.stiffness = sources.poisson = "a pose keeps bones rigid, whatever stands here";
+  return sources;
+}
+
 std::string_view to_string(TissueKind kind) { return defaults_of(kind).name; }
 
 void apply_kind_defaults(Tissue& tissue) {

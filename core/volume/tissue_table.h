@@ -80,10 +80,11 @@ class FileValueIndex {
 
 // Colour, density, stiffness and priority that a tissue of this kind starts with.
 void apply_kind_defaults(Tissue& tissue);
-// Where the kinds' material comes from, for a user to read.
-inline constexpr std::string_view kDensitySource = "ICRP Publication 110, 2009, rounded";
-inline constexpr std::string_view kStiffnessSource = "three times the shear modulus, sized as in finite elements of bodies under load: Int. Wound J. 15(3), 402-416, 2018";
-inline constexpr std::string_view kPoissonSource = "flesh is mostly water: volume changes of fat under load fit 0.49 to 0.4999, and lower ratios lose volume";
+// Where the numbers come from that a tissue of a kind starts with, for a user to read.
+struct MaterialSources {
+  std::string_view density, stiffness, poisson;
+};
+MaterialSources material_sources(TissueKind kind);
 
 // Reads a label table: our JSON, Slicer .ctbl, ITK-SNAP label file; told apart by content. Keys are file values.
 // Throws Error naming the line or key that is wrong.

@@ -117,9 +117,10 @@ void draw_tissue(Editor& editor, Column& column) {
     put_text(editor, editor.look.fonts.regular, editor.look.theme.text, kind, to_string(tissue.kind));
     draw_colour(editor, column, tissue);
     draw_opacity(editor, column, tissue);
-    draw_number(editor, column, tissue, "Density", &Tissue::density, 0.001, 25, "%.3f", "g/cm\u00b3", kDensitySource);
-    draw_number(editor, column, tissue, "Stiffness", &Tissue::young_modulus, 0.01, 1e6, "%.1f", "kPa", kStiffnessSource);
-    draw_number(editor, column, tissue, "Poisson ratio", &Tissue::poisson_ratio, 0, 0.4999, "%.4f", "", kPoissonSource);
+    const MaterialSources sources = material_sources(tissue.kind);
+    draw_number(editor, column, tissue, "Density", &Tissue::density, 0.001, 25, "%.3f", "g/cm\u00b3", sources.density);
+    draw_number(editor, column, tissue, "Stiffness", &Tissue::young_modulus, 0.01, 1e6, "%.1f", "kPa", sources.stiffness);
+    draw_number(editor, column, tissue, "Poisson ratio", &Tissue::poisson_ratio, 0, 0.4999, "%.4f", "", sources.poisson);
     column.space(6);
   }
   column.end_section();

@@ -65,6 +65,19 @@ TEST_CASE("tissue table: every kind has a name that is read back as that kind") 
   }
 }
 
+TEST_CASE("tissue table: every kind says where its material comes from, and what is said of flesh is not said of bone") {
+  for (int k = 0; k <= int(TissueKind::Nail); ++k) {
+    Tissue tissue;
+    tissue.kind = TissueKind(k);
+    apply_kind_defaults(tissue);
+    const MaterialSources sources = material_sources(tissue.kind);
+    CAPTURE(to_string(tissue.kind));
+    CHECK(!sources.density.empty());
+    CHECK((sources.stiffness.find("rigid") != std::string_view::npos) == is_bone(tissue.kind));
+    CHECK((sources.poisson.find("water") != std::string_view::npos) == (tissue.poisson_ratio > 0.49));
+  }
+}
+
 TEST_CASE("tissue table: JSON, Slicer and ITK-SNAP tables say the same") {
   const TissueTable json = parse_tissue_table(R"({"17": {"name": "vastus", "kind": "muscle", "colour": "#ff0000", "density": 1.2}, "5": "fat", "0": "air"})", "t.json");
   const TissueTable slicer = parse_tissue_table("# Color table\n0 air 0 0 0 0\n5 fat 10 20 30 255\r\n17 vastus 255 0 0 255\n", "t.ctbl");
