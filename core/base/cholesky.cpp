@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,9 @@ extern "C" int omp_get_max_active_levels(void);
 namespace limber {
 
 namespace {
+constexpr double kMostMended = 0.125;  // of the nodes; with more, dissecting anew is sure to be better
+constexpr double kDearer = 1.25;       // than when the ordering was found: one that is mended for longer is given up
+
 // Debian's CHOLMOD starts four threads inside a factorization, which on few cores doubles what it costs. Nested regions that
 // are not active run on the calling thread.
 class OneThread {
@@ -115,6 +119,8 @@ struct Cholesky::Factor {
   double operations = 0;
 
   std::vector<int> rank;                        // #nodes: place in the ordering
+  std::vector<int> parent;                      // #nodes, by rank: in the elimination tree
+  double fresh_operations = 0;                  // of a factorization by nodes, when the ordering was last found anew
   std::vector<std::int64_t> below_first{0};     // #nodes + 1, by rank
   std::vector<int> below;                       // ranks of the blocks below the diagonal, rising
   std::vector<int> column, row;                 // scalar pattern, whole blocks, in ranks
@@ -152,11 +158,11 @@ struct Cholesky::Factor {
   void free_factor();
 };
 
-// Nested dissection of the nodes, then by postorder of the elimination tree, so that supernodes are contiguous.
+// By the old order, mended, or by nested dissection of the nodes; both then by postorder of the elimination tree, so that
+// supernodes are contiguous.
 void Cholesky::Factor::order(const BlockGraph& graph) {
-  const int n = graph.node_count();
-  rank.resize(n);
   std::vector<int> node_column{0}, node_row;
+  const int n = graph.node_count();
   node_row.reserve(graph.neighbour.size() / 2 + n);
   for (int i = 0; i < n; ++i) {
     node_row.push_back(i);
@@ -166,13 +172,32 @@ void Cholesky::Factor::order(const BlockGraph& graph) {
   }
   cholmod_sparse A = pattern_of(node_column, node_row);
   common.nmethods = 1;
-  common.method[0].ordering = CHOLMOD_METIS;
   common.postorder = true;
   common.supernodal = CHOLMOD_SIMPLICIAL;
-  cholmod_factor* nodes = cholmod_analyze(&A, &common);
-  require("ordering");
+
+  std::vector<int> given;
+  if (std::ssize(rank) == n) given = mended_order(graph, rank, parent, kMostMended);
+  cholmod_factor* nodes = nullptr;
+  double by_given = INFINITY;
+  if (!given.empty()) {
+    common.method[0].ordering = CHOLMOD_GIVEN;
+    nodes = cholmod_analyze_p(&A, given.data(), nullptr, 0, &common);
+    require("ordering");
+    by_given = common.fl;
+  }
+  if (by_given > kDearer * fresh_operations) {
+    common.method[0].ordering = CHOLMOD_METIS;
+    cholmod_factor* fresh = cholmod_analyze(&A, &common);
+    if (fresh && common.fl < by_given) std::swap(nodes, fresh);
+    fresh_operations = std::min(common.fl, by_given);
+    cholmod_free_factor(&fresh, &common);
+    if (common.status < 0) cholmod_free_factor(&nodes, &common);
+    require("ordering");
+  }
+  rank.resize(n);
   for (int k = 0; k < n; ++k) rank[static_cast<int*>(nodes->Perm)[k]] = k;
   cholmod_free_factor(&nodes, &common);
+  parent = elimination_tree(graph, rank);
 }
 
 void Cholesky::Factor::expand(const BlockGraph& graph) {

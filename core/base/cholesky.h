@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Solves symmetric sparse systems of 3x3 blocks, one row of blocks per node of a mesh, by supernodal Cholesky factorization
 // [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD] with nested dissection of the node graph [Karypis & Kumar 1998, METIS].
-// Ordered and analysed once per graph, factorized for as many values as one likes. Works on one thread, so that its results
-// do not depend on how many there are.
+// Ordered and analysed once per graph, factorized for as many values as one likes; for a graph that is much like the one before
+// the order is mended (elimination.h), and found anew when that has made factorizations a quarter dearer. Works on one thread, so
+// that its results do not depend on how many there are.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +11,9 @@
 #include <span>
 #include <vector>
 
+#include "core/base/elimination.h"
+
 namespace limber {
-
-// Which nodes meet in a block: the neighbours of node i are neighbour[first[i] .. first[i + 1]), rising, without i itself,
-// and each also has i as its neighbour.
-struct BlockGraph {
-  std::vector<std::int64_t> first{0};  // #nodes + 1
-  std::vector<int> neighbour;
-
-  int node_count() const { return int(first.size()) - 1; }
-};
 
 // The graph in which the nodes of every element meet. Elements are `size` nodes each, -1 is no node.
 class BlockGraphBuilder {

@@ -15,6 +15,8 @@ constexpr double kOfRest = 0.5;      // of what a pair is apart at rest: no thic
 constexpr double kSoon = 1.2;        // thicknesses: pairs this near are in the matrix before they touch; at 2, where what is as near as at
                                      // rest counts, skin's own neighbours would double the cost of a factorization
 constexpr double kPressed = 0.6;     // of the thickness: pairs nearer than this must be in the matrix, which is ordered anew for them
+constexpr double kNear = 0.5;        // of the thickness: what is further apart may come within half of this in one step, for it is not yet, or
+                                     // hardly, pushed apart
 constexpr double kParallel = 1e-3;   // of the squared product of two edges at rest, below which they count as parallel
 constexpr std::int64_t kGrain = 2048;
 
@@ -66,18 +68,21 @@ ContactForm::Fade ContactForm::fade(const ContactPair& pair, const Places& x) co
 
 void ContactForm::watch(const Places& x, const Places& step, double limit) {
   Places end = x + limit * step;
-  if (limit == 0 && end.rows() == watched_to_.rows() && end == watched_to_) return;
+  const bool ends_there = end.rows() == watched_to_.rows() && end == watched_to_;
+  if (ends_there && (limit == 0 || x == watched_from_)) return;
+  watched_from_ = x;
   watched_to_ = std::move(end);
   watched_ = surface_.near(x, step, limit, settings_.thickness_mm, kOfRest);
   blocked_.assign(watched_.size(), 0);
 }
 
 ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step, double limit) const {
+  const double near = kNear * settings_.thickness_mm;
   std::vector<Bound> of_block((watched_.size() + kGrain - 1) / kGrain, {limit, {-1, -1, -1, -1}});
   parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Bound& bound = of_block[begin / kGrain];
     for (auto k = begin; k < end; ++k)
-      if (const double length = limber::largest_step(watched_[k], x, step, bound.length); length < bound.length) bound = {length, watched_[k].node};
+      if (const double length = limber::largest_step(watched_[k], x, step, bound.length, near); length < bound.length) bound = {length, watched_[k].node};
   });
   Bound bound{limit, {-1, -1, -1, -1}};
   for (const Bound& block : of_block)
@@ -86,10 +91,11 @@ ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step
 }
 
 void ContactForm::block(const Places& x, const Places& step, const std::vector<char>& changed) {
+  const double near = kNear * settings_.thickness_mm;
   parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto k = begin; k < end; ++k)
       if (const auto& node = watched_[k].node; changed[node[0]] || changed[node[1]] || changed[node[2]] || changed[node[3]])
-        blocked_[k] = limber::largest_step(watched_[k], x, step, 1) < 1;
+        blocked_[k] = limber::largest_step(watched_[k], x, step, 1, near) < 1;
   });
 }
 

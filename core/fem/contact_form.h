@@ -87,7 +87,7 @@ class ContactForm {
   Places rest_;
   ContactSettings settings_;
   double scale_ = 0;  // c A H
-  Places watched_to_;  // end of the way
+  Places watched_from_, watched_to_;  // ends of the way
   std::vector<ContactPair> watched_;
   std::vector<char> blocked_;  // of those watched
   std::vector<Touch> touching_;

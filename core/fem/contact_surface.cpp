@@ -125,11 +125,11 @@ NearestPoints nearest_points(const ContactPair& pair, const Places& x) {
   return result;
 }
 
-double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit) {
+double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit, double near) {
   Corners p = at(pair, x), s = at(pair, step);
   const double motion = relative_motion(pair.kind, s);
   double now = distance(pair.kind, p);
-  const double kept = kKept * now;
+  const double kept = kKept * std::min(now, near);
   if (now - limit * motion > kept) return limit;
   double length = 0;
   for (int k = 0; k < kAdvances; ++k) {

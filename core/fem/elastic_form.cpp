@@ -11,6 +11,7 @@
 
 #include "core/base/parallel.h"
 #include "core/fem/principal.h"
+#include "core/fem/tet_derivatives.h"
 
 namespace limber {
 
@@ -33,28 +34,6 @@ Eigen::Matrix3d cofactor(const Eigen::Matrix3d& F) {
   C.col(1) = F.col(2).cross(F.col(0));
   C.col(2) = F.col(0).cross(F.col(1));
   return C;
-}
-
-void add_block(std::span<double> matrix, const Cholesky::Place& place, const Eigen::Matrix3d& block) {
-  if (place.at < 0) return;
-  double* column = matrix.data() + place.at;
-  for (int c = 0; c < 3; ++c, column += place.stride)
-    for (int r = 0; r < 3; ++r) column[r] += block(r, c);
-}
-
-// mu (s_a . s_b) I + h c_a c_b^T - g [F (s_a x s_b)]_x, the curvature of a tet between nodes a and b.
-Eigen::Matrix3d exact_block(const Eigen::Matrix3d& F, const Eigen::Vector3d& s_a, const Eigen::Vector3d& s_b, const Eigen::Vector3d& c_a,
-                            const Eigen::Vector3d& c_b, double shear, double g, double h) {
-  Eigen::Matrix3d H = (h * c_a) * c_b.transpose();
-  H.diagonal().array() += shear * s_a.dot(s_b);
-  const Eigen::Vector3d w = g * (F * s_a.cross(s_b));
-  H(0, 1) += w[2];
-  H(1, 0) -= w[2];
-  H(0, 2) -= w[1];
-  H(2, 0) += w[1];
-  H(1, 2) += w[0];
-  H(2, 1) -= w[0];
-  return H;
 }
 }  // namespace
 
@@ -190,43 +169,49 @@ void ElasticForm::add_gradient(const Places& x, std::span<const double> pressure
 
 void ElasticForm::add_derivatives(const Places& x, std::span<const double> pressure, Curvature curvature, Places& gradient,
                                   std::span<double> matrix) const {
+  constexpr int kTets = TetDerivatives::kTets;
   chunks_.for_each([&](const ColouredChunks::Chunk& chunk) {
-    std::vector<Eigen::Matrix3d> deformation(chunk.end - chunk.begin);
+    const auto count = std::size_t(chunk.end - chunk.begin);
+    std::vector<Eigen::Matrix3d> deformation(count);
     for (auto t = chunk.begin; t < chunk.end; ++t) deformation[t - chunk.begin] = deformation_of(tets_[t], x);
-    std::vector<Principal> axes_of(curvature == Curvature::Projected ? deformation.size() : 0);
+    std::vector<Principal> axes_of(curvature == Curvature::Projected ? count : 0);
     if (curvature == Curvature::Projected) principal(deformation, axes_of);
-    for (auto t = chunk.begin; t < chunk.end; ++t) {
-      const Tet& tet = tets_[t];
-      const Eigen::Matrix3d &F = deformation[t - chunk.begin], C = cofactor(F);
-      const double J = F.col(0).dot(C.col(0));
-      const VolumeTerm term = volume_term(tet.energy, J);
-      const double p = pressure.empty() ? 0 : pressure[t];
-      const double g = curvature == Curvature::Exact ? term.slope + p : term.slope;
-      const Eigen::Matrix3d P = tet.volume * (tet.energy.shear * F + (term.slope + p) * C);
-      std::array<Eigen::Vector3d, 4> c;
-      for (int a = 0; a < 4; ++a) {
-        gradient.row(tet.node[a]) += (P * tet.slope[a]).transpose();
-        c[a] = C * tet.slope[a];
-      }
 
-      std::array<Eigen::Matrix3d, 10> H;
-      for (int a = 0, pair = 0; a < 4; ++a)
-        for (int b = 0; b <= a; ++b, ++pair)
-          H[pair] = exact_block(F, tet.slope[a], tet.slope[b], c[a], c[b], tet.volume * tet.energy.shear, tet.volume * g, tet.volume * term.curvature);
-
-      if (curvature == Curvature::Projected) {
-        const Principal& axes = axes_of[t - chunk.begin];
-        const NegativeCurvature negative = negative_curvature(tet.energy.shear, g, term.curvature, axes.sigma);
-        for (int k = 0; k < negative.count; ++k) {
-          const Eigen::Matrix3d Q = axes.U * negative.direction[k].mode * axes.V.transpose();
-          std::array<Eigen::Vector3d, 4> q;
-          for (int a = 0; a < 4; ++a) q[a] = Q * tet.slope[a];
-          const double weight = tet.volume * negative.direction[k].value;
-          for (int a = 0, pair = 0; a < 4; ++a)
-            for (int b = 0; b <= a; ++b, ++pair) H[pair].noalias() += (weight * q[a]) * q[b].transpose();
+    std::array<TetState, kTets> states;
+    TetDerivatives derivatives;
+    for (auto begin = chunk.begin; begin < chunk.end; begin += kTets) {
+      const int some = int(std::min<std::int64_t>(kTets, chunk.end - begin));
+      for (int l = 0; l < some; ++l) {
+        const auto t = begin + l;
+        const Tet& tet = tets_[t];
+        const Eigen::Matrix3d& F = deformation[t - chunk.begin];
+        const VolumeTerm term = volume_term(tet.energy, F.determinant());
+        const double p = pressure.empty() ? 0 : pressure[t];
+        TetState& state = states[l];
+        state.slopes = &tet.slope;
+        state.F = F;
+        state.volume = tet.volume;
+        state.shear = tet.energy.shear;
+        state.force_slope = term.slope + p;
+        state.slope = curvature == Curvature::Exact ? term.slope + p : term.slope;
+        state.curvature = term.curvature;
+        if (curvature == Curvature::Projected) {
+          state.axes = &axes_of[t - chunk.begin];
+          state.negative = negative_curvature(tet.energy.shear, term.slope, term.curvature, state.axes->sigma);
         }
       }
-      for (int pair = 0; pair < 10; ++pair) add_block(matrix, places_[t][pair], H[pair]);
+      tet_derivatives({states.data(), std::size_t(some)}, derivatives);
+      for (int l = 0; l < some; ++l) {
+        for (int a = 0; a < 4; ++a)
+          for (int k = 0; k < 3; ++k) gradient(tets_[begin + l].node[a], k) += derivatives.force[a][k][l];
+        for (int pair = 0; pair < 10; ++pair) {
+          const Cholesky::Place& place = places_[begin + l][pair];
+          if (place.at < 0) continue;
+          double* column = matrix.data() + place.at;
+          for (int c = 0; c < 3; ++c, column += place.stride)
+            for (int r = 0; r < 3; ++r) column[r] += derivatives.block[pair][c][r][l];
+        }
+      }
     }
   });
 }

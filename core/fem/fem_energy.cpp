@@ -164,16 +164,9 @@ bool FemEnergy::newton_step(const Places& x, Curvature curvature, Places& step, 
   Places gradient;
   assemble(x, curvature, gradient);
 
-  double spent = 0;
-  bool definite;
-  {
-    const CpuTimer timer(spent);
-    definite = matrix_->factorize();
-  }
-  (definite ? seconds_.factorization : seconds_.indefinite) += spent;
-  if (!definite) return false;
-  ++factorizations_;
   const CpuTimer timer(seconds_.factorization);
+  ++factorizations_;
+  if (!matrix_->factorize()) return false;
   right_side_.resize(3 * node_of_.size());
   for (std::size_t k = 0; k < node_of_.size(); ++k)
     for (int c = 0; c < 3; ++c) right_side_[3 * k + c] = -gradient(node_of_[k], c);
@@ -210,6 +203,7 @@ FemEnergy::Bound FemEnergy::largest_step(const Places& x, const Places& step, do
 Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>& fixed) {
   constexpr double kBorne = 0.2;  // of a tet's volume
   constexpr int kRounds = 40;
+  constexpr int kSeen = 20;  // rounds that pairs of skin are looked for anew after; what comes near unseen is seen by the step's bound
   const CpuTimer timer(seconds_.search);
   const auto& T = bounded_;
   Places sum(x.rows(), 3), there = x + step;
@@ -235,7 +229,7 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
     };
     for (const int t : asked) smooth(std::array{T(t, 0), T(t, 1), T(t, 2), T(t, 3)});
     if (!contact_.empty()) {
-      if (round % 10 == 0) {
+      if (round % kSeen == 0) {
         contact_.watch(x, step, 1);
         std::fill(changed.begin(), changed.end(), 1);
       }

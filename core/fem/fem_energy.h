@@ -18,10 +18,9 @@
 
 namespace limber {
 
-// Nothing of the solver but its cost, in CPU seconds of all threads. `indefinite`: factorizations that ended early, being that.
-// `ordering`: of the analysis, what is CHOLMOD's.
+// Nothing of the solver but its cost, in CPU seconds of all threads. `ordering`: of the analysis, what is CHOLMOD's.
 struct FemSeconds {
-  double contact = 0, analysis = 0, ordering = 0, assembly = 0, factorization = 0, indefinite = 0, search = 0, total = 0;
+  double contact = 0, analysis = 0, ordering = 0, assembly = 0, factorization = 0, search = 0, total = 0;
 };
 
 // Adds the CPU time of the process, while it lives, to a sum.
@@ -76,7 +75,7 @@ class FemEnergy {
   const Eigen::MatrixX4i& volume_tets() const { return bounded_; }  // all that must stay positive: flesh, guarded
 
   Cholesky& matrix();  // of the last newton_step()
-  int factorizations() const { return factorizations_; }  // but those of indefinite matrices
+  int factorizations() const { return factorizations_; }
   int analyses() const { return analyses_; }  // of the matrix's pattern, which contact changes
   FemSeconds& seconds() { return seconds_; }
 

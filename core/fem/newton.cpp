@@ -10,9 +10,6 @@ namespace {
 constexpr double kSufficient = 1e-4;   // of the first-order decrease that a step must bring [Armijo 1966]
 constexpr double kFurthest = 8;        // times the full step
 constexpr int kHalvings = 24;          // of a step, before the search is given up
-constexpr double kNearStep = 0.4;      // the exact curvature is tried after a step at least this long,
-constexpr double kNearMove = 1;        // by no more than this, mm
-constexpr int kLongestWait = 8;
 constexpr double kShort = 0.5;         // a step that something bounds below this is tried around it too
 constexpr double kJam = 0.05;          // a step this short is a jam;
 constexpr int kJams = 3;               // after so many in a row the solve is given up
@@ -28,22 +25,6 @@ bool settled(const Places& step, double longest, const NewtonSettings& settings)
   const auto moving = (step.rowwise().squaredNorm().array() >= settings.tolerance_mm * settings.tolerance_mm).count();
   return double(moving) <= settings.stragglers * double(step.rows());
 }
-
-// The exact curvature's turn.
-class ExactTurns {
- public:
-  bool now() const { return near_ && pause_ == 0; }
-  void succeeded() { wait_ = 1; }
-  void indefinite() { pause_ = wait_, wait_ = std::min(2 * wait_, kLongestWait); }
-  void stepped(double length, double move) {
-    near_ = length > kNearStep && move < kNearMove;
-    pause_ = std::max(pause_ - 1, 0);
-  }
-
- private:
-  bool near_ = false;
-  int pause_ = 0, wait_ = 1;
-};
 
 // x + length step of lower energy, in place; the length, 0 if none was found.
 //   bound  of the length, at most 1; a full step is followed further where the energy falls more than a parabola does
@@ -80,7 +61,6 @@ double search(FemEnergy& energy, Places& x, double& value, const Places& step, d
 NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settings, Progress& progress,
                       const std::function<void(int, double)>& on_iteration) {
   NewtonResult result;
-  ExactTurns exact;
   int jams = 0;
   energy.watch(x);
   double value = energy.value(x);
@@ -88,12 +68,7 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
   while (result.iterations < settings.iterations) {
     if (progress.cancelled()) throw Cancelled();
     double slope = 0;
-    if (!(exact.now() && energy.newton_step(x, Curvature::Exact, step, slope))) {
-      if (exact.now()) exact.indefinite();
-      if (!energy.newton_step(x, Curvature::Projected, step, slope)) break;
-    } else {
-      exact.succeeded();
-    }
+    if (!energy.newton_step(x, Curvature::Projected, step, slope)) break;
     ++result.iterations;
     result.residual = longest(step);
 
@@ -109,7 +84,6 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
     }
     if (length == 0) length = search(energy, x, value, step, slope, result.bound.length);
     result.shortest_search = std::min(result.shortest_search, length);
-    exact.stepped(length, result.residual);
     if (on_iteration) on_iteration(result.iterations, result.residual);
     jams = length < kJam ? jams + 1 : 0;
     if (jams == kJams) break;

@@ -13,20 +13,6 @@ namespace limber {
 
 namespace {
 
-// Written once for two and for four matrices at a time; where the processor has AVX2 four are taken. Every helper is inlined, so
-// that it is compiled for the processor that its caller is compiled for.
-#define LIMBER_INLINE [[gnu::always_inline]] inline
-#pragma GCC diagnostic ignored "-Wpsabi"  // no vector is handed to a function that is called
-
-struct Two {
-  static constexpr int kCount = 2;
-  using Numbers = double __attribute__((vector_size(16)));
-};
-struct Four {
-  static constexpr int kCount = 4;
-  using Numbers = double __attribute__((vector_size(32)));
-};
-
 template <class Lanes>
 LIMBER_INLINE void take_root(typename Lanes::Numbers& of) {
   for (int l = 0; l < Lanes::kCount; ++l) of[l] = std::sqrt(of[l]);
@@ -117,24 +103,14 @@ LIMBER_INLINE void decompose_all(const Eigen::Matrix3d* F, Principal* result, st
   for (std::size_t k = 0; k < count; k += Lanes::kCount) decompose<Lanes>(F + k, result + k, count - k);
 }
 
-#if defined(__x86_64__)
-[[gnu::target("avx2")]] void all_by_avx2(const Eigen::Matrix3d* F, Principal* result, std::size_t count) { decompose_all<Four>(F, result, count); }
-bool has_avx2() {
-  static const bool has = __builtin_cpu_supports("avx2");
-  return has;
-}
-#else
-void all_by_avx2(const Eigen::Matrix3d*, Principal*, std::size_t) {}
-bool has_avx2() { return false; }
-#endif
-void all_by_two(const Eigen::Matrix3d* F, Principal* result, std::size_t count) { decompose_all<Two>(F, result, count); }
+LIMBER_FOR_FOUR void all_by_four(const Eigen::Matrix3d* F, Principal* result, std::size_t count) { decompose_all<FourLanes>(F, result, count); }
+void all_by_two(const Eigen::Matrix3d* F, Principal* result, std::size_t count) { decompose_all<TwoLanes>(F, result, count); }
 
 }  // namespace
 
 void principal(std::span<const Eigen::Matrix3d> F, std::span<Principal> result, MatrixLanes width) {
   assert(F.size() == result.size());
-  const auto all = width == MatrixLanes::Widest && has_avx2() ? all_by_avx2 : all_by_two;
-  all(F.data(), result.data(), F.size());
+  (takes_four(width) ? all_by_four : all_by_two)(F.data(), result.data(), F.size());
 }
 
 Principal principal(const Eigen::Matrix3d& F) {

@@ -10,7 +10,6 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/fem/newton.h"
-#include "core/mesh/crossings.h"
 
 namespace limber {
 
@@ -119,7 +118,6 @@ class PoseSolve {
     if (at_rest()) result_.reached = 1;
     advance(regular);
     if (result_.steps > 0 && result_.reached == 1) settle();
-    result_.crossings = std::ssize(crossing_pairs(x_, skin));
     result_.converged = result_.reached == 1 && result_.blocked_by.empty();
     result_.V = x_;
     result_.min_det_f = energy_.min_ratio(x_);

@@ -62,7 +62,6 @@ struct SolvedPose {
   double min_det_f_of_path = 1;  // at the end of any step
   double bone_drift_mm = 0;  // furthest that a bone's node is from where its bone is, at the end
   std::int64_t inverted = 0;  // tets with det F <= 0 at the end of any step, flesh and bone
-  std::int64_t crossings = 0;  // with contact: pairs of the border's triangles that cross, at the end; none, unless some did at the start
   FemSeconds seconds;
 };
 

@@ -84,6 +84,10 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
   const double point = largest_step({{0, 1, 2, 3}, Kind::PointTriangle}, x, step, 8);
   CHECK(point == doctest::Approx(1.5));
   CHECK(largest_step({{0, 1, 2, 3}, Kind::PointTriangle}, x, step, 1.4) == 1.4);
+  const double far = largest_step({{0, 1, 2, 3}, Kind::PointTriangle}, x, step, 8, 1);  // to half of what counts as near
+  CHECK(far > 2);
+  CHECK(far <= 2.5);
+  CHECK(largest_step({{0, 1, 2, 3}, Kind::PointTriangle}, x, step, 8, 4) == doctest::Approx(1.5));  // nearer than that already
   for (unsigned seed = 0; seed < 300; ++seed) {
     const Places from = random_places(4, 1, seed), by = random_places(4, 2, seed + 1000);
     for (const Kind kind : {Kind::PointTriangle, Kind::EdgeEdge}) {

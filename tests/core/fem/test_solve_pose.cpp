@@ -90,7 +90,6 @@ TEST_CASE("solve pose: without contact the skin passes through itself, with cont
   CHECK(with.converged);
   CHECK(with.inverted == 0);
   CHECK(with.iterations < 60);
-  CHECK(with.crossings == 0);
   CHECK(skin_crossings(bar.fem.mesh, with.V) == 0);
   CHECK(furthest_from_target(bar.fem, bar.bend(125)(1), with.V) < 0.5);
 }
