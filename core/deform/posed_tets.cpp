@@ -62,9 +62,12 @@ std::uint32_t index_of(const Grid& grid, const glm::ivec3& voxel) { return stati
 // How what lies outside the mesh moves with its border.
 class PosedTets::Border {
  public:
+  static constexpr double kNearest = 0.25;  // of the way to the border: nearer is the border itself
+
   explicit Border(const PosedTets& tets) : tets_(tets), border_(*tets.mesh_, tets.lattice_->volume().grid) {}
 
-  // Where a rest point outside the mesh goes.
+  // Where a rest point outside the mesh goes: as far from the border as it was, or nearer where it would come into the mesh, as where
+  // two parts of the border are pressed together with hardly any air between them.
   FixedPoint carried(const glm::dvec3& rest) const {
     const Grid& grid = tets_.lattice_->volume().grid;
     const auto place = border_.nearest(rest);  // a mesh has a border
@@ -75,8 +78,11 @@ class PosedTets::Border {
     }
     const glm::dvec3 off = world_from_voxel(grid) * rest - from;
     const Eigen::Vector3d turned = rotation_of(*tets_.mesh_, tets_.moved_, place->tet) * Eigen::Vector3d(off.x, off.y, off.z);
-    const glm::dvec3 shift = moved + glm::dvec3(turned.x(), turned.y(), turned.z()) - off;
-    return tets_.fixed(tets_.lattice_->output().from_rest(rest + voxel_from_world(grid).linear * shift));
+    for (double share = 1;; share = share > kNearest ? 0.5 * share : 0) {
+      const glm::dvec3 shift = moved + share * glm::dvec3(turned.x(), turned.y(), turned.z()) - off;
+      const FixedPoint to = tets_.fixed(tets_.lattice_->output().from_rest(rest + voxel_from_world(grid).linear * shift));
+      if (share == 0 || !tets_.holds(to)) return to;
+    }
   }
 
  private:
@@ -179,6 +185,15 @@ std::array<FixedPoint, 4> PosedTets::posed_corners(int tet) const {
 std::array<glm::dvec3, 4> PosedTets::rest_corners(int tet) const {
   const auto corners = mesh_->T.row(tet);
   return {rest_[corners[0]], rest_[corners[1]], rest_[corners[2]], rest_[corners[3]]};
+}
+
+bool PosedTets::holds(const FixedPoint& posed) const {
+  std::vector<int> near;
+  bins_.meeting(voxels_in_box(std::array{posed - kFixedOne, posed + kFixedOne}), near);
+  return std::any_of(near.begin(), near.end(), [&](int t) {
+    const auto corners = posed_corners(t);
+    return glm::all(glm::greaterThan(shares_in({corners[0], corners[1], corners[2], corners[3]}, posed), glm::dvec4(0)));
+  });
 }
 
 // Where a rest point goes with a tet.
