@@ -119,6 +119,7 @@ struct Cholesky::Factor {
   cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
   double operations = 0;
 
+  int node_count = 0;
   std::vector<int> rank;                        // #nodes: place in the ordering
   std::vector<int> parent;                      // #nodes, by rank: in the elimination tree
   double fresh_operations = 0;                  // of a factorization by nodes, when the ordering was last found anew
@@ -147,11 +148,16 @@ struct Cholesky::Factor {
   // Negative states of CHOLMOD are failures; of them only memory depends on the input.
   void require(const char* what) const {
     if (common.status >= 0) return;
-    throw Error("not enough memory for a system of " + std::to_string(rank.size()) + " mesh nodes",
+    throw Error("not enough memory for a system of " + std::to_string(node_count) + " mesh nodes",
                 std::string(what) + " (CHOLMOD status " + std::to_string(common.status) + ")", "use a coarser mesh, or more memory");
   }
 
-  cholmod_factor* order(const BlockGraph& graph);
+  struct FreeFactor {
+    cholmod_common* common;
+    void operator()(cholmod_factor* factor) const { cholmod_free_factor(&factor, common); }
+  };
+  using Analysed = std::unique_ptr<cholmod_factor, FreeFactor>;
+  Analysed order(const BlockGraph& graph);
   void expand(const BlockGraph& graph);
   void expand(const cholmod_factor& nodes);
   void take_room();
@@ -160,11 +166,11 @@ struct Cholesky::Factor {
 
 // By the old order, mended, or by nested dissection of the nodes; both then by postorder of the elimination tree, so that
 // supernodes are contiguous. Returns the supernodes of the graph's own factor, one row a node.
-cholmod_factor* Cholesky::Factor::order(const BlockGraph& graph) {
+Cholesky::Factor::Analysed Cholesky::Factor::order(const BlockGraph& graph) {
   std::vector<int> node_column{0}, node_row;
-  const int n = graph.node_count();
-  node_row.reserve(graph.neighbour.size() / 2 + n);
-  for (int i = 0; i < n; ++i) {
+  node_count = graph.node_count();
+  node_row.reserve(graph.neighbour.size() / 2 + node_count);
+  for (int i = 0; i < node_count; ++i) {
     node_row.push_back(i);
     for (auto k = graph.first[i]; k < graph.first[i + 1]; ++k)
       if (graph.neighbour[k] > i) node_row.push_back(graph.neighbour[k]);
@@ -176,27 +182,28 @@ cholmod_factor* Cholesky::Factor::order(const BlockGraph& graph) {
   common.supernodal = CHOLMOD_SUPERNODAL;
 
   std::vector<int> given;
-  if (std::ssize(rank) == n) given = mended_order(graph, rank, parent, kMostMended);
-  cholmod_factor* nodes = nullptr;
-  double by_given = INFINITY;
+  if (std::ssize(rank) == node_count) given = mended_order(graph, rank, parent, kMostMended);
+  Analysed nodes(nullptr, FreeFactor{&common});
+  double by_nodes = INFINITY;  // operations
   if (!given.empty()) {
     common.method[0].ordering = CHOLMOD_GIVEN;
-    nodes = cholmod_analyze_p(&A, given.data(), nullptr, 0, &common);
+    nodes.reset(cholmod_analyze_p(&A, given.data(), nullptr, 0, &common));
     require("ordering");
-    operations = by_given = common.fl;
+    by_nodes = common.fl;
   }
-  if (by_given > kDearer * fresh_operations) {
+  if (by_nodes > kDearer * fresh_operations) {
     common.method[0].ordering = CHOLMOD_METIS;
-    cholmod_factor* fresh = cholmod_analyze(&A, &common);
-    if (fresh && common.fl < by_given) std::swap(nodes, fresh);
-    operations = fresh_operations = std::min(common.fl, by_given);
-    cholmod_free_factor(&fresh, &common);
-    if (common.status < 0) cholmod_free_factor(&nodes, &common);
+    Analysed fresh(cholmod_analyze(&A, &common), FreeFactor{&common});
     require("ordering");
+    if (common.fl < by_nodes) nodes.swap(fresh);
+    fresh_operations = by_nodes = std::min(common.fl, by_nodes);
   }
-  rank.resize(n);
-  for (int k = 0; k < n; ++k) rank[static_cast<int*>(nodes->Perm)[k]] = k;
-  parent = elimination_tree(graph, rank);
+  operations = 27 * by_nodes;
+
+  std::vector<int> new_rank(node_count);
+  for (int k = 0; k < node_count; ++k) new_rank[static_cast<int*>(nodes->Perm)[k]] = k;
+  parent = elimination_tree(graph, new_rank);
+  rank = std::move(new_rank);
   return nodes;
 }
 
@@ -231,7 +238,7 @@ void Cholesky::Factor::expand(const BlockGraph& graph) {
   value.assign(entries, 0);
 }
 
-// Of every node three rows and columns: the same supernodes, found in a ninth of the time.
+// Of every node three rows and columns: supernodes of nodes are ones of their rows, and found in a ninth of the time.
 void Cholesky::Factor::expand(const cholmod_factor& nodes) {
   factor = cholmod_allocate_factor(3 * nodes.n, &common);
   require("analysis");
@@ -241,7 +248,6 @@ void Cholesky::Factor::expand(const cholmod_factor& nodes) {
     return result;
   };
   factor->is_ll = factor->is_super = 1;
-  factor->is_monotonic = 1;
   factor->nsuper = nodes.nsuper;
   factor->ssize = 3 * nodes.ssize;
   factor->xsize = 9 * nodes.xsize;
@@ -261,7 +267,6 @@ void Cholesky::Factor::expand(const cholmod_factor& nodes) {
   factor->s = rows;
   for (std::size_t k = 0; k < nodes.ssize; ++k)
     for (int c = 0; c < 3; ++c) *rows++ = 3 * static_cast<const int*>(nodes.s)[k] + c;
-  operations *= 27;
 }
 
 // The numbers are not CHOLMOD's own, which would be given back to the system with each analysis.
@@ -294,15 +299,9 @@ Cholesky::Cholesky(const BlockGraph& graph) : factor_(std::make_unique<Factor>()
 void Cholesky::analyse(const BlockGraph& graph) {
   const OneThread one_thread;
   factor_->free_factor();
-  cholmod_factor* nodes = factor_->order(graph);
-  try {
-    factor_->expand(graph);
-    factor_->expand(*nodes);
-  } catch (...) {
-    cholmod_free_factor(&nodes, &factor_->common);
-    throw;
-  }
-  cholmod_free_factor(&nodes, &factor_->common);
+  const Factor::Analysed nodes = factor_->order(graph);
+  factor_->expand(graph);
+  factor_->expand(*nodes);
 }
 
 Cholesky::~Cholesky() = default;

@@ -61,7 +61,7 @@ class Cholesky {
   void solve(std::span<double> b);
 
   std::int64_t factor_size() const;  // numbers in the factor, 8 bytes each
-  double factor_operations() const;  // floating point operations of a factorization
+  double factor_operations() const;  // floating point operations of a factorization, about
 
  private:
   struct Factor;

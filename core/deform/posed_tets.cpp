@@ -48,10 +48,10 @@ struct TetMap {
   glm::dvec3 rest(const glm::ivec3& voxel) const { return from_rest + rest_from_posed * (glm::dvec3(voxel) - from_posed); }
 };
 
-// Of a rest point, in tet's corners.
-glm::dvec4 shares_in(const std::array<glm::dvec3, 4>& rest, const glm::dvec3& point) {
-  const glm::dmat3 edges(rest[1] - rest[0], rest[2] - rest[0], rest[3] - rest[0]);
-  const glm::dvec3 s = glm::inverse(edges) * (point - rest[0]);
+// Of a point, in a tet's corners.
+glm::dvec4 shares_in(const std::array<glm::dvec3, 4>& corners, const glm::dvec3& point) {
+  const glm::dmat3 edges(corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]);
+  const glm::dvec3 s = glm::inverse(edges) * (point - corners[0]);
   return {1 - s.x - s.y - s.z, s};
 }
 
@@ -62,12 +62,11 @@ std::uint32_t index_of(const Grid& grid, const glm::ivec3& voxel) { return stati
 // How what lies outside the mesh moves with its border.
 class PosedTets::Border {
  public:
-  static constexpr double kNearest = 0.25;  // of the way to the border: nearer is the border itself
+  //   rest_bins  of the tets at rest
+  Border(const PosedTets& tets, const BoxBins& rest_bins) : tets_(tets), rest_bins_(rest_bins), border_(*tets.mesh_, tets.lattice_->volume().grid) {}
 
-  explicit Border(const PosedTets& tets) : tets_(tets), border_(*tets.mesh_, tets.lattice_->volume().grid) {}
-
-  // Where a rest point outside the mesh goes: as far from the border as it was, or nearer where it would come into the mesh, as where
-  // two parts of the border are pressed together with hardly any air between them.
+  // Where a rest point outside the mesh goes: as far from the border as it was, but where another part of the mesh comes near no
+  // further than half of the way to that, whose other half is for what sticks out there.
   FixedPoint carried(const glm::dvec3& rest) const {
     const Grid& grid = tets_.lattice_->volume().grid;
     const auto place = border_.nearest(rest);  // a mesh has a border
@@ -78,15 +77,55 @@ class PosedTets::Border {
     }
     const glm::dvec3 off = world_from_voxel(grid) * rest - from;
     const Eigen::Vector3d turned = rotation_of(*tets_.mesh_, tets_.moved_, place->tet) * Eigen::Vector3d(off.x, off.y, off.z);
-    for (double share = 1;; share = share > kNearest ? 0.5 * share : 0) {
+    const auto at = [&](double share) {
       const glm::dvec3 shift = moved + share * glm::dvec3(turned.x(), turned.y(), turned.z()) - off;
-      const FixedPoint to = tets_.fixed(tets_.lattice_->output().from_rest(rest + voxel_from_world(grid).linear * shift));
-      if (share == 0 || !tets_.holds(to)) return to;
-    }
+      return tets_.lattice_->output().from_rest(rest + voxel_from_world(grid).linear * shift);
+    };
+
+    const glm::dvec3 whole = at(1);
+    static_cast<void>(tets_.fixed(whole));  // it is not too far
+    const double way = free_way(tets_.bins_, at(0), whole, place->corners, [&](int t) {
+      const auto corners = tets_.posed_corners(t);
+      std::array<glm::dvec3, 4> places;
+      for (int i = 0; i < 4; ++i) places[i] = glm::dvec3(corners[i]) / double(kFixedOne);
+      return places;
+    });
+    if (way == kBoth) return tets_.fixed(whole);
+    // What lay as near at rest is no nearer now.
+    const double rest_way = free_way(rest_bins_, voxel_from_world(grid) * from, rest, place->corners, [&](int t) { return tets_.rest_corners(t); });
+    return tets_.fixed(way > rest_way - kRounding ? whole : at(std::min(1.0, kApart * way / rest_way)));
   }
 
  private:
+  static constexpr double kBoth = 2;            // ways from the border to a point: as much is asked about, for the two sides of the air
+  static constexpr double kRounding = 1.0 / 64;  // of that way
+  static constexpr double kApart = 0.98;         // of half of the air, so that the two sides do not meet in a voxel's centre
+
+  // How far from `from` to `to` and on another part of the mesh begins, at most kBoth times that way. A tet so flat that no voxel's
+  // centre lies in its box is not seen; its neighbours are.
+  template <class CornersOf>
+  double free_way(const BoxBins& bins, const glm::dvec3& from, const glm::dvec3& to, const std::array<int, 3>& own, const CornersOf& corners_of) const {
+    const glm::dvec3 end = from + kBoth * (to - from);
+    std::vector<int> near;
+    bins.meeting({glm::ivec3(glm::floor(glm::min(from, end))), glm::ivec3(glm::ceil(glm::max(from, end)))}, near);
+    double way = kBoth;
+    for (const int t : near) {
+      const auto nodes = tets_.mesh_->T.row(t);
+      if (std::any_of(own.begin(), own.end(), [&](int node) { return (nodes.array() == node).any(); })) continue;
+      const auto corners = corners_of(t);
+      const glm::dvec4 first = shares_in(corners, from), change = shares_in(corners, to) - first;
+      double in = 0, out = way;  // where all four shares are positive
+      for (int i = 0; i < 4; ++i) {
+        if (change[i] > 0) in = std::max(in, -first[i] / change[i]);
+        else if (change[i] < 0) out = std::min(out, -first[i] / change[i]);
+        else if (first[i] <= 0) out = 0;
+      }
+      if (in < out) way = in;
+    }
+    return way;
+  }
   const PosedTets& tets_;
+  const BoxBins& rest_bins_;
   MeshBorder border_;
 };
 
@@ -113,7 +152,7 @@ PosedTets::PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const P
   }
   bins_ = BoxBins(std::move(posed_boxes), kPosedBin);
   const BoxBins rest_bins(std::move(rest_boxes), TissueVoxels::kBrick);
-  const Border border(*this);
+  const Border border(*this, rest_bins);
 
   std::vector<BrickOutcome> outcomes(lattice.tissue().bricks().size());
   parallel_for(std::ssize(outcomes), 8, [&](std::int64_t begin, std::int64_t end) {
@@ -185,15 +224,6 @@ std::array<FixedPoint, 4> PosedTets::posed_corners(int tet) const {
 std::array<glm::dvec3, 4> PosedTets::rest_corners(int tet) const {
   const auto corners = mesh_->T.row(tet);
   return {rest_[corners[0]], rest_[corners[1]], rest_[corners[2]], rest_[corners[3]]};
-}
-
-bool PosedTets::holds(const FixedPoint& posed) const {
-  std::vector<int> near;
-  bins_.meeting(voxels_in_box(std::array{posed - kFixedOne, posed + kFixedOne}), near);
-  return std::any_of(near.begin(), near.end(), [&](int t) {
-    const auto corners = posed_corners(t);
-    return glm::all(glm::greaterThan(shares_in({corners[0], corners[1], corners[2], corners[3]}, posed), glm::dvec4(0)));
-  });
 }
 
 // Where a rest point goes with a tet.

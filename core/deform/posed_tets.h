@@ -6,8 +6,8 @@
 //
 // A mesh follows the tissue's border only nearly. Tissue voxels in the mesh's charge that stick out of it, by their centre
 // or by a corner, ride on it as cubes of their own: a corner inside goes with its tet, a corner outside with the nearest
-// point of the mesh's border, turned by the rotation of the tet there, and nearer to it than at rest where it would end in another
-// tet: what sticks out of skin that is pressed against skin is pressed flat. Riders write only where no tet did.
+// point of the mesh's border, turned by the rotation of the tet there, and nearer to it than at rest where another part of the mesh
+// has come near: what sticks out of skin that is pressed against skin is pressed flat. Riders write only where no tet did.
 //
 // A mesh need not hold the whole body. Tissue outside its charge is the lattice's, as ever. So is one layer of voxels on the
 // mesh's side of where the two meet: they move alike there, and no rounding opens a gap.
@@ -60,7 +60,6 @@ class PosedTets {
   void run_brick(std::int64_t brick, const BoxBins& rest_bins, const Border& border, BrickOutcome& outcome) const;
   bool is_in_mesh(const glm::ivec3& voxel) const;
   void find_instead_of();
-  bool holds(const FixedPoint& posed) const;  // a tet does
   FixedPoint carried(int tet, const glm::dvec3& rest) const;
   FixedPoint fixed(const glm::dvec3& output) const;
   std::array<FixedPoint, 4> posed_corners(int tet) const;

@@ -197,7 +197,9 @@ void ElasticForm::add_derivatives(const Places& x, std::span<const double> press
         state.curvature = term.curvature;
         if (curvature == Curvature::Projected) {
           state.axes = &axes_of[t - chunk.begin];
-          state.negative = negative_curvature(tet.energy.shear, term.slope, term.curvature, state.axes->sigma);
+          const NegativeCurvature negative = negative_curvature(tet.energy.shear, term.slope, term.curvature, state.axes->sigma);
+          state.negative.count = negative.count;
+          std::copy_n(negative.direction, negative.count, state.negative.direction);
         }
       }
       tet_derivatives({states.data(), std::size_t(some)}, derivatives);

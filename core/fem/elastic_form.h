@@ -17,7 +17,7 @@
 namespace limber {
 
 // Projected: without what is negative in a tet's, and without what a pressure adds to it, which cancels inside an evenly
-// pressed body but not once it is projected tet by tet.
+// pressed body but not once it is projected tet by tet. Solves take the projected one; the exact one is what it is checked by.
 enum class Curvature { Projected, Exact };
 
 // Ranges of elements in an order in which ranges of one colour, which share no node, stand together.

@@ -2,11 +2,12 @@
 // Small matrices of several tets at once: what is written for lanes is compiled for two numbers and for four, and four are taken
 // where the processor has AVX2. Every helper is inlined, so that it is compiled for the processor that its caller is compiled
 // for; the same comes out for each, to the bit.
+// Included by .cpp files only.
 #pragma once
 
-namespace limber {
+#include "core/fem/principal.h"
 
-enum class MatrixLanes { Widest, Two };
+namespace limber {
 
 #define LIMBER_INLINE [[gnu::always_inline]] inline
 #pragma GCC diagnostic ignored "-Wpsabi"  // no vector is handed to a function that is called

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Projected Newton to the shape of least energy. No iterate ever has an inverted tet or skin that crosses: every
 // step is bounded (step_bound.h, contact_surface.h) and searched along, and a search that finds nothing lower does not move.
-// The curvature is the projected one throughout: at the end of a deep bend the exact one is indefinite, or nearly so and then leads
-// nowhere, to the last iterations. It ends when neither the step nor what a search left of it matters, and gives up when three
+// The curvature is the projected one throughout: up to the last iterations of a deep bend the exact one is indefinite, or so nearly
+// that its steps lead nowhere. It ends when neither the step nor what a search left of it matters, and gives up when three
 // searches in a row hardly moved. A full step that lowers the energy is tried at 2, 4, 8 times its length.
 // A step that one place bounds to less than half is made smoother there first, so that it can be taken everywhere else.
 #pragma once

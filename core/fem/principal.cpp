@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/fem/matrix_lanes.h"
+
 namespace limber {
 
 namespace {

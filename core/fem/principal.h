@@ -7,8 +7,6 @@
 
 #include <Eigen/Core>
 
-#include "core/fem/matrix_lanes.h"
-
 namespace limber {
 
 // F = U diag(sigma) V^T with rotations U and V; only the smallest singular value, the last, is negative where det F is.
@@ -16,6 +14,8 @@ struct Principal {
   Eigen::Matrix3d U, V;
   Eigen::Vector3d sigma;  // falling
 };
+
+enum class MatrixLanes { Widest, Two };  // the same comes out, to the bit
 
 // Of each F, as many as there are.
 void principal(std::span<const Eigen::Matrix3d> F, std::span<Principal> result, MatrixLanes width = MatrixLanes::Widest);

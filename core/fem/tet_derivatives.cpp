@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cstring>
 
+#include "core/fem/matrix_lanes.h"
+
 namespace limber {
 
 namespace {

@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 
-#include "core/fem/matrix_lanes.h"
 #include "core/fem/principal.h"
 #include "core/fem/tet_energy.h"
 

@@ -2,10 +2,10 @@
 #include "core/base/cholesky.h"
 
 #include <array>
+#include <cstdlib>
 #include <random>
 
 #include <Eigen/Dense>
-#include <Eigen/SparseCore>
 #include <doctest/doctest.h>
 
 #include "core/base/parallel.h"
@@ -93,39 +93,39 @@ TEST_CASE("cholesky: another graph, larger or smaller, is solved in the same mem
   }
 }
 
-TEST_CASE("cholesky: a graph that gains edges here and there is solved as well, and costs no more than a quarter more than ordered anew") {
-  constexpr int kSize = 12;
+TEST_CASE("cholesky: a graph that gains a few edges keeps its order but for their ends, costs little more than ordered anew, and is solved as well") {
+  constexpr int kSize = 8;
   const BlockGraph base = grid_graph(kSize);
   Cholesky sparse(base);
-  // As skin that closes over a grid: ever more nodes of one side meet ones of the other.
-  for (const int row : {1, 2, 4, 8}) {
-    BlockGraphBuilder meeting(base.node_count());
-    for (int k = 0; k < row; ++k)
-      for (int i = 0; i < kSize; ++i) meeting.add(std::array{i + kSize * kSize * k, i + kSize * (kSize - 1 + kSize * k)});
-    const BlockGraph graph = meeting.build(base);
-    sparse.analyse(graph);
-    const Cholesky own(graph);
-    CHECK(sparse.factor_operations() < 1.3 * own.factor_operations());
-    Eigen::SparseMatrix<double> matrix(3 * graph.node_count(), 3 * graph.node_count());
-    fill(sparse, graph, 200);
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int a = 0; a < graph.node_count(); ++a) {
-      const auto add = [&](int b) {
-        const bool turned = sparse.rank(a) < sparse.rank(b);
-        const auto place = turned ? sparse.place(b, a) : sparse.place(a, b);
-        for (int c = 0; c < 3; ++c)
-          for (int r = 0; r < 3; ++r) entries.emplace_back(3 * a + r, 3 * b + c, sparse.values()[turned ? place.at + r * place.stride + c : place.at + c * place.stride + r]);
-      };
-      add(a);
-      for (auto k = graph.first[a]; k < graph.first[a + 1]; ++k) add(graph.neighbour[k]);
-    }
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    REQUIRE(sparse.factorize());
-    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(matrix.rows(), -3, 5);
-    Eigen::VectorXd x = b;
-    sparse.solve({x.data(), std::size_t(x.size())});
-    CHECK((matrix * x - b).norm() < 1e-10 * b.norm());
-  }
+  const auto ranks = [&] {
+    std::vector<int> result;
+    for (int i = 0; i < base.node_count(); ++i) result.push_back(sparse.rank(i));
+    return result;
+  };
+  const std::vector<int> first = ranks();
+  sparse.analyse(base);
+  CHECK(ranks() == first);
+
+  // As skin that closes over a grid: nodes of one side meet ones of the other.
+  BlockGraphBuilder meeting(base.node_count());
+  constexpr int kMeet = 6;
+  for (int i = 0; i < kMeet; ++i) meeting.add(std::array{i, i + kSize * (kSize - 1)});
+  const BlockGraph graph = meeting.build(base);
+  sparse.analyse(graph);
+  const Cholesky own(graph);
+  CHECK(sparse.factor_operations() < 1.3 * own.factor_operations());
+  // Of two nodes that were not moved the one stays before the other, but for postorder: most stand where they stood.
+  const std::vector<int> mended = ranks();
+  int near = 0;
+  for (int i = 0; i < base.node_count(); ++i) near += std::abs(mended[i] - first[i]) <= kMeet;
+  CHECK(near > base.node_count() / 2);
+
+  const Eigen::MatrixXd dense = fill(sparse, graph, 200);
+  REQUIRE(sparse.factorize());
+  Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(dense.rows(), -3, 5);
+  const Eigen::VectorXd expected = dense.llt().solve(b);
+  sparse.solve({b.data(), std::size_t(b.size())});
+  CHECK((b - expected).norm() <= 1e-11 * expected.norm());
 }
 
 TEST_CASE("cholesky: a matrix that is not positive definite is said to be, and spoils nothing for the next") {

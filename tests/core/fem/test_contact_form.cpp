@@ -92,9 +92,12 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
     const Places from = random_places(4, 1, seed), by = random_places(4, 2, seed + 1000);
     for (const Kind kind : {Kind::PointTriangle, Kind::EdgeEdge}) {
       const ContactPair pair{{0, 1, 2, 3}, kind};
-      const double length = largest_step(pair, from, by, 1), before = nearest_points(pair, from).distance;
-      CHECK(length > 0);
-      for (int k = 0; k <= 200; ++k) CHECK(nearest_points(pair, from + k / 200.0 * length * by).distance > 0.24 * before);
+      const double before = nearest_points(pair, from).distance;
+      for (const double near : {double(INFINITY), 0.3}) {
+        const double length = largest_step(pair, from, by, 1, near);
+        CHECK(length > 0);
+        for (int k = 0; k <= 200; ++k) CHECK(nearest_points(pair, from + k / 200.0 * length * by).distance > 0.24 * std::min(before, near));
+      }
     }
   }
 }
@@ -163,6 +166,17 @@ TEST_CASE("contact: what one bone carries is not watched against itself") {
   CHECK(ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, 1).empty());
   std::fill(rigid.begin() + std::ssize(rigid) / 2, rigid.end(), 1);
   CHECK(!ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, 1).empty());
+}
+
+TEST_CASE("contact: of two ways to one place each is watched by itself") {
+  const TwoBoxes boxes(1);
+  ContactForm form(boxes.F, boxes.rest, boxes.free());
+  // To a place high above from the side, which is free, and from below, through the other box.
+  const Places above = boxes.rest + boxes.upper_by({0, 0, 20}), beside = boxes.rest + boxes.upper_by({50, 0, 20}), below = boxes.rest - boxes.upper_by({0, 0, 20});
+  form.watch(beside, above - beside, 1);
+  CHECK(form.largest_step(beside, above - beside, 1).length == 1);
+  form.watch(below, above - below, 1);
+  CHECK(form.largest_step(below, above - below, 1).length < 1);
 }
 
 TEST_CASE("contact: nothing pushes at rest, however close skin is, nearer it does, by a force that is the slope of its energy") {
