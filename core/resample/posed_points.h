@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Where points of a body go in a pose, as resample() moves the tissue there: points in bone go with their bone, exactly rigid; by
-// finite elements those in what is meshed go with their tet, those up to 10 mm beside it with the nearest place of its
-// border (as far from it as at rest, though voxels between skin and skin are pressed flat); all others by the blend of the weights around them (skin/skin_at). A point beside the body follows the nearest tissue.
+// finite elements those in what is meshed go with their tet, those up to 10 mm beside it with the nearest place of its border, as far
+// from it as at rest (voxels between skin and skin are pressed flat); all others by the blend of the weights around them
+// (skin/skin_at). A point beside the body follows the nearest tissue.
 #pragma once
 
 #include <span>
