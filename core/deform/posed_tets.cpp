@@ -118,12 +118,13 @@ class PosedTets::Border {
       for (int i = 0; i < 4; ++i) {
         if (change[i] > 0) in = std::max(in, -first[i] / change[i]);
         else if (change[i] < 0) out = std::min(out, -first[i] / change[i]);
-        else if (first[i] <= 0) out = 0;
+        else if (!(first[i] > 0)) out = 0;  // nor in a tet that rounding has made flat
       }
       if (in < out) way = in;
     }
     return way;
   }
+
   const PosedTets& tets_;
   const BoxBins& rest_bins_;
   MeshBorder border_;

@@ -35,8 +35,8 @@ struct NearestPoints {
 NearestPoints nearest_points(const ContactPair& pair, const Places& x);
 
 // How much of `step`, at most `limit`, a pair may take and keep half of its distance, or half of `near` where it is further apart:
-// maybe a little less, and where that is `limit` itself a quarter is sure to be kept. (With a tenth, folds close faster than what pushes them open can tell, and Newton's method has
-// then no room left to move in.)
+// maybe a little less, and where that is `limit` itself a quarter is sure to be kept. (With a tenth, folds close faster than what
+// pushes them open can tell, and Newton's method has then no room left to move in.)
 double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit, double near = INFINITY);
 
 class ContactSurface {
