@@ -322,6 +322,26 @@ Cholesky::Place Cholesky::place(int row, int column) const {
   return {first + 3 * (1 + (at - factor_->below.begin() - begin)), stride};
 }
 
+void Cholesky::places(std::span<const int> nodes, Place* places) const {
+  const auto place_of = [&](std::size_t row, std::size_t column) -> Place& { return places[row * (row + 1) / 2 + column]; };
+  for (std::size_t j = 0; j < nodes.size(); ++j) {
+    if (nodes[j] < 0) {
+      for (std::size_t i = j; i < nodes.size(); ++i) place_of(i, j) = {-1, 0};
+      continue;
+    }
+    const int c = factor_->rank[nodes[j]];
+    const int *begin = factor_->below.data() + factor_->below_first[c], *end = factor_->below.data() + factor_->below_first[c + 1];
+    const std::int64_t stride = 3 * (1 + end - begin), first = factor_->column[3 * c];
+    place_of(j, j) = {first, stride};
+    const int* at = begin;  // both lists rise
+    for (std::size_t i = j + 1; i < nodes.size(); ++i) {
+      const int r = factor_->rank[nodes[i]];
+      while (at != end && *at < r) ++at;
+      place_of(i, j) = at != end && *at == r ? Place{first + 3 * (1 + (at - begin)), stride} : Place{-1, 0};
+    }
+  }
+}
+
 std::span<double> Cholesky::values() { return factor_->value; }
 void Cholesky::clear() { std::fill(factor_->value.begin(), factor_->value.end(), 0.0); }
 

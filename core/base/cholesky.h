@@ -51,6 +51,8 @@ class Cholesky {
   int rank(int node) const;
   // row, column  nodes with rank(row) >= rank(column); at -1 where they neither are the same nor meet in the graph
   Place place(int row, int column) const;
+  // Of all pairs of some nodes, whose ranks rise, to `places`: the lower triangle row by row. Where one is -1, no node, at is -1.
+  void places(std::span<const int> nodes, Place* places) const;
 
   std::span<double> values();
   void clear();  // all values to zero

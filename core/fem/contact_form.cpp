@@ -12,8 +12,7 @@ namespace limber {
 
 namespace {
 constexpr double kOfRest = 0.5;      // of what a pair is apart at rest: no thickness is more
-constexpr double kSoon = 1.2;        // thicknesses: pairs this near are in the matrix before they touch; at 2, where what is as near as at
-                                     // rest counts, skin's own neighbours would double the cost of a factorization
+constexpr double kSoon = 1.6;        // thicknesses: pairs this near, that the way watched brings within one, are in the matrix before they touch
 constexpr double kPressed = 0.6;     // of the thickness: pairs nearer than this must be in the matrix, which is ordered anew for them
 constexpr double kNear = 0.5;        // of the thickness: what is further apart may come within half of this in one step, for it is not yet, or
                                      // hardly, pushed apart
@@ -74,6 +73,7 @@ void ContactForm::watch(const Places& x, const Places& step, double limit) {
   watched_to_ = std::move(end);
   watched_ = surface_.near(x, step, limit, settings_.thickness_mm, kOfRest);
   blocked_.assign(watched_.size(), 0);
+  apart_.clear();
 }
 
 ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step, double limit) const {
@@ -92,10 +92,16 @@ ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step
 
 void ContactForm::block(const Places& x, const Places& step, const std::vector<char>& changed) {
   const double near = kNear * settings_.thickness_mm;
+  if (apart_.empty()) {
+    apart_.resize(watched_.size());
+    parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (auto k = begin; k < end; ++k) apart_[k] = nearest_points(watched_[k], x).distance;
+    });
+  }
   parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto k = begin; k < end; ++k)
       if (const auto& node = watched_[k].node; changed[node[0]] || changed[node[1]] || changed[node[2]] || changed[node[3]])
-        blocked_[k] = limber::largest_step(watched_[k], x, step, 1, near) < 1;
+        blocked_[k] = is_too_far(watched_[k], apart_[k], x, step, near);
   });
 }
 
@@ -151,7 +157,9 @@ void ContactForm::add_curvature(std::span<double> values) const {
 }
 
 void ContactForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x) {
-  for (const ContactPair& pair : surface_.near(x, Places::Zero(x.rows(), 3), 0, kSoon * settings_.thickness_mm, kSoon * kOfRest)) {
+  for (const ContactPair& pair : watched_) {
+    const double d = nearest_points(pair, x).distance;
+    if (d >= kSoon * settings_.thickness_mm || d >= kSoon * kOfRest * nearest_points(pair, rest_).distance) continue;
     std::array<int, 4> element;
     for (int a = 0; a < 4; ++a) element[a] = unknown[pair.node[a]];
     graph.add(element);

@@ -59,7 +59,7 @@ class ContactForm {
   void add_gradient(Places& gradient) const;
   void add_curvature(std::span<double> values) const;
 
-  // The matrix must know who may touch: who does at x, and who soon may. What begins to touch unforeseen pushes weakly: in the
+  // The matrix must know who may touch: who does at x, and who on the way watched soon may. What begins to touch unforeseen pushes weakly: in the
   // matrix each side then meets the other as if that stood still, until it is pressed.
   void connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x);
   bool bind(const Cholesky& matrix, std::span<const int> unknown);  // after touch(); false where the matrix must know more
@@ -90,6 +90,7 @@ class ContactForm {
   Places watched_from_, watched_to_;  // ends of the way
   std::vector<ContactPair> watched_;
   std::vector<char> blocked_;  // of those watched
+  std::vector<double> apart_;  // their distances where the way begins; empty until they are asked for
   std::vector<Touch> touching_;
 };
 

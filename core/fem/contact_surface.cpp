@@ -125,22 +125,37 @@ NearestPoints nearest_points(const ContactPair& pair, const Places& x) {
   return result;
 }
 
-double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit, double near) {
-  Corners p = at(pair, x), s = at(pair, step);
-  const double motion = relative_motion(pair.kind, s);
-  double now = distance(pair.kind, p);
-  const double kept = kKept * std::min(now, near);
-  if (now - limit * motion > kept) return limit;
+namespace {
+// Along p + a s of a pair `now` apart at a = 0, whose parts move towards each other by at most `motion`.
+double largest_advance(ContactPair::Kind kind, Corners p, const Corners& s, double now, double motion, double kept, double limit) {
   double length = 0;
   for (int k = 0; k < kAdvances; ++k) {
     const double advance = kSafe * now / motion;
     if (length + advance >= limit) return limit;
     for (int a = 0; a < 4; ++a) p[a] += advance * s[a];
-    now = distance(pair.kind, p);
+    now = distance(kind, p);
     if (length > 0 && now < kept) break;  // the first advance keeps so much by itself, but for rounding
     length += advance;
   }
   return length;
+}
+}  // namespace
+
+double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit, double near) {
+  const Corners p = at(pair, x);
+  Corners s = at(pair, step);
+  const double motion = relative_motion(pair.kind, s), now = distance(pair.kind, p), kept = kKept * std::min(now, near);
+  return now - limit * motion > kept ? limit : largest_advance(pair.kind, p, s, now, motion, kept, limit);
+}
+
+bool is_too_far(const ContactPair& pair, double apart, const Places& x, const Places& step, double near) {
+  Corners s = at(pair, step);
+  const double motion = relative_motion(pair.kind, s), kept = kKept * std::min(apart, near);
+  if (apart - motion > kept) return false;
+  const Corners p = at(pair, x);
+  Corners end = p;
+  for (int a = 0; a < 4; ++a) end[a] += s[a];
+  return distance(pair.kind, end) < kept || largest_advance(pair.kind, p, s, apart, motion, kept, 1) < 1;
 }
 
 ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid)

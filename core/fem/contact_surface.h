@@ -38,6 +38,9 @@ NearestPoints nearest_points(const ContactPair& pair, const Places& x);
 // maybe a little less, and where that is `limit` itself a quarter is sure to be kept. (With a tenth, folds close faster than what
 // pushes them open can tell, and Newton's method has then no room left to move in.)
 double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit, double near = INFINITY);
+// Whether all of `step` is more than that.
+//   apart  the distance at x
+bool is_too_far(const ContactPair& pair, double apart, const Places& x, const Places& step, double near);
 
 class ContactSurface {
  public:

@@ -125,11 +125,7 @@ void ElasticForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
           std::swap(tet.node[b], tet.node[b - 1]);
           std::swap(tet.slope[b], tet.slope[b - 1]);
         }
-      for (int a = 0, pair = 0; a < 4; ++a)
-        for (int b = 0; b <= a; ++b, ++pair) {
-          const int row = unknown[tet.node[a]], column = unknown[tet.node[b]];
-          places_[t][pair] = row < 0 || column < 0 ? Cholesky::Place{-1, 0} : matrix.place(row, column);
-        }
+      matrix.places(std::array{unknown[tet.node[0]], unknown[tet.node[1]], unknown[tet.node[2]], unknown[tet.node[3]]}, places_[t].data());
     }
   });
 }

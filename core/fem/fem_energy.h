@@ -21,6 +21,12 @@ namespace limber {
 // Nothing of the solver but its cost, in CPU seconds of all threads. `ordering`: of the analysis, what is CHOLMOD's.
 struct FemSeconds {
   double contact = 0, analysis = 0, ordering = 0, assembly = 0, factorization = 0, search = 0, total = 0;
+
+  FemSeconds& operator+=(const FemSeconds& other) {
+    contact += other.contact, analysis += other.analysis, ordering += other.ordering, assembly += other.assembly;
+    factorization += other.factorization, search += other.search, total += other.total;
+    return *this;
+  }
 };
 
 // Adds the CPU time of the process, while it lives, to a sum.

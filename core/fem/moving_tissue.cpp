@@ -51,6 +51,10 @@ Main main_motion(const Influence& influence, const std::vector<int>& moves_as) {
   return {best->first, best->second / double(kFullWeight)};
 }
 
+bool has_any(const std::vector<std::uint8_t>& set) {
+  return std::any_of(set.begin(), set.end(), [](std::uint8_t in) { return in != 0; });
+}
+
 // The box of cells around all tissue, with one of nothing around it.
 class Cells {
  public:
@@ -80,12 +84,15 @@ class Cells {
     return squared_distance(box_, seeds, spacing(), progress);
   }
 
-  // Cells that one of the looked-at places of the path brings near to cells of another motion that were far away at rest.
-  std::vector<std::uint8_t> brought_near(const BonePath& path, const std::vector<double>& places, double near_mm) const {
-    std::vector<std::uint8_t> near(box_.voxel_count(), 0);
+  // visit(place, cells) of each looked-at place of the path that is the first to bring cells near to such of another motion that were
+  // far away at rest.
+  template <class Visit>
+  void brought_near(const BonePath& path, const std::vector<double>& places, double near_mm, const Visit& visit) const {
+    std::vector<std::uint8_t> before(box_.voxel_count(), 0), near;
     const AffineTransform world = world_from_voxel(grid_);
-    for (double t : places) {
-      const auto motions = path(t);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const auto motions = path(places[k]);
+      near.assign(box_.voxel_count(), 0);
       std::unordered_map<std::uint64_t, Bin> bins;
       for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
         if (motion_[at] == kAir) return;
@@ -102,12 +109,23 @@ class Cells {
           const auto found = bins.find(key(bin.place + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
           if (found == bins.end() || (bin.motion != kSeveral && found->second.motion == bin.motion)) continue;
           for (const Placed& mine : bin.cells)
-            near[mine.at] = near[mine.at] || std::any_of(found->second.cells.begin(), found->second.cells.end(), [&](const Placed& other) {
+            near[mine.at] = near[mine.at] || (!before[mine.at] && std::any_of(found->second.cells.begin(), found->second.cells.end(), [&](const Placed& other) {
               return motion_[other.at] != motion_[mine.at] && glm::distance(mine.posed, other.posed) < near_mm && glm::distance(mine.rest, other.rest) > far;
-            });
+            }));
         }
+      if (!has_any(near)) continue;
+      visit(k, near);
+      for (std::size_t at = 0; at < near.size(); ++at) before[at] |= near[at];
     }
-    return near;
+  }
+
+  // value(cell) of the cells of each brick.
+  template <class Value>
+  std::vector<std::array<float, 8>> by_brick(const Value& value) const {
+    std::vector<std::array<float, 8>> values(tissue_.bricks().size());
+    for (size_t b = 0; b < values.size(); ++b)
+      for (int c = 0; c < 8; ++c) values[b][c] = value(box_.index(tissue_.bricks()[b].corner / kCell + glm::ivec3(c & 1, c >> 1 & 1, c >> 2)));
+    return values;
   }
 
   // The tissue of cells that pass.
@@ -173,14 +191,15 @@ class Cells {
   std::vector<std::uint8_t> mixed_;
 };
 
-bool has_any(const std::vector<std::uint8_t>& set) {
-  return std::any_of(set.begin(), set.end(), [](std::uint8_t in) { return in != 0; });
-}
-
 }  // namespace
 
 bool MovingTissue::empty() const {
   return std::all_of(free.begin(), free.end(), [](const auto& brick) { return brick == std::array<std::uint64_t, 8>{}; });
+}
+
+float MovingTissue::free_from_at(const TissueVoxels& tissue, const glm::ivec3& voxel) const {
+  const glm::ivec3 cell = (voxel & (TissueVoxels::kBrick - 1)) / kCell;
+  return free_from[tissue.brick_at(voxel)][cell.x + 2 * cell.y + 4 * cell.z];
 }
 
 MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const BonePath& path,
@@ -189,15 +208,25 @@ MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue
   result.moves_as = first_alike_on_path(path, settings.places);
   const Cells cells(volume, tissue, weights, result.moves_as);
   const std::vector<float> to_bending = cells.squared_distance_to(cells.mixed(), progress);
-  std::vector<float> to_near(to_bending.size(), INFINITY);
-  if (settings.contact && has_any(cells.mixed()))
-    if (const auto near = cells.brought_near(path, settings.places, settings.near_mm); has_any(near)) to_near = cells.squared_distance_to(near, progress);
-  const auto squared = [](double mm) { return mm * mm; };
-  const auto within = [&](double rim_mm) {
-    return cells.mask([&](std::int64_t at) { return to_bending[at] <= squared(settings.margin_mm + rim_mm) || to_near[at] <= squared(settings.give_mm + rim_mm); });
-  };
-  result.free = within(0);
-  result.meshed = within(settings.rim_mm);
+  const auto squared = [](double mm) { return float(mm * mm); };
+  // What comes near at one of the places may have touched from the one before it on.
+  std::vector<float> to_near(to_bending.size(), INFINITY), free_from(to_bending.size(), INFINITY);
+  for (std::size_t at = 0; at < free_from.size(); ++at)
+    if (to_bending[at] <= squared(settings.margin_mm)) free_from[at] = 0;
+  if (settings.contact && has_any(cells.mixed())) {
+    cells.brought_near(path, settings.places, settings.near_mm, [&](std::size_t k, const std::vector<std::uint8_t>& near) {
+      const std::vector<float> distance = cells.squared_distance_to(near, progress);
+      for (std::size_t at = 0; at < distance.size(); ++at) {
+        to_near[at] = std::min(to_near[at], distance[at]);
+        if (distance[at] <= squared(settings.give_mm)) free_from[at] = std::min(free_from[at], k ? float(settings.places[k - 1]) : 0.0f);
+      }
+    });
+  }
+  result.free = cells.mask([&](std::int64_t at) { return free_from[at] < INFINITY; });
+  result.free_from = cells.by_brick([&](std::int64_t at) { return free_from[at]; });
+  result.meshed = cells.mask([&](std::int64_t at) {
+    return to_bending[at] <= squared(settings.margin_mm + settings.rim_mm) || to_near[at] <= squared(settings.give_mm + settings.rim_mm);
+  });
   return result;
 }
 

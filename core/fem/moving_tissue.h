@@ -4,10 +4,12 @@
 //
 // Tissue bends where its influences (or those of its neighbours) lie on bones that move differently. Elasticity carries
 // further than weights do, so what lies within a margin of it may bend too, and so may what the pose brings near to another
-// part of the body, where contact can press it in, with what is close around. Around that lies a rim that is meshed but held,
-// on which the mesh meets what is not meshed. All of it is decided in cells of 4^3 voxels.
+// part of the body, where contact can press it in, with what is close around: from where on the way to the pose this can happen.
+// Around that lies a rim that is meshed but held, on which the mesh meets what is not meshed. All of it is decided in cells of
+// 4^3 voxels.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -29,9 +31,12 @@ struct MovingSettings {
 struct MovingTissue {
   std::vector<int> moves_as;  // per bone of the weights: the first bone that moves as it does, all along the path
   TissueMask free;            // may bend
+  std::vector<std::array<float, 8>> free_from;  // per brick and its cells, along x, then y, then z: the place on the path before which
+                                                // they move as a rigid body; infinite where they always do
   TissueMask meshed;          // free, and the rim around it
 
   bool empty() const;         // nothing bends
+  float free_from_at(const TissueVoxels& tissue, const glm::ivec3& voxel) const;  // of a voxel of tissue
 };
 
 //   weights  bone tissue follows one bone wholly       path  of the bones of the weights

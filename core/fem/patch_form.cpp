@@ -135,16 +135,18 @@ void PatchForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown) 
 
 void PatchForm::bind(const ElasticForm& tets, const Cholesky& matrix, std::span<const int> unknown) {
   place_.clear();
+  std::vector<std::pair<int, int>> by_rank;
+  std::vector<int> nodes;
   for (Patch& patch : patches_) {
     const auto begin = node_.begin() + patch.node_begin, end = node_.begin() + patch.node_end;
-    std::sort(begin, end, [&](int a, int b) {
-      const int rank_a = unknown[a] < 0 ? -1 : matrix.rank(unknown[a]), rank_b = unknown[b] < 0 ? -1 : matrix.rank(unknown[b]);
-      return rank_a != rank_b ? rank_a < rank_b : a < b;
-    });
+    by_rank.clear(), nodes.clear();
+    for (auto at = begin; at != end; ++at) by_rank.push_back({unknown[*at] < 0 ? -1 : matrix.rank(unknown[*at]), *at});
+    std::sort(by_rank.begin(), by_rank.end());
+    std::transform(by_rank.begin(), by_rank.end(), begin, [](const auto& each) { return each.second; });
+    for (const auto& [rank, node] : by_rank) nodes.push_back(unknown[node]);
     patch.place_begin = std::ssize(place_);
-    for (auto row = begin; row != end; ++row)
-      for (auto column = begin; column <= row; ++column)
-        place_.push_back(unknown[*row] < 0 || unknown[*column] < 0 ? Cholesky::Place{-1, 0} : matrix.place(unknown[*row], unknown[*column]));
+    place_.resize(place_.size() + nodes.size() * (nodes.size() + 1) / 2);
+    matrix.places(nodes, &place_[patch.place_begin]);
     for (auto t = patch.begin; t < patch.end; ++t)
       for (int a = 0; a < 4; ++a) corner_[t][a] = std::uint8_t(std::find(begin, end, tets.tet(t).node[a]) - begin);
   }

@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/screw.h"
 #include "core/fem/newton.h"
 
 namespace limber {
@@ -22,7 +24,8 @@ constexpr TetMaterial kBoneTet{100, 0.3};   // of a rigid tet where flesh pulls 
 constexpr int kSettling = 3;                  // times the iterations of a step, at the end
 constexpr double kStragglers = 1e-3;           // of the nodes, while the end settles
 constexpr double kTight = 0.25;               // of a step's tolerance, where the next one does not succeed
-constexpr double kLeastWay = 0.8;           // of a guess that is worth a solve; with less, half the way is tried first
+constexpr double kWorth = 0.125;              // of the nodes solved for: fewer more are not worth another matrix
+constexpr double kRough = 0.5;                // of a way that tissue does not bear further than this, it is made smoother
 constexpr double kWeakBarrier = 100;        // kPa, on flesh: halves the iterations of a deep bend, for no tet gets nearly flat on the way
 
 Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector3d& p) {
@@ -34,15 +37,36 @@ void check(const FemModel& model, const Eigen::MatrixX3d* start) {
   const auto wrong = [](const char* what) { throw Error("a model for finite elements does not fit together", what, "give one entry for each"); };
   if (std::ssize(model.material) != model.mesh.T.rows()) wrong("materials and tets");
   if (std::ssize(model.held_by) != model.mesh.V.rows()) wrong("held nodes and nodes");
+  if (std::any_of(model.waiting.begin(), model.waiting.end(), [&](const FemModel::Waiting& each) {
+        return each.node < 0 || each.node >= std::ssize(model.held_by) || each.bone < 0 || model.held_by[each.node] >= 0;
+      })) wrong("waiting nodes and free nodes");
   if (std::ssize(model.influences) != model.mesh.V.rows()) wrong("influences and nodes");
   if (start && start->rows() != model.mesh.V.rows()) wrong("nodes at the start and nodes");
   if (count_inverted(model.mesh.T, model.mesh.V)) throw Error("a tet mesh has inverted tets", "at rest", "mesh the volume again");
   if (start && count_inverted(model.mesh.T, *start)) throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
 }
 
-bool held_by_one(const FemModel& model, const Eigen::RowVector4i& tet) {
-  const int bone = model.held_by[tet[0]];
-  return bone >= 0 && std::all_of(tet.begin(), tet.end(), [&](int v) { return model.held_by[v] == bone; });
+bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet) {
+  const int bone = held_by[tet[0]];
+  return bone >= 0 && std::all_of(tet.begin(), tet.end(), [&](int v) { return held_by[v] == bone; });
+}
+
+// The model's waiting nodes; few that could wait longer than others go with those, for to solve for more nodes the matrix is ordered anew.
+std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
+  std::vector<FemModel::Waiting> waiting = model.waiting;
+  std::stable_sort(waiting.begin(), waiting.end(), [](const auto& a, const auto& b) { return a.until < b.until; });
+  auto free = double(std::count(model.held_by.begin(), model.held_by.end(), -1)) - double(waiting.size());
+  double before = 0;
+  for (auto begin = waiting.begin(); begin != waiting.end();) {
+    const auto end = std::find_if(begin, waiting.end(), [&](const auto& each) { return each.until > begin->until; });
+    const auto count = double(end - begin);
+    if (count < kWorth * free)
+      for (auto each = begin; each != end; ++each) each->until = before;
+    else before = begin->until;
+    free += count;
+    begin = end;
+  }
+  return waiting;
 }
 
 // What of the mesh deforms, what bones hold, and what they carry along. A tet that one bone holds at every node is rigid; it
@@ -55,11 +79,12 @@ struct Parts {
   std::vector<double> pin_stiffness;
   std::vector<char> in_joint;         // nodes of tets between two bones
 
-  explicit Parts(const FemModel& model) {
+  Parts() = default;
+  Parts(const FemModel& model, const std::vector<int>& held_by) {
     const auto& T = model.mesh.T;
     std::vector<char> in_flesh(model.mesh.V.rows(), 0), in_elastic(model.mesh.V.rows(), 0);
     for (Eigen::Index t = 0; t < T.rows(); ++t)
-      if (!held_by_one(model, T.row(t)))
+      if (!held_by_one(held_by, T.row(t)))
         for (const int v : T.row(t)) in_flesh[v] = 1;
 
     in_joint.assign(model.mesh.V.rows(), 0);
@@ -67,7 +92,7 @@ struct Parts {
       int first = -1;
       bool joint = false;
       for (const int v : T.row(t))
-        if (const int bone = model.held_by[v]; bone >= 0) joint = joint || (first >= 0 && bone != first), first = bone;
+        if (const int bone = held_by[v]; bone >= 0) joint = joint || (first >= 0 && bone != first), first = bone;
       if (joint)
         for (const int v : T.row(t)) in_joint[v] = 1;
     }
@@ -76,7 +101,7 @@ struct Parts {
     std::vector<double> volume(model.mesh.V.rows(), 0);
     const Places rest = model.mesh.V;
     for (Eigen::Index t = 0; t < T.rows(); ++t) {
-      const bool one = held_by_one(model, T.row(t));
+      const bool one = held_by_one(held_by, T.row(t));
       if (one && std::none_of(T.row(t).begin(), T.row(t).end(), [&](int v) { return in_flesh[v]; })) {
         rigid_tet.push_back(t);
         continue;
@@ -92,7 +117,7 @@ struct Parts {
     elastic = T(elastic_tet, Eigen::all);
     rigid = T(rigid_tet, Eigen::all);
     for (int v = 0; v < int(model.mesh.V.rows()); ++v) {
-      if (model.held_by[v] < 0) continue;
+      if (held_by[v] < 0) continue;
       (in_elastic[v] ? pinned : carried).push_back(v);
       if (in_elastic[v]) pin_stiffness.push_back((in_joint[v] ? kJointPinStiffness : kPinStiffness) * volume[v]);
     }
@@ -103,30 +128,25 @@ class PoseSolve {
  public:
   PoseSolve(const FemModel& model, const BonePath& path, const SolveSettings& settings, Progress& progress,
             const std::function<void(const SolveStep&)>& on_step, const Eigen::MatrixX3d* start)
-      : model_(model), path_(path), settings_(settings), progress_(progress), on_step_(on_step), parts_(model), rest_(model.mesh.V),
-        x_(start ? Places(*start) : rest_), energy_(rest_, parts_.elastic, parts_.material, kWeakBarrier) {
-    energy_.guard(parts_.rigid);
-    for (std::size_t v = 0; v < model.held_by.size(); ++v) held_.push_back(model.held_by[v] >= 0 && !parts_.in_joint[v]);
-  }
+      : model_(model), path_(path), settings_(settings), progress_(progress), on_step_(on_step), waiting_(worth_waiting(model)),
+        rest_(model.mesh.V), x_(start ? Places(*start) : rest_) {}
 
   SolvedPose run(double largest_angle_degrees) {
-    const Eigen::MatrixX3i skin = settings_.contact ? boundary_of(model_.mesh.T) : Eigen::MatrixX3i(0, 3);
-    if (settings_.contact) energy_.set_contact(ContactForm(skin, rest_, rigid_nodes(), {.thickness_mm = settings_.contact_mm}));
     const double whole = settings_.step_degrees / std::max(largest_angle_degrees, 1e-9);
     const double regular = 1 / std::max(1.0, std::ceil(1 / whole - 1e-9));
     shortest_ = std::min(regular, settings_.shortest_step_degrees / std::max(largest_angle_degrees, 1e-9));
+    free_for(regular);
     if (at_rest()) result_.reached = 1;
     advance(regular);
     if (result_.steps > 0 && result_.reached == 1) settle();
     result_.converged = result_.reached == 1 && result_.blocked_by.empty();
     result_.V = x_;
-    result_.min_det_f = energy_.min_ratio(x_);
-    result_.factorizations = energy_.factorizations();
-    result_.analyses = energy_.analyses();
+    result_.min_det_f = energy_->min_ratio(x_);
+    count_spent();
     return std::move(result_);
   }
 
-  FemSeconds& seconds() { return energy_.seconds(); }
+  const FemSeconds& seconds() const { return seconds_; }
 
  private:
   void advance(double length) {
@@ -135,17 +155,20 @@ class PoseSolve {
       if (!step(result_.reached + length > 1 - 1e-9 ? 1 : result_.reached + length)) break;
     }
   }
+  void free_for(double place);
+  void count_spent();
   std::vector<int> rigid_nodes() const;
   bool at_rest() const;
   bool step(double to);
-  bool part(double from, double to, Places& x);
-  NewtonResult relax(double at, double from, double tolerance_mm, int iterations, Places& x);
+  double part(double from, double to, Places& x);
+  void tell(double at, int iteration, double residual, const Places& x);
+  NewtonResult relax(double at, double tolerance_mm, int iterations, Places& x);
   bool good(const std::vector<RigidTransform>& pose, const Places& x);
   void record();
   void settle();
-  void hold_at(const std::vector<RigidTransform>& pose);
-  Places blend_increment(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& of, bool points) const;
-  double predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x, double missed_share);
+  void hold_at(const std::vector<RigidTransform>& pose, const Places* less = nullptr);
+  Places turned_beyond(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& x) const;
+  double follow(double from, double to, Places& x);
   struct Drift {
     double mm = 0;
     int node = -1;
@@ -159,100 +182,125 @@ class PoseSolve {
   const SolveSettings& settings_;
   Progress& progress_;
   const std::function<void(const SolveStep&)>& on_step_;
-  const Parts parts_;
+  const std::vector<FemModel::Waiting> waiting_;
+  std::vector<int> held_by_;  // #V: as the model's, and what still waits
+  Parts parts_;
   const Places rest_;
   std::vector<char> held_;  // #V: nodes that a bone holds stiffly, or carries along
   Places x_;
-  double shortest_ = 0;    // step, of the path
-  Places missed_;          // how far the last guess was off, #V, or empty,
-  double missed_way_ = 1;  // of so much of the path
-  FemEnergy energy_;
+  double shortest_ = 0;       // step, of the path
+  std::optional<FemEnergy> energy_;
+  FemSeconds seconds_;
   SolvedPose result_;
 };
+
+// What waits on the way to `place` is part of its bone; what waits no more is flesh like any other.
+void PoseSolve::free_for(double place) {
+  std::vector<int> held_by = model_.held_by;
+  for (const FemModel::Waiting& each : waiting_)
+    if (each.until >= place) held_by[each.node] = each.bone;
+  if (energy_ && held_by == held_by_) return;
+  if (energy_) count_spent();
+  energy_.reset();
+  held_by_ = std::move(held_by);
+  parts_ = Parts(model_, held_by_);
+  held_.resize(held_by_.size());
+  for (std::size_t v = 0; v < held_.size(); ++v) held_[v] = held_by_[v] >= 0 && !parts_.in_joint[v];
+  energy_.emplace(rest_, parts_.elastic, parts_.material, kWeakBarrier);
+  energy_->guard(parts_.rigid);
+  if (settings_.contact) energy_->set_contact(ContactForm(boundary_of(model_.mesh.T), rest_, rigid_nodes(), {.thickness_mm = settings_.contact_mm}));
+}
+
+void PoseSolve::count_spent() {
+  result_.factorizations += energy_->factorizations();
+  result_.analyses += energy_->analyses();
+  seconds_ += energy_->seconds();
+}
 
 // Nothing is asked to move: the start is the answer, to the last bit.
 bool PoseSolve::at_rest() const {
   const auto pose = path_(1);
   for (int v = 0; v < int(rest_.rows()); ++v)
-    if (const int bone = model_.held_by[v]; bone >= 0 && moved(pose[bone], rest_.row(v)) != x_.row(v)) return false;
+    if (const int bone = held_by_[v]; bone >= 0 && moved(pose[bone], rest_.row(v)) != x_.row(v)) return false;
   return x_ == rest_;
 }
 
-void PoseSolve::hold_at(const std::vector<RigidTransform>& pose) {
+//   less  #V: is taken off the places that nodes are held at; none: nothing
+void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const Places* less) {
+  const auto place_of = [&](int v) {
+    const Eigen::RowVector3d place = moved(pose[held_by_[v]], rest_.row(v));
+    return less ? Eigen::RowVector3d(place - less->row(v)) : place;
+  };
   PinForm pins{parts_.pinned, Places(parts_.pinned.size(), 3), Places(parts_.pinned.size(), 3)};
   for (std::size_t k = 0; k < parts_.pinned.size(); ++k) {
-    const int v = parts_.pinned[k];
     pins.stiffness.row(k).setConstant(parts_.pin_stiffness[k]);
-    pins.target.row(k) = moved(pose[model_.held_by[v]], rest_.row(v));
+    pins.target.row(k) = place_of(parts_.pinned[k]);
   }
   Places carried(parts_.carried.size(), 3);
-  for (std::size_t k = 0; k < parts_.carried.size(); ++k) carried.row(k) = moved(pose[model_.held_by[parts_.carried[k]]], rest_.row(parts_.carried[k]));
-  energy_.hold(std::move(pins), parts_.carried, std::move(carried));
+  for (std::size_t k = 0; k < parts_.carried.size(); ++k) carried.row(k) = place_of(parts_.carried[k]);
+  energy_->hold(std::move(pins), parts_.carried, std::move(carried));
 }
 
-// How the blend of what bones do between two poses moves `of`: points, or vectors, which only turn.
-Places PoseSolve::blend_increment(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& of, bool points) const {
-  std::vector<RigidTransform> increment(from.size());
-  for (std::size_t b = 0; b < from.size(); ++b) {
-    increment[b] = to[b] * inverse(from[b]);
-    if (!points) increment[b].translation = glm::dvec3(0);
-  }
-  Places change = Places::Zero(of.rows(), 3);
-  parallel_for(of.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
-    for (auto v = begin; v < end; ++v)
-      for (const auto& [bone, weight] : model_.influences[v]) change.row(v) += weight * (moved(increment[bone], of.row(v)) - of.row(v));
+// What bones do between two poses, less its part to first order, at each node.
+Places PoseSolve::turned_beyond(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& x) const {
+  std::vector<RigidTransform> motion(from.size());
+  std::vector<Screw> screw(from.size());
+  for (std::size_t b = 0; b < from.size(); ++b) motion[b] = to[b] * inverse(from[b]), screw[b] = screw_of(motion[b]);
+  Places beyond = Places::Zero(x.rows(), 3);
+  parallel_for(x.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
+    for (auto v = begin; v < end; ++v) {
+      const glm::dvec3 p(x(v, 0), x(v, 1), x(v, 2));
+      const auto add = [&](int bone, double weight) {
+        const glm::dvec3 way = weight * (motion[bone] * p - p - screw[bone].velocity(p));
+        beyond.row(v) += Eigen::RowVector3d(way.x, way.y, way.z);
+      };
+      if (held_by_[v] >= 0) add(held_by_[v], 1);
+      else
+        for (const auto& [bone, weight] : model_.influences[v]) add(bone, weight);
+    }
   });
-  return change;
+  return beyond;
 }
 
 // By their bone, -1 the others.
 std::vector<int> PoseSolve::rigid_nodes() const {
-  std::vector<int> rigid = model_.held_by;
+  std::vector<int> rigid = held_by_;
   for (std::size_t v = 0; v < rigid.size(); ++v)
     if (!held_[v]) rigid[v] = -1;
   return rigid;
 }
 
-// What the blend of the bones does, with what it missed the last time; where something bounds that, the best of it, of the blend
-// alone, and of the better of the two yielding.
-// missed_share: of what it missed. Returns how much of the guess the tets bear.
-double PoseSolve::predict(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, Places& x, double missed_share) {
-  Places blend = blend_increment(from, to, x, true);
-  for (int v = 0; v < int(x.rows()); ++v)
-    if (const int bone = model_.held_by[v]; bone >= 0) blend.row(v) = moved(to[bone] * inverse(from[bone]), x.row(v)) - x.row(v);
-  std::vector<Places> guesses;
-  if (missed_.rows()) {
-    guesses.push_back(blend + missed_share * (missed_ + blend_increment(from, to, missed_, false)));
-    for (int v = 0; v < int(x.rows()); ++v)
-      if (model_.held_by[v] >= 0) guesses[0].row(v) = blend.row(v);
-  }
-  guesses.push_back(std::move(blend));
-  Places best = x;
-  double least = INFINITY, best_way = 0;
-  std::size_t chosen = 0;
-  const auto consider = [&](std::size_t k) {
-    const double way = energy_.largest_step(x, guesses[k], 1).length;
-    Places there = x + way * guesses[k];
-    if (const double value = energy_.value(there); value < least) {
-      least = value;
-      best.swap(there);
-      best_way = way;
-      chosen = k;
+// From x, good at `from`, towards its shape at `to`: as the tissue's own curvature has it, which knows what presses where, and with what
+// the turns of the bones add to that. Half of the way, or a quarter, ..., where tissue does not bear it. Returns the place on the path
+// that x is now about, and that the bones are held at; `from` where there is no such way.
+double PoseSolve::follow(double from, double to, Places& x) {
+  const auto start = path_(from);
+  Places turn = turned_beyond(start, path_(to), x), way;
+  double slope = 0;
+  hold_at(path_(to), &turn);
+  energy_->watch(x);
+  if (!energy_->newton_step(x, Curvature::Projected, way, slope)) return from;
+  for (double share = 1;; share /= 2) {
+    const double at = from + share * (to - from);
+    if (share < 1) turn = turned_beyond(start, path_(at), x);
+    Places step = share * way + turn;
+    double bound = energy_->largest_step(x, step, 1).length;
+    if (bound < kRough) {
+      step = energy_->yielding(x, step, held_);
+      bound = energy_->largest_step(x, step, 1).length;
     }
-  };
-  for (std::size_t k = 0; k < guesses.size() && best_way < 1; ++k) consider(k);
-  if (best_way < 1) {
-    guesses.push_back(energy_.yielding(x, guesses[chosen], held_));
-    consider(guesses.size() - 1);
+    if (bound < kRough && at - from > shortest_) continue;
+    x += bound * step;
+    hold_at(path_(at));
+    tell(at, ++result_.iterations, std::sqrt(step.rowwise().squaredNorm().maxCoeff()), x);
+    return at;
   }
-  x = std::move(best);
-  return best_way;
 }
 
 PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, const Places& x) const {
   Drift drift;
   for (const int v : parts_.pinned)
-    if (const double mm = (x.row(v) - moved(pose[model_.held_by[v]], rest_.row(v))).norm(); !parts_.in_joint[v] && mm > drift.mm) drift = {mm, v};
+    if (const double mm = (x.row(v) - moved(pose[held_by_[v]], rest_.row(v))).norm(); !parts_.in_joint[v] && mm > drift.mm) drift = {mm, v};
   return drift;
 }
 
@@ -279,16 +327,18 @@ std::string PoseSolve::obstacle(const FemEnergy::Bound& bound, const Places& x) 
   return what + at(bound.node, x);
 }
 
+void PoseSolve::tell(double at, int iteration, double residual, const Places& x) {
+  progress_.update("solving", result_.reached);
+  if (!on_step_) return;
+  const Eigen::MatrixX3d V = x;
+  on_step_({at, iteration, residual, V});
+}
+
 // To the least energy, with the bones where they are held.
-NewtonResult PoseSolve::relax(double at, double from, double tolerance_mm, int iterations, Places& x) {
+NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, Places& x) {
   const int before = result_.iterations;
-  const NewtonResult solved = minimise(energy_, x, {tolerance_mm, result_.reached == 1 ? kStragglers : 0, iterations, held_}, progress_, [&](int iteration, double residual) {
-    progress_.update("solving", from);
-    if (on_step_) {
-      const Eigen::MatrixX3d V = x;
-      on_step_({at, before + iteration, residual, V});
-    }
-  });
+  const NewtonResult solved = minimise(*energy_, x, {tolerance_mm, result_.reached == 1 ? kStragglers : 0, iterations, held_}, progress_,
+                                       [&](int iteration, double residual) { tell(at, before + iteration, residual, x); });
   result_.iterations += solved.iterations;
   result_.residual = solved.residual;
   return solved;
@@ -301,7 +351,7 @@ void PoseSolve::settle() {
   const auto pose = path_(1);
   hold_at(pose);
   Places x = x_;
-  const NewtonResult solved = relax(1, 1, settings_.tolerance_mm, kSettling * settings_.step_iterations, x);
+  const NewtonResult solved = relax(1, settings_.tolerance_mm, kSettling * settings_.step_iterations, x);
   if (!good(pose, x)) return;
   x_ = std::move(x);
   record();
@@ -325,44 +375,42 @@ bool PoseSolve::good(const std::vector<RigidTransform>& pose, const Places& x) {
 }
 
 void PoseSolve::record() {
-  result_.inverted += count_inverted(energy_.volume_tets(), x_);
-  result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_.min_ratio(x_));
+  result_.inverted += count_inverted(energy_->volume_tets(), x_);
+  result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_->min_ratio(x_));
 }
 
-// From x, good at `from`, to the shape at `to`.
-bool PoseSolve::part(double from, double to, Places& x) {
-  const auto from_pose = path_(from), to_pose = path_(to);
-  hold_at(to_pose);
-  // A guess far behind the bones' places is no start: their springs would crush what lies between.
-  if (predict(from_pose, to_pose, x, (to - from) / missed_way_) < kLeastWay && to - from > shortest_) return false;
-  const Places predicted = x;
-  const NewtonResult solved = relax(to, from, settings_.step_tolerance_mm, settings_.step_iterations, x);
+// From x, good at `from`, to the shape at `to` or at a place before it, which is returned: `from` where that fails.
+double PoseSolve::part(double from, double to, Places& x) {
+  const double at = follow(from, to, x);
+  if (at == from) {
+    result_.blocked_by = obstacle({}, x);
+    return from;
+  }
+  const NewtonResult solved = relax(at, settings_.step_tolerance_mm, settings_.step_iterations, x);
   if (!solved.converged) {
     result_.blocked_by = obstacle(solved.bound, x);
-    return false;
+    return from;
   }
-  if (!good(to_pose, x)) return false;
-  missed_ = x - predicted;
-  missed_way_ = to - from;
-  return true;
+  return good(path_(at), x) ? at : from;
 }
 
 // As far towards `to` as it goes, in as few parts as can be. False when not even the shortest part can be done.
 bool PoseSolve::step(double to) {
+  free_for(to);
   double from = result_.reached, way = to - from;
   bool loose = from > 0;
   while (from < to) {
     const double next = way < 0.999 * (to - from) ? from + way : to;
     Places x = x_;
-    if (part(from, next, x)) {
+    if (const double at = part(from, next, x); at > from) {
       x_ = std::move(x);
-      from = next;
-      way *= 2;
+      way = 2 * (at - from);
+      from = at;
       loose = result_.residual > kTight * settings_.step_tolerance_mm;
     } else if (std::exchange(loose, false)) {
       // A shape that lags behind its bones is a poor start for the next step.
       hold_at(path_(from));
-      relax(from, from, kTight * settings_.step_tolerance_mm, settings_.step_iterations, x_);
+      relax(from, kTight * settings_.step_tolerance_mm, settings_.step_iterations, x_);
     } else if ((way = 0.5 * (next - from)) < 0.5 * shortest_) {
       break;
     }

@@ -25,7 +25,12 @@ struct FemModel {
   TetMesh mesh;                       // at rest
   std::vector<TetMaterial> material;  // #T
   std::vector<int> held_by;           // #V: the rig bone that holds the node, -1 free
-  std::vector<std::vector<BoneWeight>> influences;  // #V, sums of 1: where each step starts to search; the result does not hang on them
+  struct Waiting {
+    int node, bone;
+    double until;                     // place on the path
+  };
+  std::vector<Waiting> waiting;       // of the free nodes, those that a bone holds until then: nothing can press them before
+  std::vector<std::vector<BoneWeight>> influences;  // #V, sums of 1: what turns far from its bone; the result does not hang on them
   std::vector<std::string> bone_names;              // for messages; "bone 3" where there is none
 };
 
@@ -34,7 +39,7 @@ using BonePath = std::function<std::vector<RigidTransform>(double t)>;
 
 struct SolveSettings {
   bool contact = false;
-  double step_degrees = 7.5;        // of the joint that turns furthest
+  double step_degrees = 22.5;       // at most, of the joint that turns furthest
   double contact_mm = 1.4;          // from this distance on skin is pushed apart, where it was further apart at rest
   double step_tolerance_mm = 4;     // a step ends when no node would move further than this: half a tet
   double tolerance_mm = 0.3;        // at the pose

@@ -229,7 +229,11 @@ void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueV
     glm::ivec3 voxel(0);
     const bool found = around.nearest(mesh.V.row(i), [&](const glm::ivec3& v) { return is_in(moving.meshed, tissue, v); }, voxel);
     int holder = bone[i] == kSeveral || in_joint[i] ? kNone : bone[i];
-    if (bone[i] == kNone && found && !is_in(moving.free, tissue, voxel)) holder = moving.moves_as[influence_at(weights, tissue, voxel).bone[0]];
+    if (const float from = found && bone[i] == kNone ? moving.free_from_at(tissue, voxel) : 0; from > 0) {
+      const int with = moving.moves_as[influence_at(weights, tissue, voxel).bone[0]];
+      if (from < INFINITY) model.fem.waiting.push_back({i, with, from});
+      else holder = with;
+    }
     model.fem.held_by.push_back(holder);
     if (found)
       model.fem.influences.push_back(influences_around(weights, volume, tissue, moving.moves_as, voxel));

@@ -59,6 +59,13 @@ std::vector<double> places_of(std::size_t poses) {
   return places;
 }
 
+// What waits on one of several legs of the way, by places on that leg.
+std::vector<FemModel::Waiting> on_leg(std::vector<FemModel::Waiting> waiting, std::size_t leg, std::size_t legs) {
+  for (FemModel::Waiting& each : waiting) each.until = each.until * double(legs) - double(leg);
+  std::erase_if(waiting, [](const FemModel::Waiting& each) { return each.until <= 0; });
+  return waiting;
+}
+
 //   spacing  of the mesh, mm       contact_mm  from which skin is pushed apart
 void measure(const SolvedPose& solved, double spacing, double contact_mm, FemShape& shape) {
   const TetMesh& mesh = shape.model.fem.mesh;
@@ -118,13 +125,15 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   TissueMesh meshed = mesh_tissue(regions, settings, progress);
   last_.mesh.fallback = meshed.warning;
   last_.model = tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh), {.joint_mm = kJoint * spacing_});
+  waiting_ = last_.model.fem.waiting;
   last_.V = last_.model.fem.mesh.V;
   last_.seconds_mesh = seconds_since(meshing);
   if (fem_.on_mesh) fem_.on_mesh(last_.model);
 }
 
 std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
-  const Pose from = last_.pose, to = poses_.at(solved_++);
+  const Pose from = last_.pose, to = poses_.at(solved_);
+  last_.model.fem.waiting = on_leg(waiting_, solved_++, poses_.size());
   if (last_.moving.empty()) return nullptr;
   const auto solving = std::chrono::steady_clock::now();
   const BonePath path = [&](double t) { return bone_motions(weights_.bones(), armature_, pose_between(from, to, t)); };

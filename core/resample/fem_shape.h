@@ -47,6 +47,7 @@ class FemSequence {
   std::vector<Pose> poses_;
   Fem fem_;
   double spacing_, finest_;  // mm
+  std::vector<FemModel::Waiting> waiting_;  // on the way through all poses
   std::size_t solved_ = 0;
   FemShape last_;            // at rest, before the first
 };

@@ -58,7 +58,7 @@ struct Cost {
 void print(const Row& row, const Cost& cost) {
   const FemSeconds& s = cost.seconds;
   const double factorization = s.factorization / cost.factorizations, ordering = s.ordering / cost.analyses, iteration = s.total / cost.iterations;
-  std::printf("%4g %5g %-7s %7lld %6.2f %7.1f %6.1f%% %7.1f %5.1f %5.1f %6.2f %5.1f %5d %6d %6.2f %6.2f %6.2f %7.3f %5lld %7.0f  %s\n", row.spacing, row.degrees, row.kind.c_str(), cost.tets,
+  std::printf("%4g %5g %-7s %7lld %6.3f %7.2f %6.1f%% %7.2f %5.2f %5.2f %6.2f %5.2f %5d %6d %6.2f %6.2f %6.2f %7.3f %5lld %7.0f  %s\n", row.spacing, row.degrees, row.kind.c_str(), cost.tets,
               cost.mesh, cost.solve, 100 * cost.mesh / cost.solve, s.factorization, s.assembly, s.contact, s.analysis, s.search, cost.iterations, cost.analyses, factorization,
               iteration / factorization, iteration / (factorization + ordering), cost.min_det_f, cost.crossings, peak_memory_mb(), cost.end.c_str());
   std::fflush(stdout);

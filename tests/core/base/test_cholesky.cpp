@@ -52,6 +52,29 @@ Eigen::MatrixXd fill(Cholesky& sparse, const BlockGraph& graph, double diagonal)
 }
 }  // namespace
 
+TEST_CASE("cholesky: the places of all pairs of some nodes are those of each pair") {
+  BlockGraphBuilder builder(9);
+  builder.add(std::array{0, 3, 5, 7});
+  builder.add(std::array{1, 3, 8});
+  builder.add(std::array{2, 4, 6, 8});
+  const Cholesky matrix(builder.build());
+  std::vector<int> nodes{0, 1, 3, 5, 7, 8};
+  std::sort(nodes.begin(), nodes.end(), [&](int a, int b) { return matrix.rank(a) < matrix.rank(b); });
+  nodes.insert(nodes.begin(), {-1, -1});
+  std::vector<Cholesky::Place> places(nodes.size() * (nodes.size() + 1) / 2);
+  matrix.places(nodes, places.data());
+  int met = 0;
+  for (std::size_t row = 0, k = 0; row < nodes.size(); ++row)
+    for (std::size_t column = 0; column <= row; ++column, ++k) {
+      const Cholesky::Place expected = nodes[row] < 0 || nodes[column] < 0 ? Cholesky::Place{-1, 0} : matrix.place(nodes[row], nodes[column]);
+      CHECK(places[k].at == expected.at);
+      if (expected.at < 0) continue;
+      CHECK(places[k].stride == expected.stride);
+      ++met;
+    }
+  CHECK(met == 6 + 6 + 3);
+}
+
 TEST_CASE("cholesky: a graph has every pair of nodes that meet in an element, once") {
   BlockGraphBuilder builder(5);
   builder.add(std::array{0, 2, 4});

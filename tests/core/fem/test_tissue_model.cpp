@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/fem/tissue_model.h"
 
+#include <map>
+
 #include <doctest/doctest.h>
 
 #include "core/fem/stretch.h"
@@ -109,6 +111,39 @@ TEST_CASE("moving tissue: with contact also what the pose brings together may be
   const MovingTissue apart = body.moving(165, without), close = body.moving(165, with), open = body.moving(40, with);
   CHECK(count(close.free) > 1.5 * count(apart.free));
   CHECK(count(open.free) == count(body.moving(40, without).free));
+}
+
+TEST_CASE("moving tissue: what the pose brings together later moves as a rigid body before") {
+  const Body body({}, 160);
+  const MovingSettings settings{.margin_mm = 8, .rim_mm = 8, .contact = true, .near_mm = 10};
+  constexpr double kWhole = 165;
+  const MovingTissue whole = body.moving(kWhole, settings);
+  std::map<float, std::int64_t> voxels;
+  bool same = true;
+  body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
+    const float from = whole.free_from_at(body.tissue, v);
+    ++voxels[from];
+    same &= has(whole.free, body.tissue, v) == (from < INFINITY);
+  });
+  CHECK(same);
+  REQUIRE(voxels.size() > 2);  // at once, never, and in between
+  CHECK(voxels.begin()->first == 0);
+  for (const auto& [from, count] : voxels) {
+    if (from == 0 || from == INFINITY) continue;
+    // A pose no further than that has it not.
+    const MovingTissue part = body.moving(kWhole * from, settings);
+    bool still = true;
+    body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) { still &= whole.free_from_at(body.tissue, v) != from || !has(part.free, body.tissue, v); });
+    CHECK(still);
+  }
+
+  const TissueModel model = model_of(body, whole, 8);
+  CHECK(!model.fem.waiting.empty());
+  for (const auto& [node, bone, until] : model.fem.waiting) {
+    CHECK(model.fem.held_by[node] < 0);
+    CHECK(bone == (model.fem.mesh.V(node, 2) < 80 ? 0 : 1));
+    CHECK(voxels.count(float(until)) == 1);
+  }
 }
 
 TEST_CASE("tissue model: bones hold the nodes of their tets, the rim is held, and what lies between two bones is the joint") {

@@ -2,6 +2,8 @@
 // Posing by finite elements from a volume to a volume.
 #include "core/resample/fem_shape.h"
 
+#include <map>
+
 #include <doctest/doctest.h>
 
 #include "core/base/parallel.h"
@@ -209,6 +211,28 @@ TEST_CASE("fem: frames of a sequence share one mesh and start from the one befor
   CHECK(frames[3].report.solve->iterations < direct.report.solve->iterations);
   const auto soft = [](const LabelVolume& volume) { return std::count_if(volume.voxels.begin(), volume.voxels.end(), [](Label label) { return label == test::kFat || label == test::kSkin; }); };
   CHECK(double(std::abs(soft(direct.volume) - soft(frames[3].volume))) < 0.003 * double(soft(direct.volume)));
+}
+
+TEST_CASE("fem: what a later frame of a sequence presses waits for it") {
+  const test::BentTube tube = test::bent_tube({}, 120);
+  const TissueVoxels tissue(tube.volume);
+  LabelSet is_bone(65536, 0);
+  is_bone[test::kBone] = 1;
+  FemSequence sequence(tube.volume, tissue, tube.tissues, is_bone, tube.weights, tube.rig, {tube.pose(55), tube.pose(110), tube.pose(165)},
+                       {.contact = true, .spacing_mm = 6});
+  std::vector<std::map<int, double>> waiting;  // by node
+  for (int leg = 0; leg < 3; ++leg) {
+    const auto shape = sequence.next();
+    REQUIRE(shape);
+    waiting.emplace_back();
+    for (const auto& each : shape->model.fem.waiting) waiting.back()[each.node] = each.until;
+  }
+  REQUIRE(!waiting[1].empty());
+  for (int leg = 1; leg < 3; ++leg)
+    for (const auto& [node, until] : waiting[0]) {
+      CHECK(waiting[leg].count(node) == std::size_t(until > leg));
+      if (until > leg) CHECK(waiting[leg][node] == doctest::Approx(until - leg));
+    }
 }
 
 TEST_CASE("resample: a sequence is its poses one by one, with blends") {
