@@ -35,10 +35,10 @@ std::vector<glm::ivec3> select(std::int64_t count, std::int64_t grain, const Vox
 }
 
 // The tissue voxels in cells that hold air, which may lie outside, in brick order.
-std::vector<glm::ivec3> find_near_air(const SurfaceNet& net, const SampleLattice& lattice, const TissueVoxels& tissue) {
+std::vector<glm::ivec3> find_near_air(const SurfaceNet& net, const SmallestCells& smallest, const TissueVoxels& tissue) {
   return select(std::ssize(tissue.bricks()), kBricks,
                 [&](std::int64_t begin, std::int64_t end, const auto& body) { tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) { body(v); }); },
-                [&](const glm::ivec3& v) { return net.is_near_air(lattice.fine_from_voxel * glm::dvec3(v)); });
+                [&](const glm::ivec3& v) { return net.is_near_air(smallest(v)); });
 }
 
 std::vector<glm::ivec3> find_outside(const SurfaceNet& net, const SampleLattice& lattice, const std::vector<glm::ivec3>& near_air) {
@@ -162,6 +162,7 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
   progress.update("surface", 0);
   SampleLattice lattice = sample_regions(voxels, settings);
   const VoxelLookup voxel_at(voxels, lattice);
+  const SmallestCells smallest(lattice, voxels.grid);
   Pushes pushes(lattice.label.size());
   const auto allowed = static_cast<std::int64_t>((1 - settings.least_covered) * double(voxels.tissue.size()));
   auto net = std::make_unique<SurfaceNet>(lattice, voxel_at);
@@ -172,7 +173,7 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
     net->place(pushes);
     if (round > 0) std::erase_if(outside, [&](const glm::ivec3& v) { return !net->is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
     if (round == 0 || std::ssize(outside) <= allowed) {  // a point that moved may have left others outside
-      if (!std::exchange(is_known, true)) near_air = find_near_air(*net, lattice, voxels.tissue);
+      if (!std::exchange(is_known, true)) near_air = find_near_air(*net, smallest, voxels.tissue);
       outside = find_outside(*net, lattice, near_air);
     }
     if (std::ssize(outside) <= allowed || round == kRounds) {

@@ -200,8 +200,12 @@ std::array<SampleLattice::Cell, 8> SampleLattice::cells_around(const glm::ivec3&
 
 int SampleLattice::edge_length(const glm::ivec3& p, int axis) const {
   if (p[axis] + 1 >= size[axis]) return 0;
-  int smallest = 255;
-  for (const Cell& cell : cells_around_edge(p, axis)) smallest = std::min(smallest, cell.size);
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const std::int64_t strides[3] = {1, size.x, std::int64_t{size.x} * size.y};
+  // Cells on both sides, along the other two axes; at the lattice's border one side.
+  const std::int64_t here = index(p), u_low = p[u] > 0 ? strides[u] : 0, v_low = p[v] > 0 ? strides[v] : 0;
+  const std::int64_t u_high = p[u] + 1 < size[u] ? 0 : strides[u], v_high = p[v] + 1 < size[v] ? 0 : strides[v];
+  const int smallest = std::min({cell_size[here - u_low - v_low], cell_size[here - u_low - v_high], cell_size[here - u_high - v_low], cell_size[here - u_high - v_high]});
   return is_multiple(p, smallest) ? smallest : 0;
 }
 
@@ -216,6 +220,15 @@ std::array<SampleLattice::Cell, 4> SampleLattice::cells_around_edge(const glm::i
     cells[slot] = cell(glm::clamp(fine, glm::ivec3(0), size - 2));
   }
   return cells;
+}
+
+SmallestCells::SmallestCells(const SampleLattice& lattice, const Grid& grid) {
+  const std::int64_t strides[3] = {1, lattice.size.x, std::int64_t{lattice.size.x} * lattice.size.y};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int v = 0; v < grid.size[axis]; ++v) {
+      const double fine = lattice.fine_from_voxel.linear[axis][axis] * v + lattice.fine_from_voxel.offset[axis];
+      along_[axis].push_back(strides[axis] * std::clamp(int(std::floor(fine)), 0, lattice.size[axis] - 2));
+    }
 }
 
 SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSettings& settings) {

@@ -45,6 +45,16 @@ struct SampleLattice {
   std::array<Cell, 4> cells_around_edge(const glm::ivec3& p, int axis) const;
 };
 
+// Where, in a lattice's lists, the smallest cell stands that a voxel's centre lies in.
+class SmallestCells {
+ public:
+  SmallestCells(const SampleLattice& lattice, const Grid& grid);
+  std::int64_t operator()(const glm::ivec3& voxel) const { return along_[0][voxel.x] + along_[1][voxel.y] + along_[2][voxel.z]; }
+
+ private:
+  std::vector<std::int64_t> along_[3];  // by the voxel's place along each axis
+};
+
 // Samples spaced as the settings say over the voxels and a border of air around them; tissue where voxels fill half of the cube of
 // one spacing around them. A body must have voxels.
 SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSettings& settings);

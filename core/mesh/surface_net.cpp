@@ -18,11 +18,7 @@ double border_along(const VoxelLookup& voxel_at, const glm::dvec3& from, int axi
   const int steps = std::clamp(static_cast<int>(std::ceil(2 * length / voxel_at.voxel_along(axis))), 4, 64);
   int least_wrong = steps + 1, wrong = 0, best = 0;
   std::uint16_t seen[64];
-  for (int k = 0; k < steps; ++k) {
-    glm::dvec3 place = from;
-    place[axis] += (k + 0.5) * length / steps;
-    seen[k] = voxel_at(place);
-  }
+  voxel_at.along(from, axis, length, steps, seen);
   if (second == kAir) {
     for (int k = 0; k < steps; ++k)
       if (seen[k] != kAir) best = k + 1;
@@ -48,11 +44,13 @@ VoxelLookup::VoxelLookup(const VoxelRegions& voxels, const SampleLattice& lattic
   for (int i = 0; i < 3; ++i) scale_[i] = lattice.fine_from_voxel.linear[i][i];
 }
 
-std::uint16_t VoxelLookup::operator()(const glm::dvec3& fine) const {
-  const glm::ivec3 v(glm::floor((fine - offset_) / scale_ + 0.5));
-  if (!voxels_.grid.contains(v)) return kAir;
-  const std::int64_t place = voxels_.tissue.index_of(v);
-  return place < 0 ? kAir : voxels_.region[place];
+void VoxelLookup::along(const glm::dvec3& from, int axis, int length, int count, std::uint16_t* regions) const {
+  glm::ivec3 v(glm::floor((from - offset_) / scale_ + 0.5));
+  for (int k = 0; k < count; ++k) {
+    v[axis] = int(std::floor((from[axis] + (k + 0.5) * length / count - offset_[axis]) / scale_[axis] + 0.5));
+    const std::int64_t place = voxels_.grid.contains(v) ? voxels_.tissue.index_of(v) : -1;
+    regions[k] = place < 0 ? kAir : voxels_.region[place];
+  }
 }
 
 Pushes::Pushes(std::size_t samples) : cell(samples, 0) {

@@ -22,11 +22,12 @@
 
 namespace limber {
 
-// Region of the voxel at a place of a lattice, air beyond the grid.
+// Regions of the voxels at places of a lattice, air beyond the grid.
 class VoxelLookup {
  public:
   VoxelLookup(const VoxelRegions& voxels, const SampleLattice& lattice);
-  std::uint16_t operator()(const glm::dvec3& fine) const;
+  // At `count` places in the middle of equal parts of the way from `from` along an axis.
+  void along(const glm::dvec3& from, int axis, int length, int count, std::uint16_t* regions) const;
   double voxel_along(int axis) const { return scale_[axis]; }  // fine steps
 
  private:
@@ -71,7 +72,7 @@ class SurfaceNet {
     const Holds holds = holds_[lattice_.index(smallest_at(place))];
     return holds == Holds::both ? region_at(place) == RegionSurface::kAir : holds == Holds::air;
   }
-  bool is_near_air(const glm::dvec3& place) const { return holds_[lattice_.index(smallest_at(place))] != Holds::tissue; }
+  bool is_near_air(std::int64_t smallest) const { return holds_[smallest] != Holds::tissue; }  // by where the smallest cell stands
 
   // triangle(a, b, c, edge): nodes of each around an edge, facing the sample further along the axis.
   template <class Triangle>
