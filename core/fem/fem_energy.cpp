@@ -13,6 +13,7 @@ namespace limber {
 
 namespace {
 constexpr double kWeakBelow = 0.4;  // det F of flesh at which the weak barrier begins
+constexpr double kKeep = 0.05;      // det F that no step goes below
 
 // Of this process and of those it has started and seen end.
 double cpu_seconds() {
@@ -30,7 +31,7 @@ CpuTimer::CpuTimer(double& sum) : sum_(sum), start_(cpu_seconds()) {}
 CpuTimer::~CpuTimer() { sum_ += cpu_seconds() - start_; }
 
 FemEnergy::FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material, double weak_barrier_kpa, int patch_size)
-    : node_count_(int(rest.rows())) {
+    : node_count_(int(rest.rows())), rest_(rest) {
   std::vector<double> bulk(T.rows()), shear(T.rows());
   for (Eigen::Index t = 0; t < T.rows(); ++t) bulk[t] = patch_bulk(material[t]), shear[t] = material[t].shear_modulus;
   const PatchOrder order = grow_patches(rest, T, bulk, shear, patch_size);
@@ -61,6 +62,8 @@ void FemEnergy::hold(PinForm pins, std::vector<int> carried, Places carried_targ
 void FemEnergy::guard(const Eigen::MatrixX4i& guarded) {
   bounded_.resize(flesh_tets_.rows() + guarded.rows(), 4);
   bounded_ << flesh_tets_, guarded;
+  keep_.resize(bounded_.rows());
+  for (Eigen::Index t = 0; t < bounded_.rows(); ++t) keep_[t] = kKeep * determinant(rest_, bounded_(t, 0), bounded_(t, 1), bounded_(t, 2), bounded_(t, 3));
   first_at_.assign(node_count_ + 1, 0);
   for (const int node : bounded_.reshaped()) ++first_at_[node + 1];
   std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
@@ -186,7 +189,7 @@ FemEnergy::Bound FemEnergy::largest_step(const Places& x, const Places& step, do
   Bound bound{limit};
   {
     const CpuTimer timer(seconds_.search);
-    const StepBound tets = limber::largest_step(bounded_, x, step, limit);
+    const StepBound tets = limber::largest_step(bounded_, x, step, limit, keep_);
     bound.length = tets.length;
     if (tets.tet >= 0) {
       bound.obstacle = tets.tet < flesh_tets_.rows() ? Obstacle::Flesh : Obstacle::Guarded;

@@ -92,6 +92,8 @@ class FemEnergy {
   void assemble(const Places& x, Curvature curvature, Places& gradient);
 
   int node_count_;
+  Places rest_;
+  std::vector<double> keep_;  // of bounded_, as for largest_step
   Eigen::MatrixX4i flesh_tets_, bounded_;
   std::vector<int> first_at_, tet_at_;  // of bounded_, those around each node: tet_at_[first_at_[v] .. first_at_[v + 1])
   ElasticForm flesh_;

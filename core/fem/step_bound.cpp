@@ -14,6 +14,7 @@ namespace limber {
 namespace {
 constexpr std::int64_t kGrain = 4096;
 constexpr double kKept = 0.1;  // of a tet's volume, by one step
+constexpr double kHalf = 0.5;  // of it, where that is less than what the tet must keep
 
 // First a in (0, limit] where c0 + c1 a + c2 a^2 + c3 a^3 falls to zero, from below; limit if none. c0 > 0.
 double first_root(double c0, double c1, double c2, double c3, double limit) {
@@ -46,22 +47,23 @@ double first_root(double c0, double c1, double c2, double c3, double limit) {
   return limit;
 }
 
-double tet_bound(const Eigen::Vector4i& t, const Places& x, const Places& step, double limit) {
+double tet_bound(const Eigen::Vector4i& t, const Places& x, const Places& step, double keep, double limit) {
   const Eigen::Vector3d o = x.row(t[0]), p = step.row(t[0]);
   const Eigen::Vector3d a = x.row(t[1]).transpose() - o, b = x.row(t[2]).transpose() - o, c = x.row(t[3]).transpose() - o;
   const Eigen::Vector3d u = step.row(t[1]).transpose() - p, v = step.row(t[2]).transpose() - p, w = step.row(t[3]).transpose() - p;
   const Eigen::Vector3d bc = b.cross(c), vw = v.cross(w), mixed = v.cross(c) + b.cross(w);
   const double volume = a.dot(bc);
-  return first_root((1 - kKept) * volume, u.dot(bc) + a.dot(mixed), a.dot(vw) + u.dot(mixed), u.dot(vw), limit);
+  const double kept = std::max(kKept * volume, std::min(kHalf * volume, keep));
+  return first_root(volume - kept, u.dot(bc) + a.dot(mixed), a.dot(vw) + u.dot(mixed), u.dot(vw), limit);
 }
 }  // namespace
 
-StepBound largest_step(const Eigen::MatrixX4i& T, const Places& x, const Places& step, double limit) {
+StepBound largest_step(const Eigen::MatrixX4i& T, const Places& x, const Places& step, double limit, std::span<const double> keep) {
   std::vector<StepBound> of_block((T.rows() + kGrain - 1) / kGrain, {limit, -1});
   parallel_for(T.rows(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     StepBound& bound = of_block[begin / kGrain];
     for (auto t = begin; t < end; ++t) {
-      const double length = tet_bound(T.row(t), x, step, bound.length);
+      const double length = tet_bound(T.row(t), x, step, keep.empty() ? 0 : keep[t], bound.length);
       if (length < bound.length) bound = {length, t};
     }
   });

@@ -204,7 +204,7 @@ TEST_CASE("patch form: every tet is in one patch, patches hang together by faces
   CHECK(small < std::ssize(order.first) / 20);
 }
 
-TEST_CASE("step bound: the step ends where the first tet has a tenth of its volume, exactly") {
+TEST_CASE("step bound: the step ends where the first tet has a tenth of its volume, or what it must keep, exactly") {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const TetMesh mesh = kuhn_box(3, 3, 3, {0, 0, 0}, {3, 3, 3});
@@ -212,14 +212,23 @@ TEST_CASE("step bound: the step ends where the first tet has a tenth of its volu
   for (int round = 0; round < 60; ++round) {
     const Places step = (round < 30 ? 0.15 : 2.0) * Places::NullaryExpr(x.rows(), 3, [&] { return uniform(random); });
     const double limit = 8;
-    const StepBound bound = largest_step(mesh.T, x, step, limit);
-    REQUIRE(bound.length > 0);
-    const auto share = [&](Eigen::Index t, double length) {
-      const Places there = x + length * step;
-      return determinant(there, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) / determinant(x, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3));
-    };
-    for (int k = 1; k <= 40; ++k)
-      for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) REQUIRE(share(t, bound.length * k / 40) >= 0.1 - 1e-9);
-    if (bound.length < limit) CHECK(share(bound.tet, bound.length) == doctest::Approx(0.1).epsilon(1e-6));
+    for (const double must : {0.0, 0.3, 0.7}) {  // of its volume, of every other tet
+      CAPTURE(must);
+      std::vector<double> keep, least;
+      for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
+        const double share = t % 2 ? must : 0;
+        keep.push_back(share * determinant(x, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)));
+        least.push_back(std::max(0.1, std::min(share, 0.5)));
+      }
+      const StepBound bound = largest_step(mesh.T, x, step, limit, must > 0 ? keep : std::vector<double>());
+      REQUIRE(bound.length > 0);
+      const auto share = [&](Eigen::Index t, double length) {
+        const Places there = x + length * step;
+        return determinant(there, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) / determinant(x, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3));
+      };
+      for (int k = 1; k <= 40; ++k)
+        for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) REQUIRE(share(t, bound.length * k / 40) >= least[t] - 1e-9);
+      if (bound.length < limit) CHECK(share(bound.tet, bound.length) == doctest::Approx(least[bound.tet]).epsilon(1e-6));
+    }
   }
 }
