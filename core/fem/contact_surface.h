@@ -38,7 +38,7 @@ NearestPoints nearest_points(const ContactPair& pair, const Places& x);
 // maybe a little less, and where that is `limit` itself a quarter is sure to be kept. (With a tenth, folds close faster than what
 // pushes them open can tell, and Newton's method has then no room left to move in.)
 double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit, double near = INFINITY);
-// Whether all of `step` is more than that.
+// Whether all of `step` is more than that, or ends at less than half of what largest_step() measures by.
 //   apart  the distance at x
 bool is_too_far(const ContactPair& pair, double apart, const Places& x, const Places& step, double near);
 

@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 constexpr double kWeakBelow = 0.4;  // det F of flesh at which the weak barrier begins
-constexpr double kKeep = 0.05;      // det F that no step goes below
+constexpr double kKeep = 0.05;      // det F that no step goes below; what has less than twice that is halved at most
 
 // Of this process and of those it has started and seen end.
 double cpu_seconds() {
@@ -204,7 +204,8 @@ FemEnergy::Bound FemEnergy::largest_step(const Places& x, const Places& step, do
 }
 
 Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>& fixed) {
-  constexpr double kBorne = 0.2;  // of a tet's volume
+  constexpr double kBorne = 0.2;  // of a tet's volume,
+  constexpr double kBeyond = 1.2;  // or of what a step must leave of it: more than both, so that the step is not bounded
   constexpr int kRounds = 40;
   constexpr int kSeen = 20;  // rounds that pairs of skin are looked for anew after; what comes near unseen is seen by the step's bound
   const CpuTimer timer(seconds_.search);
@@ -217,7 +218,8 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
     parallel_for(std::ssize(asked), 4096, [&](std::int64_t begin, std::int64_t end) {
       for (auto k = begin; k < end; ++k) {
         const int t = asked[k];
-        flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) < kBorne * determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3));
+        const double before = determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3));
+        flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) < std::max(kBorne * before, kBeyond * std::min(0.5 * before, keep_[t]));
       }
     });
     std::erase_if(asked, [&](int t) { return !flattened[t]; });

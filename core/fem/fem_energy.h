@@ -56,7 +56,8 @@ class FemEnergy {
 
   int node_count() const { return node_count_; }
 
-  // Energy and derivatives know who may touch at x, or on the way of the last largest_step(): elsewhere this comes first.
+  // Energy and derivatives know who may touch on one way: that of the last largest_step() or yielding(). Elsewhere this comes first,
+  // whose way is x alone.
   void watch(const Places& x);
   // Infinite where a tet is inverted.
   double value(const Places& x);

@@ -62,7 +62,6 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
                       const std::function<void(int, double)>& on_iteration) {
   NewtonResult result;
   int jams = 0;
-  energy.watch(x);
   double value = energy.value(x);
   Places step;
   while (result.iterations < settings.iterations) {

@@ -30,7 +30,7 @@ struct NewtonResult {
   FemEnergy::Bound bound;           // of the last step
 };
 
-// x  in: positive tets; out: the least energy found, never higher than where it began
+// x  in: positive tets, on the way that the energy watches; out: the least energy found, never higher than where it began
 // on_iteration(iteration, residual) after each
 NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settings, Progress& progress = no_progress(),
                       const std::function<void(int, double)>& on_iteration = {});

@@ -55,15 +55,16 @@ bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet)
 std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   std::vector<FemModel::Waiting> waiting = model.waiting;
   std::stable_sort(waiting.begin(), waiting.end(), [](const auto& a, const auto& b) { return a.until < b.until; });
-  auto free = double(std::count(model.held_by.begin(), model.held_by.end(), -1)) - double(waiting.size());
-  double before = 0;
-  for (auto begin = waiting.begin(); begin != waiting.end();) {
+  double solved_for = double(std::count(model.held_by.begin(), model.held_by.end(), -1)) - double(waiting.size()), more = 0, since = 0;
+  for (auto begin = waiting.begin(); begin != waiting.end() && begin->until < 1;) {
     const auto end = std::find_if(begin, waiting.end(), [&](const auto& each) { return each.until > begin->until; });
-    const auto count = double(end - begin);
-    if (count < kWorth * free)
-      for (auto each = begin; each != end; ++each) each->until = before;
-    else before = begin->until;
-    free += count;
+    more += double(end - begin);
+    if (more < kWorth * solved_for) {
+      for (auto each = begin; each != end; ++each) each->until = since;
+    } else {
+      since = begin->until;
+      solved_for += std::exchange(more, 0);
+    }
     begin = end;
   }
   return waiting;
@@ -160,14 +161,15 @@ class PoseSolve {
   std::vector<int> rigid_nodes() const;
   bool at_rest() const;
   bool step(double to);
-  double part(double from, double to, Places& x);
+  bool part(double from, double& to, Places& x);
   void tell(double at, int iteration, double residual, const Places& x);
   NewtonResult relax(double at, double tolerance_mm, int iterations, Places& x);
   bool good(const std::vector<RigidTransform>& pose, const Places& x);
   void record();
   void settle();
   void hold_at(const std::vector<RigidTransform>& pose, const Places* less = nullptr);
-  Places turned_beyond(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& x) const;
+  Places turned_beyond(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const std::vector<Screw>& pace, double share,
+                       const Places& x) const;
   double follow(double from, double to, Places& x);
   struct Drift {
     double mm = 0;
@@ -183,6 +185,7 @@ class PoseSolve {
   Progress& progress_;
   const std::function<void(const SolveStep&)>& on_step_;
   const std::vector<FemModel::Waiting> waiting_;
+  double freed_ = 0;          // place on the path: what waits until before that is free
   std::vector<int> held_by_;  // #V: as the model's, and what still waits
   Parts parts_;
   const Places rest_;
@@ -196,9 +199,10 @@ class PoseSolve {
 
 // What waits on the way to `place` is part of its bone; what waits no more is flesh like any other.
 void PoseSolve::free_for(double place) {
+  freed_ = std::max(freed_, place);
   std::vector<int> held_by = model_.held_by;
   for (const FemModel::Waiting& each : waiting_)
-    if (each.until >= place) held_by[each.node] = each.bone;
+    if (each.until >= freed_) held_by[each.node] = each.bone;
   if (energy_ && held_by == held_by_) return;
   if (energy_) count_spent();
   energy_.reset();
@@ -241,17 +245,17 @@ void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const Places* l
   energy_->hold(std::move(pins), parts_.carried, std::move(carried));
 }
 
-// What bones do between two poses, less its part to first order, at each node.
-Places PoseSolve::turned_beyond(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const Places& x) const {
+// What bones do between two poses, less a share of the paces that they set out with, at each node.
+Places PoseSolve::turned_beyond(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const std::vector<Screw>& pace, double share,
+                                const Places& x) const {
   std::vector<RigidTransform> motion(from.size());
-  std::vector<Screw> screw(from.size());
-  for (std::size_t b = 0; b < from.size(); ++b) motion[b] = to[b] * inverse(from[b]), screw[b] = screw_of(motion[b]);
+  for (std::size_t b = 0; b < from.size(); ++b) motion[b] = to[b] * inverse(from[b]);
   Places beyond = Places::Zero(x.rows(), 3);
   parallel_for(x.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
     for (auto v = begin; v < end; ++v) {
       const glm::dvec3 p(x(v, 0), x(v, 1), x(v, 2));
       const auto add = [&](int bone, double weight) {
-        const glm::dvec3 way = weight * (motion[bone] * p - p - screw[bone].velocity(p));
+        const glm::dvec3 way = weight * (motion[bone] * p - p - share * pace[bone].velocity(p));
         beyond.row(v) += Eigen::RowVector3d(way.x, way.y, way.z);
       };
       if (held_by_[v] >= 0) add(held_by_[v], 1);
@@ -274,15 +278,17 @@ std::vector<int> PoseSolve::rigid_nodes() const {
 // the turns of the bones add to that. Half of the way, or a quarter, ..., where tissue does not bear it. Returns the place on the path
 // that x is now about, and that the bones are held at; `from` where there is no such way.
 double PoseSolve::follow(double from, double to, Places& x) {
-  const auto start = path_(from);
-  Places turn = turned_beyond(start, path_(to), x), way;
+  const auto start = path_(from), end = path_(to);
+  std::vector<Screw> pace;
+  for (std::size_t b = 0; b < start.size(); ++b) pace.push_back(screw_of(end[b] * inverse(start[b])));
+  Places turn = turned_beyond(start, end, pace, 1, x), way;
   double slope = 0;
-  hold_at(path_(to), &turn);
+  hold_at(end, &turn);
   energy_->watch(x);
   if (!energy_->newton_step(x, Curvature::Projected, way, slope)) return from;
   for (double share = 1;; share /= 2) {
-    const double at = from + share * (to - from);
-    if (share < 1) turn = turned_beyond(start, path_(at), x);
+    const double at = share == 1 ? to : from + share * (to - from);
+    if (share < 1) turn = turned_beyond(start, path_(at), pace, share, x);
     Places step = share * way + turn;
     double bound = energy_->largest_step(x, step, 1).length;
     if (bound < kRough) {
@@ -334,7 +340,7 @@ void PoseSolve::tell(double at, int iteration, double residual, const Places& x)
   on_step_({at, iteration, residual, V});
 }
 
-// To the least energy, with the bones where they are held.
+// To the least energy, with the bones where they are held, from x on a way that is watched.
 NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, Places& x) {
   const int before = result_.iterations;
   const NewtonResult solved = minimise(*energy_, x, {tolerance_mm, result_.reached == 1 ? kStragglers : 0, iterations, held_}, progress_,
@@ -351,6 +357,7 @@ void PoseSolve::settle() {
   const auto pose = path_(1);
   hold_at(pose);
   Places x = x_;
+  energy_->watch(x);
   const NewtonResult solved = relax(1, settings_.tolerance_mm, kSettling * settings_.step_iterations, x);
   if (!good(pose, x)) return;
   x_ = std::move(x);
@@ -379,45 +386,50 @@ void PoseSolve::record() {
   result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_->min_ratio(x_));
 }
 
-// From x, good at `from`, to the shape at `to` or at a place before it, which is returned: `from` where that fails.
-double PoseSolve::part(double from, double to, Places& x) {
+// From x, good at `from`, to the shape at `to`, or at a place before it, which `to` becomes.
+bool PoseSolve::part(double from, double& to, Places& x) {
   const double at = follow(from, to, x);
   if (at == from) {
     result_.blocked_by = obstacle({}, x);
-    return from;
+    return false;
   }
+  to = at;
   const NewtonResult solved = relax(at, settings_.step_tolerance_mm, settings_.step_iterations, x);
   if (!solved.converged) {
     result_.blocked_by = obstacle(solved.bound, x);
-    return from;
+    return false;
   }
-  return good(path_(at), x) ? at : from;
+  return good(path_(at), x);
 }
 
 // As far towards `to` as it goes, in as few parts as can be. False when not even the shortest part can be done.
 bool PoseSolve::step(double to) {
   free_for(to);
-  double from = result_.reached, way = to - from;
+  const double begin = result_.reached;
+  double& from = result_.reached;
+  double way = to - from;
   bool loose = from > 0;
   while (from < to) {
-    const double next = way < 0.999 * (to - from) ? from + way : to;
+    double next = way < 0.999 * (to - from) ? from + way : to;
     Places x = x_;
-    if (const double at = part(from, next, x); at > from) {
+    if (part(from, next, x)) {
       x_ = std::move(x);
-      way = 2 * (at - from);
-      from = at;
+      way = 2 * (next - from);
+      from = next;
       loose = result_.residual > kTight * settings_.step_tolerance_mm;
     } else if (std::exchange(loose, false)) {
       // A shape that lags behind its bones is a poor start for the next step.
       hold_at(path_(from));
+      energy_->watch(x_);
       relax(from, kTight * settings_.step_tolerance_mm, settings_.step_iterations, x_);
     } else if ((way = 0.5 * (next - from)) < 0.5 * shortest_) {
-      break;
+      if (held_by_ == model_.held_by) break;
+      free_for(INFINITY);  // maybe what waits stands in the way
+      way = to - from;
     }
   }
-  if (from == result_.reached) return false;
+  if (from == begin) return false;
 
-  result_.reached = from;
   ++result_.steps;
   record();
   return true;

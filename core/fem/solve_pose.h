@@ -3,7 +3,8 @@
 // Bones are held by stiff springs to where their rig bones are; everything else finds the shape of least energy. Flesh keeps
 // its volume (nearly incompressible, without the locking of plain tets, patch_form.h) and is never turned inside out at any
 // iterate. With contact no part of the skin passes through another, at any iterate (contact_form.h) [Li et al. 2020].
-// Every step is solved by projected Newton (newton.h). Lengths in mm, stiffness in kPa. The same for any number of threads.
+// Every step begins along the tangent of the path, which is one iteration, and is solved by projected Newton (newton.h): the first
+// guess knows by the tissue's curvature what presses where. Lengths in mm, stiffness in kPa. The same for any number of threads.
 #pragma once
 
 #include <cstdint>

@@ -153,6 +153,7 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   std::erase_if(shape->mesh.stretch, [&](const auto& tissue) { return is_bone_[tissue.first] != 0; });  // painted rigidly, whatever tets it lies in
   shape->seconds_solve = seconds_since(solving);
   if (ends) return shape;
+  if (shape->reached < 1) waiting_.clear();  // the way on is another
   last_.V = shape->V;
   last_.pose = shape->pose;
   last_.seconds_mesh = 0;  // once

@@ -324,6 +324,18 @@ TEST_CASE("settling: measures of the mesh and its tets are shown while it settle
   CHECK_FALSE(scene.weights);
   CHECK_FALSE(scene.mesh);
 
+  // A bone of its own for each half: with the one between them the ball would turn as a whole.
+  Document two_bones = test.editor->document();
+  auto volume = std::make_shared<LabelVolume>(*two_bones.volume);
+  const AffineTransform world = world_from_voxel(volume->grid);
+  for (std::int64_t at = 0; at < volume->grid.voxel_count(); ++at) {
+    const int x = int(at % volume->grid.size.x), y = int(at / volume->grid.size.x % volume->grid.size.y), z = int(at / (std::int64_t{volume->grid.size.x} * volume->grid.size.y));
+    const glm::dvec3 p = world * glm::dvec3(x, y, z);
+    if (volume->voxels[at] == 111) volume->voxels[at] = 17;
+    if (glm::length(glm::dvec3(p.x, p.y, std::abs(p.z) - 20)) < 10) volume->voxels[at] = 111;
+  }
+  two_bones.volume = volume;
+  test.editor->history.reset(two_bones, "Open limb with two bones");
   test.editor->worker_program = LIMBER_PROGRAM;
   test.play("key Ctrl+Return\nwait-job\nwait-idle");
   REQUIRE(test.has_result());

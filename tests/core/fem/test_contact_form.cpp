@@ -96,6 +96,8 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
       for (const double near : {double(INFINITY), 0.3}) {
         const double length = largest_step(pair, from, by, 1, near);
         CHECK(length > 0);
+        const bool ends_near = nearest_points(pair, from + by).distance < 0.5 * std::min(before, near);
+        CHECK(is_too_far(pair, before, from, by, near) == (length < 1 || ends_near));
         for (int k = 0; k <= 200; ++k) CHECK(nearest_points(pair, from + k / 200.0 * length * by).distance > 0.24 * std::min(before, near));
       }
     }

@@ -141,6 +141,10 @@ TEST_CASE("solve pose: flesh that waits goes with its bone until then, and the s
   const SolvedPose at_once = solve_pose(bar.fem, path, 40, accurate);
   CHECK((solved.V - at_once.V).rowwise().norm().maxCoeff() < 0.001);
 
+  SUBCASE("the same for one thread and two") {
+    const ThreadCount two(2);
+    CHECK(solve_pose(waits, path, 40, accurate).V == solved.V);
+  }
   SUBCASE("a node that a bone holds cannot wait") {
     waits.waiting.push_back({int(std::find(waits.held_by.begin(), waits.held_by.end(), 0) - waits.held_by.begin()), 0, 0.5});
     CHECK_THROWS_AS(solve_pose(waits, path, 40), Error);
