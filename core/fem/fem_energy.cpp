@@ -121,11 +121,17 @@ void FemEnergy::watch(const Places& x) {
   contact_.watch(x, Places::Zero(x.rows(), 3), 0);
 }
 
+void FemEnergy::find_ratios(const Places& x) {
+  if (x.rows() == ratios_at_.rows() && x == ratios_at_) return;
+  flesh_.volume_ratios(x, J_);
+  ratios_at_ = x;
+}
+
 double FemEnergy::value(const Places& x) {
   double sum = 0;
   {
     const CpuTimer timer(seconds_.search);
-    flesh_.volume_ratios(x, J_);
+    find_ratios(x);
     sum = flesh_.value(x, J_) + patches_.value(J_) + pins_.value(x);
   }
   if (contact_.empty()) return sum;
@@ -134,7 +140,7 @@ double FemEnergy::value(const Places& x) {
 }
 
 void FemEnergy::gradient(const Places& x, Places& gradient) {
-  flesh_.volume_ratios(x, J_);
+  find_ratios(x);
   gradient.setZero(node_count_, 3);
   patches_.pressures(J_, pressure_);
   flesh_.add_gradient(x, pressure_, gradient);
@@ -145,7 +151,7 @@ void FemEnergy::gradient(const Places& x, Places& gradient) {
 
 void FemEnergy::assemble(const Places& x, Curvature curvature, Places& gradient) {
   const CpuTimer timer(seconds_.assembly);
-  flesh_.volume_ratios(x, J_);
+  find_ratios(x);
   gradient.setZero(node_count_, 3);
   matrix_->clear();
   const auto values = matrix_->values();

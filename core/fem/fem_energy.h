@@ -89,7 +89,7 @@ class FemEnergy {
  private:
   void prepare(const Places& x);
   void number();
-  void ratios(const Places& x);
+  void find_ratios(const Places& x);
   void assemble(const Places& x, Curvature curvature, Places& gradient);
 
   int node_count_;
@@ -109,6 +109,7 @@ class FemEnergy {
   BlockGraph graph_;          // of flesh and its patches
   std::unique_ptr<Cholesky> matrix_;
   std::vector<double> J_, pressure_, right_side_;
+  Places ratios_at_;  // that J_ is of
   int factorizations_ = 0, analyses_ = 0;
   FemSeconds seconds_;
 };
