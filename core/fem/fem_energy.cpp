@@ -13,6 +13,8 @@ namespace limber {
 
 namespace {
 constexpr double kWeakBelow = 0.4;  // det F of flesh at which the weak barrier begins
+constexpr double kSteady = 1e-9;    // of a node's own curvature where it has least, added to it: what hangs by an edge can turn at no cost,
+                                    // and a matrix that is singular but for rounding may count as indefinite
 constexpr double kKeep = 0.05;      // det F that no step goes below; what has less than twice that is halved at most
 
 // Of this process and of those it has started and seen end.
@@ -164,7 +166,7 @@ void FemEnergy::assemble(const Places& x, Curvature curvature, Places& gradient)
   pins_.add_curvature(*matrix_, unknown_, values);
 }
 
-bool FemEnergy::newton_step(const Places& x, Curvature curvature, Places& step, double& slope) {
+bool FemEnergy::newton_step(const Places& x, Curvature curvature, Places& step, double& slope, const Places* towards) {
   {
     const CpuTimer timer(seconds_.contact);
     contact_.touch(x);
@@ -172,13 +174,20 @@ bool FemEnergy::newton_step(const Places& x, Curvature curvature, Places& step, 
   prepare(x);
   Places gradient;
   assemble(x, curvature, gradient);
+  right_side_.resize(3 * node_of_.size());
+  for (int k = 0; k < int(node_of_.size()); ++k) {
+    const Cholesky::Place own = matrix_->place(k, k);
+    double* diagonal = matrix_->values().data() + own.at;
+    const double steady = kSteady * std::min({diagonal[0], diagonal[own.stride + 1], diagonal[2 * own.stride + 2]});
+    for (int c = 0; c < 3; ++c) {
+      diagonal[c * own.stride + c] += steady;
+      right_side_[3 * k + c] = (towards ? steady * (*towards)(node_of_[k], c) : 0) - gradient(node_of_[k], c);
+    }
+  }
 
   const CpuTimer timer(seconds_.factorization);
   ++factorizations_;
   if (!matrix_->factorize()) return false;
-  right_side_.resize(3 * node_of_.size());
-  for (std::size_t k = 0; k < node_of_.size(); ++k)
-    for (int c = 0; c < 3; ++c) right_side_[3 * k + c] = -gradient(node_of_[k], c);
   matrix_->solve(right_side_);
 
   step.setZero(node_count_, 3);

@@ -64,7 +64,8 @@ class FemEnergy {
   void gradient(const Places& x, Places& gradient);
   // The Newton step at x: false when the curvature is not positive definite. Also says what the energy falls by along it, to
   // first order (above 0).
-  bool newton_step(const Places& x, Curvature curvature, Places& step, double& slope);
+  //   towards  where nothing holds a node, as a flap that hangs by two nodes, it takes this step; none: it stays
+  bool newton_step(const Places& x, Curvature curvature, Places& step, double& slope, const Places* towards = nullptr);
   enum class Obstacle { None, Flesh, Guarded, Contact };
   struct Bound {
     double length = 1;  // of the step

@@ -168,8 +168,8 @@ class PoseSolve {
   void record();
   void settle();
   void hold_at(const std::vector<RigidTransform>& pose, const Places* less = nullptr);
-  Places turned_beyond(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const std::vector<Screw>& pace, double share,
-                       const Places& x) const;
+  template <class Way>
+  Places blend(const Places& x, const Way& way) const;
   double follow(double from, double to, Places& x);
   struct Drift {
     double mm = 0;
@@ -245,25 +245,23 @@ void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const Places* l
   energy_->hold(std::move(pins), parts_.carried, std::move(carried));
 }
 
-// What bones do between two poses, less a share of the paces that they set out with, at each node.
-Places PoseSolve::turned_beyond(const std::vector<RigidTransform>& from, const std::vector<RigidTransform>& to, const std::vector<Screw>& pace, double share,
-                                const Places& x) const {
-  std::vector<RigidTransform> motion(from.size());
-  for (std::size_t b = 0; b < from.size(); ++b) motion[b] = to[b] * inverse(from[b]);
-  Places beyond = Places::Zero(x.rows(), 3);
+// By the bone that holds a node, or the blend of those that it follows: way(bone, place) of each.
+template <class Way>
+Places PoseSolve::blend(const Places& x, const Way& way) const {
+  Places sum = Places::Zero(x.rows(), 3);
   parallel_for(x.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
     for (auto v = begin; v < end; ++v) {
       const glm::dvec3 p(x(v, 0), x(v, 1), x(v, 2));
       const auto add = [&](int bone, double weight) {
-        const glm::dvec3 way = weight * (motion[bone] * p - p - share * pace[bone].velocity(p));
-        beyond.row(v) += Eigen::RowVector3d(way.x, way.y, way.z);
+        const glm::dvec3 q = weight * way(bone, p);
+        sum.row(v) += Eigen::RowVector3d(q.x, q.y, q.z);
       };
       if (held_by_[v] >= 0) add(held_by_[v], 1);
       else
         for (const auto& [bone, weight] : model_.influences[v]) add(bone, weight);
     }
   });
-  return beyond;
+  return sum;
 }
 
 // By their bone, -1 the others.
@@ -274,22 +272,31 @@ std::vector<int> PoseSolve::rigid_nodes() const {
   return rigid;
 }
 
-// From x, good at `from`, towards its shape at `to`: as the tissue's own curvature has it, which knows what presses where, and with what
-// the turns of the bones add to that. Half of the way, or a quarter, ..., where tissue does not bear it. Returns the place on the path
-// that x is now about, and that the bones are held at; `from` where there is no such way.
+// From x, good at `from`, towards its shape at `to`: as the tissue's own curvature has it, which knows what presses where, for the paces
+// that the bones set out with; and what the bones' turns add to those. Half of the way, or a quarter, ..., where tissue does not
+// bear it. Returns the place on the path that x is now about, and that the bones are held at; `from` where there is no such way.
 double PoseSolve::follow(double from, double to, Places& x) {
-  const auto start = path_(from), end = path_(to);
-  std::vector<Screw> pace;
-  for (std::size_t b = 0; b < start.size(); ++b) pace.push_back(screw_of(end[b] * inverse(start[b])));
-  Places turn = turned_beyond(start, end, pace, 1, x), way;
+  const auto start = path_(from);
+  const auto moved_to = [&](double at) {
+    std::vector<RigidTransform> motion = path_(at);
+    for (std::size_t b = 0; b < motion.size(); ++b) motion[b] = motion[b] * inverse(start[b]);
+    return motion;
+  };
+  const auto blend_of = [&](const std::vector<RigidTransform>& motion) { return blend(x, [&](int bone, const glm::dvec3& p) { return motion[bone] * p - p; }); };
+  std::vector<RigidTransform> motion = moved_to(to);
+  std::vector<Screw> screw;
+  for (const RigidTransform& each : motion) screw.push_back(screw_of(each));
+  const Places pace = blend(x, [&](int bone, const glm::dvec3& p) { return screw[bone].velocity(p); });
+  Places blended = blend_of(motion), way;
+  const Places turns = blended - pace;
   double slope = 0;
-  hold_at(end, &turn);
+  hold_at(path_(to), &turns);
   energy_->watch(x);
-  if (!energy_->newton_step(x, Curvature::Projected, way, slope)) return from;
+  if (!energy_->newton_step(x, Curvature::Projected, way, slope, &pace)) return from;
   for (double share = 1;; share /= 2) {
     const double at = share == 1 ? to : from + share * (to - from);
-    if (share < 1) turn = turned_beyond(start, path_(at), pace, share, x);
-    Places step = share * way + turn;
+    if (share < 1) blended = blend_of(moved_to(at));
+    Places step = blended + share * (way - pace);
     double bound = energy_->largest_step(x, step, 1).length;
     if (bound < kRough) {
       step = energy_->yielding(x, step, held_);

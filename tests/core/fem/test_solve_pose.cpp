@@ -151,6 +151,38 @@ TEST_CASE("solve pose: flesh that waits goes with its bone until then, and the s
   }
 }
 
+TEST_CASE("solve pose: a flap that hangs by an edge, and what hangs by nothing, go with the bones that they follow") {
+  BarModel bar;
+  // Two tets more on the skin of the lower half: one shares two nodes with the bar, one none.
+  TetMesh& mesh = bar.fem.mesh;
+  const auto first = mesh.V.rows(), tets = mesh.T.rows();
+  std::vector<int> edge;
+  for (int v = 0; v < int(first) && edge.size() < 2; ++v)
+    if (mesh.V(v, 0) > 0.49 * bar.width && mesh.V(v, 2) > 40 && (edge.empty() || std::abs(mesh.V(v, 2) - mesh.V(edge[0], 2)) < 1e-9)) edge.push_back(v);
+  REQUIRE(edge.size() == 2);
+  mesh.V.conservativeResize(first + 6, 3);
+  const Eigen::RowVector3d middle = 0.5 * (mesh.V.row(edge[0]) + mesh.V.row(edge[1]));
+  mesh.V.row(first) = middle + Eigen::RowVector3d(8, 0, -3);
+  mesh.V.row(first + 1) = middle + Eigen::RowVector3d(8, 0, 3);
+  for (int k = 0; k < 4; ++k) mesh.V.row(first + 2 + k) = middle + Eigen::RowVector3d(20 + 6 * (k == 1), 6 * (k == 2), 6 * (k == 3));
+  mesh.T.conservativeResize(tets + 2, 4);
+  mesh.T.row(tets) << edge[0], edge[1], first, first + 1;
+  mesh.T.row(tets + 1) << first + 2, first + 3, first + 4, first + 5;
+  if (count_inverted(mesh.T, mesh.V)) std::swap(mesh.T(tets, 2), mesh.T(tets, 3));
+  REQUIRE(count_inverted(mesh.T, mesh.V) == 0);
+  bar.fem.material.resize(tets + 2, bar.fem.material[0]);
+  bar.fem.held_by.resize(first + 6, -1);
+  bar.fem.influences.resize(first + 6, {{1, 1.0}});
+  const BonePath path = bar.bend(50);
+  const SolvedPose solved = solve_pose(bar.fem, path, 50);
+  CHECK(solved.converged);
+  const RigidTransform lower = path(1)[1];
+  for (auto v = first; v < first + 6; ++v) {
+    const glm::dvec3 to = lower * glm::dvec3(mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2));
+    CHECK((solved.V.row(v) - Eigen::RowVector3d(to.x, to.y, to.z)).norm() < 2.5);
+  }
+}
+
 TEST_CASE("solve pose: a pose out of reach ends at the last good step and says what is in the way") {
   const BarModel bar;  // its bones are 24 mm apart: they cannot come 40 mm nearer
   const SolvedPose solved = solve_pose(bar.fem, bar.push(40), 45);
