@@ -12,7 +12,8 @@ namespace limber {
 
 namespace {
 constexpr double kOfRest = 0.5;      // of what a pair is apart at rest: no thickness is more
-constexpr double kSoon = 1.6;        // thicknesses: pairs this near, that the way watched brings within one, are in the matrix before they touch
+constexpr double kSoon = 1.6;        // thicknesses: pairs this near that the way watched brings within one are in the matrix before they
+                                     // touch
 constexpr double kPressed = 0.6;     // of the thickness: pairs nearer than this must be in the matrix, which is ordered anew for them
 constexpr double kNear = 0.5;        // of the thickness: what is further apart may come within half of this in one step, for it is not yet, or
                                      // hardly, pushed apart

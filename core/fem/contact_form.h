@@ -59,8 +59,8 @@ class ContactForm {
   void add_gradient(Places& gradient) const;
   void add_curvature(std::span<double> values) const;
 
-  // The matrix must know who may touch: who does at x, and who on the way watched soon may. What begins to touch unforeseen pushes weakly: in the
-  // matrix each side then meets the other as if that stood still, until it is pressed.
+  // The matrix must know who may touch: who does at x, and who soon may on the way watched. What begins to touch unforeseen pushes
+  // weakly: in the matrix each side then meets the other as if that stood still, until it is pressed.
   void connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x);
   bool bind(const Cholesky& matrix, std::span<const int> unknown);  // after touch(); false where the matrix must know more
 
