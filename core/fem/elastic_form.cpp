@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -16,7 +19,8 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kChunk = 48;    // tets: large enough to have few neighbours, small enough for many in a colour
+constexpr std::int64_t kChunk = 48;    // tets, at least: large enough to have few neighbours, small enough for many in a colour
+constexpr std::int64_t kPatches = 256;  // of a loop without writes to nodes
 constexpr std::int64_t kGrain = 2048;  // tets of a loop without writes to nodes
 
 Eigen::Matrix3d deformation_of(const ElasticForm::Tet& tet, const Places& x) {
@@ -80,7 +84,7 @@ ColouredChunks colour_chunks(const std::vector<std::int64_t>& cut, int node_coun
   return result;
 }
 
-ElasticForm::ElasticForm(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy, const std::vector<std::int64_t>& may_cut) {
+ElasticForm::ElasticForm(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy, std::vector<std::int64_t> first) {
   tets_.resize(T.rows());
   for (Eigen::Index t = 0; t < T.rows(); ++t) {
     Tet& tet = tets_[t];
@@ -95,42 +99,67 @@ ElasticForm::ElasticForm(const Places& rest, const Eigen::MatrixX4i& T, const st
     tet.energy = energy[t];
   }
 
+  if (first.empty()) {
+    first.resize(T.rows() + 1);
+    std::iota(first.begin(), first.end(), 0);
+  }
+  corner_.resize(T.rows());
   std::vector<std::int64_t> cut;
-  std::int64_t begin = 0;
-  if (may_cut.empty())
-    for (begin = kChunk; begin < size() + kChunk; begin += kChunk) cut.push_back(std::min(begin, size()));
-  for (std::size_t k = 0; k < may_cut.size(); ++k)
-    if (may_cut[k] - begin >= kChunk || k + 1 == may_cut.size()) cut.push_back(begin = may_cut[k]);
-  chunks_ = colour_chunks(cut, int(rest.rows()), [&](std::int64_t t, const auto& visit) {
-    for (int node : tets_[t].node) visit(node);
+  std::int64_t cut_at = 0, places = 0;
+  for (std::size_t p = 0; p + 1 < first.size(); ++p) {
+    Patch patch{first[p], first[p + 1], std::ssize(node_), 0, places, 0};
+    for (auto t = patch.begin; t < patch.end; ++t)
+      for (const int node : tets_[t].node)
+        if (std::find(node_.begin() + patch.node_begin, node_.end(), node) == node_.end()) node_.push_back(node);
+    patch.node_end = std::ssize(node_);
+    const auto nodes = patch.node_end - patch.node_begin;
+    assert(nodes < 256);
+    patch.place_end = places += nodes * (nodes + 1) / 2;
+    patches_.push_back(patch);
+    if (patch.end - cut_at >= kChunk || p + 2 == first.size()) cut.push_back(std::ssize(patches_)), cut_at = patch.end;
+  }
+  place_.resize(places);
+  chunks_ = colour_chunks(cut, int(rest.rows()), [&](std::int64_t p, const auto& visit) {
+    for (auto k = patches_[p].node_begin; k < patches_[p].node_end; ++k) visit(node_[k]);
   });
 }
 
 void ElasticForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown) const {
-  for (const Tet& tet : tets_) {
-    std::array<int, 4> element;
-    for (int a = 0; a < 4; ++a) element[a] = unknown[tet.node[a]];
+  std::vector<int> element;
+  for (const Patch& patch : patches_) {
+    element.clear();
+    for (auto k = patch.node_begin; k < patch.node_end; ++k) element.push_back(unknown[node_[k]]);
     graph.add(element);
   }
 }
 
 void ElasticForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
-  places_.resize(tets_.size());
-  const auto rank = [&](int node) { return unknown[node] < 0 ? -1 : matrix.rank(unknown[node]); };
-  parallel_for(size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto t = begin; t < end; ++t) {
-      Tet& tet = tets_[t];
-      for (int a = 1; a < 4; ++a)
-        for (int b = a; b > 0 && rank(tet.node[b]) < rank(tet.node[b - 1]); --b) {
-          std::swap(tet.node[b], tet.node[b - 1]);
-          std::swap(tet.slope[b], tet.slope[b - 1]);
-        }
-      matrix.places(std::array{unknown[tet.node[0]], unknown[tet.node[1]], unknown[tet.node[2]], unknown[tet.node[3]]}, places_[t].data());
+  parallel_for(std::ssize(patches_), kPatches, [&](std::int64_t first, std::int64_t last) {
+    std::vector<std::pair<int, int>> by_rank;
+    std::vector<int> unknowns;
+    for (auto p = first; p < last; ++p) {
+      const Patch& patch = patches_[p];
+      const auto begin = node_.begin() + patch.node_begin, end = node_.begin() + patch.node_end;
+      by_rank.clear(), unknowns.clear();
+      for (auto at = begin; at != end; ++at) by_rank.push_back({unknown[*at] < 0 ? -1 : matrix.rank(unknown[*at]), *at});
+      std::sort(by_rank.begin(), by_rank.end());
+      std::transform(by_rank.begin(), by_rank.end(), begin, [](const auto& each) { return each.second; });
+      for (const auto& [rank, node] : by_rank) unknowns.push_back(unknown[node]);
+      matrix.places(unknowns, &place_[patch.place_begin]);
+      for (auto t = patch.begin; t < patch.end; ++t) {
+        Tet& tet = tets_[t];
+        auto& corner = corner_[t];
+        for (int a = 0; a < 4; ++a) corner[a] = std::uint8_t(std::find(begin, end, tet.node[a]) - begin);
+        for (int a = 1; a < 4; ++a)
+          for (int b = a; b > 0 && corner[b] < corner[b - 1]; --b) {
+            std::swap(corner[b], corner[b - 1]);
+            std::swap(tet.node[b], tet.node[b - 1]);
+            std::swap(tet.slope[b], tet.slope[b - 1]);
+          }
+      }
     }
   });
 }
-
-Eigen::Matrix3d ElasticForm::deformation(const Places& x, std::int64_t t) const { return deformation_of(tets_[t], x); }
 
 void ElasticForm::volume_ratios(const Places& x, std::vector<double>& J) const {
   J.resize(tets_.size());
@@ -152,7 +181,7 @@ double ElasticForm::value(const Places& x, const std::vector<double>& J) const {
 
 void ElasticForm::add_gradient(const Places& x, std::span<const double> pressure, Places& gradient) const {
   chunks_.for_each([&](const ColouredChunks::Chunk& chunk) {
-    for (auto t = chunk.begin; t < chunk.end; ++t) {
+    for (auto t = patches_[chunk.begin].begin; t < patches_[chunk.end - 1].end; ++t) {
       const Tet& tet = tets_[t];
       const Eigen::Matrix3d F = deformation_of(tet, x), C = cofactor(F);
       const double J = F.col(0).dot(C.col(0));
@@ -163,24 +192,90 @@ void ElasticForm::add_gradient(const Places& x, std::span<const double> pressure
   });
 }
 
-void ElasticForm::add_derivatives(const Places& x, std::span<const double> pressure, Curvature curvature, Places& gradient,
-                                  std::span<double> matrix) const {
+// Blocks of one patch after the other: of its tets first, then of what they have in common.
+class ElasticForm::PatchSum {
+ public:
+  PatchSum(const ElasticForm& form, const PatchStiffness& stiffness, std::span<double> matrix) : form_(form), stiffness_(stiffness), matrix_(matrix) {}
+
+  void begin(std::int64_t p) {
+    patch_ = p;
+    const Patch& patch = form_.patches_[p];
+    block_.assign(patch.place_end - patch.place_begin, {});
+    is_stiff_ = !stiffness_.of_patch.empty() && stiffness_.of_patch[p] > 0;
+    if (is_stiff_) slope_.assign(patch.node_end - patch.node_begin, Eigen::Vector3d::Zero());
+  }
+
+  // Of tet t, which is tet l of what is derived.
+  void add(std::int64_t t, const Eigen::Matrix3d& F, const TetDerivatives& derivatives, int l) {
+    const auto& corner = form_.corner_[t];
+    for (int a = 0, pair = 0; a < 4; ++a) {
+      Block* row = &block_[corner[a] * (corner[a] + 1) / 2];
+      for (int b = 0; b <= a; ++b, ++pair) {
+        double* block = row[corner[b]].data();
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r) *block++ += derivatives.block[pair][c][r][l];
+      }
+    }
+    if (!is_stiff_) return;
+    const Eigen::Matrix3d C = stiffness_.of_tet[t] * cofactor(F);
+    for (int a = 0; a < 4; ++a) slope_[corner[a]] += C * form_.tets_[t].slope[a];
+  }
+
+  void end() {
+    const Patch& patch = form_.patches_[patch_];
+    const auto nodes = patch.node_end - patch.node_begin;
+    if (is_stiff_) {
+      auto block = block_.begin();
+      for (std::int64_t a = 0; a < nodes; ++a) {
+        const Eigen::Vector3d row = stiffness_.of_patch[patch_] * slope_[a];
+        for (std::int64_t b = 0; b <= a; ++b, ++block)
+          for (int c = 0; c < 3; ++c)
+            for (int r = 0; r < 3; ++r) (*block)[3 * c + r] += row[r] * slope_[b][c];
+      }
+    }
+    const Cholesky::Place* place = &form_.place_[patch.place_begin];
+    for (const Block& block : block_) {
+      if (const auto [at, stride] = *place++; at >= 0) {
+        double* column = matrix_.data() + at;
+        for (int c = 0; c < 3; ++c, column += stride)
+          for (int r = 0; r < 3; ++r) column[r] += block[3 * c + r];
+      }
+    }
+  }
+
+ private:
+  using Block = std::array<double, 9>;  // column by column
+  const ElasticForm& form_;
+  const PatchStiffness& stiffness_;
+  std::span<double> matrix_;
+  std::int64_t patch_ = 0;
+  bool is_stiff_ = false;
+  std::vector<Block> block_;            // lower triangle of node pairs, row by row
+  std::vector<Eigen::Vector3d> slope_;  // #nodes: G
+};
+
+void ElasticForm::add_derivatives(const Places& x, std::span<const double> pressure, const PatchStiffness& stiffness, Curvature curvature,
+                                  Places& gradient, std::span<double> matrix) const {
   constexpr int kTets = TetDerivatives::kTets;
   chunks_.for_each([&](const ColouredChunks::Chunk& chunk) {
-    const auto count = std::size_t(chunk.end - chunk.begin);
+    const auto first = patches_[chunk.begin].begin, last = patches_[chunk.end - 1].end;
+    const auto count = std::size_t(last - first);
     std::vector<Eigen::Matrix3d> deformation(count);
-    for (auto t = chunk.begin; t < chunk.end; ++t) deformation[t - chunk.begin] = deformation_of(tets_[t], x);
+    for (auto t = first; t < last; ++t) deformation[t - first] = deformation_of(tets_[t], x);
     std::vector<Principal> axes_of(curvature == Curvature::Projected ? count : 0);
     if (curvature == Curvature::Projected) principal(deformation, axes_of);
 
     std::array<TetState, kTets> states;
     TetDerivatives derivatives;
-    for (auto begin = chunk.begin; begin < chunk.end; begin += kTets) {
-      const int some = int(std::min<std::int64_t>(kTets, chunk.end - begin));
+    PatchSum sum(*this, stiffness, matrix);
+    auto patch = chunk.begin;
+    sum.begin(patch);
+    for (auto begin = first; begin < last; begin += kTets) {
+      const int some = int(std::min<std::int64_t>(kTets, last - begin));
       for (int l = 0; l < some; ++l) {
         const auto t = begin + l;
         const Tet& tet = tets_[t];
-        const Eigen::Matrix3d& F = deformation[t - chunk.begin];
+        const Eigen::Matrix3d& F = deformation[t - first];
         const VolumeTerm term = volume_term(tet.energy, F.determinant());
         const double p = pressure.empty() ? 0 : pressure[t];
         TetState& state = states[l];
@@ -192,7 +287,7 @@ void ElasticForm::add_derivatives(const Places& x, std::span<const double> press
         state.slope = curvature == Curvature::Exact ? term.slope + p : term.slope;
         state.curvature = term.curvature;
         if (curvature == Curvature::Projected) {
-          state.axes = &axes_of[t - chunk.begin];
+          state.axes = &axes_of[t - first];
           const NegativeCurvature negative = negative_curvature(tet.energy.shear, term.slope, term.curvature, state.axes->sigma);
           state.negative.count = negative.count;
           std::copy_n(negative.direction, negative.count, state.negative.direction);
@@ -200,17 +295,17 @@ void ElasticForm::add_derivatives(const Places& x, std::span<const double> press
       }
       tet_derivatives({states.data(), std::size_t(some)}, derivatives);
       for (int l = 0; l < some; ++l) {
+        const auto t = begin + l;
         for (int a = 0; a < 4; ++a)
-          for (int k = 0; k < 3; ++k) gradient(tets_[begin + l].node[a], k) += derivatives.force[a][k][l];
-        for (int pair = 0; pair < 10; ++pair) {
-          const Cholesky::Place& place = places_[begin + l][pair];
-          if (place.at < 0) continue;
-          double* column = matrix.data() + place.at;
-          for (int c = 0; c < 3; ++c, column += place.stride)
-            for (int r = 0; r < 3; ++r) column[r] += derivatives.block[pair][c][r][l];
+          for (int k = 0; k < 3; ++k) gradient(tets_[t].node[a], k) += derivatives.force[a][k][l];
+        if (t == patches_[patch].end) {
+          sum.end();
+          sum.begin(++patch);
         }
+        sum.add(t, states[l].F, derivatives, l);
       }
     }
+    sum.end();
   });
 }
 

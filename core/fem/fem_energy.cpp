@@ -49,8 +49,8 @@ FemEnergy::FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::v
     // A barrier's c h b(J / h): c such that it is as strong as weak_barrier_kpa b(J / h).
     energy[k] = {shear[t], tet_bulk(material[t]), weak_barrier_kpa / kWeakBelow, kWeakBelow};
   }
-  flesh_ = ElasticForm(rest, flesh_tets_, energy, {order.first.begin() + 1, order.first.end()});
-  patches_ = PatchForm(flesh_, order.first, ordered_bulk, std::move(filled), node_count_);
+  flesh_ = ElasticForm(rest, flesh_tets_, energy, order.first);
+  patches_ = PatchForm(flesh_, order.first, ordered_bulk, std::move(filled));
   guard(Eigen::MatrixX4i(0, 4));
 }
 
@@ -94,7 +94,6 @@ void FemEnergy::prepare(const Places& x) {
   }
   ++analyses_;
   flesh_.bind(*matrix_, unknown_);
-  patches_.bind(flesh_, *matrix_, unknown_);
   contact_.bind(*matrix_, unknown_);
 }
 
@@ -111,7 +110,6 @@ void FemEnergy::number() {
 
   BlockGraphBuilder graph(int(node_of_.size()));
   flesh_.connect(graph, unknown_);
-  patches_.connect(graph, unknown_);
   graph_ = graph.build();
 }
 
@@ -158,8 +156,7 @@ void FemEnergy::assemble(const Places& x, Curvature curvature, Places& gradient)
   matrix_->clear();
   const auto values = matrix_->values();
   patches_.pressures(J_, pressure_);
-  flesh_.add_derivatives(x, pressure_, curvature, gradient, values);
-  patches_.add_curvature(flesh_, x, values);
+  flesh_.add_derivatives(x, pressure_, patches_.stiffness(), curvature, gradient, values);
   contact_.add_gradient(gradient);
   contact_.add_curvature(values);
   pins_.add_gradient(x, gradient);

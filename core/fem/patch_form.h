@@ -10,7 +10,6 @@
 #include <span>
 #include <vector>
 
-#include "core/base/cholesky.h"
 #include "core/fem/elastic_form.h"
 
 namespace limber {
@@ -32,31 +31,19 @@ class PatchForm {
   PatchForm() = default;
   // first  as in PatchOrder, over the tets of `tets`, in whose order `bulk` and `filled` (TetMaterial) stand; a patch takes the mean
   //        of its tets' bulk by tissue
-  PatchForm(const ElasticForm& tets, const std::vector<std::int64_t>& first, const std::vector<double>& bulk, std::vector<double> filled, int node_count);
-
-  void connect(BlockGraphBuilder& graph, std::span<const int> unknown) const;
-  void bind(const ElasticForm& tets, const Cholesky& matrix, std::span<const int> unknown);
+  PatchForm(const ElasticForm& tets, std::vector<std::int64_t> first, const std::vector<double>& bulk, std::vector<double> filled);
 
   // J  of every tet
   double value(const std::vector<double>& J) const;
   void pressures(const std::vector<double>& J, std::vector<double>& pressure) const;  // kPa, of every tet
-  void add_curvature(const ElasticForm& tets, const Places& x, std::span<double> matrix) const;
+  PatchStiffness stiffness() const { return {stiffness_, tissue_}; }
 
  private:
-  struct Patch {
-    std::int64_t begin, end;  // of its tets
-    double bulk, tissue;
-    std::int64_t node_begin, node_end;    // in node_
-    std::int64_t place_begin;             // in place_: lower triangle of node pairs, row by row
-  };
-  double mean_ratio(const Patch& patch, const std::vector<double>& J) const;
+  double mean_ratio(std::size_t p, const std::vector<double>& J) const;
 
-  std::vector<Patch> patches_;  // with bulk above 0
-  std::vector<double> filled_, tissue_;  // #T: share of a tet, mm3 in it
-  std::vector<int> node_;
-  std::vector<std::array<std::uint8_t, 4>> corner_;  // #T: places of a tet's nodes among its patch's
-  std::vector<Cholesky::Place> place_;
-  ColouredChunks chunks_;
+  std::vector<std::int64_t> first_;                 // #patches + 1
+  std::vector<double> patch_tissue_, stiffness_;    // #patches: mm3; K / V, 0 where the bulk is
+  std::vector<double> filled_, tissue_;             // #T: share of a tet, mm3 in it
 };
 
 }  // namespace limber

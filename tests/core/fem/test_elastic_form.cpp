@@ -49,12 +49,11 @@ struct Shaken {
       filled[k] = 0.3 + 0.1 * double(k % 9);
       energy[k] = {shear[order.tet[k]], 2, 5, 0.7};
     }
-    tets = ElasticForm(rest, T, energy, {order.first.begin() + 1, order.first.end()});
-    patches = PatchForm(tets, order.first, ordered, filled, 27);
+    tets = ElasticForm(rest, T, energy, order.first);
+    patches = PatchForm(tets, order.first, ordered, filled);
     unknown.resize(27);
     std::iota(unknown.begin(), unknown.end(), 0);
     tets.bind(matrix, unknown);
-    patches.bind(tets, matrix, unknown);
 
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -82,8 +81,7 @@ struct Shaken {
     patches.pressures(J, pressure);
     g = Places::Zero(27, 3);
     matrix.clear();
-    tets.add_derivatives(at, pressure, curvature, g, matrix.values());
-    patches.add_curvature(tets, at, matrix.values());
+    tets.add_derivatives(at, pressure, patches.stiffness(), curvature, g, matrix.values());
     Eigen::MatrixXd H(81, 81);
     for (int a = 0; a < 27; ++a)
       for (int b = 0; b < 27; ++b) {
