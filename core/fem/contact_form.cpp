@@ -17,6 +17,7 @@ constexpr double kSoon = 1.6;        // thicknesses: pairs this near that the wa
 constexpr double kPressed = 0.6;     // of the thickness: pairs nearer than this must be in the matrix, which is ordered anew for them
 constexpr double kNear = 0.5;        // of the thickness: what is further apart may come within half of this in one step, for it is not yet, or
                                      // hardly, pushed apart
+constexpr double kAbout = 0.2;       // of the thickness, that a node's way may change before what comes near it is looked for anew
 constexpr double kParallel = 1e-3;   // of the squared product of two edges at rest, below which they count as parallel
 constexpr std::int64_t kGrain = 2048;
 
@@ -69,12 +70,62 @@ ContactForm::Fade ContactForm::fade(const ContactPair& pair, const Places& x) co
 void ContactForm::watch(const Places& x, const Places& step, double limit) {
   Places end = x + limit * step;
   const bool ends_there = end.rows() == watched_to_.rows() && end == watched_to_;
-  if (ends_there && (limit == 0 || x == watched_from_)) return;
+  if (ends_there && (limit == 0 || (limit == watched_limit_ && x == watched_from_))) return;
   watched_from_ = x;
+  watched_limit_ = limit;
   watched_to_ = std::move(end);
-  watched_ = surface_.near(x, step, limit, settings_.thickness_mm, kOfRest);
+  know(watched_from_, watched_to_);
+
+  std::vector<std::vector<Watched>> found((known_.size() + kGrain - 1) / kGrain);
+  parallel_for(std::ssize(known_), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (auto k = begin; k < end; ++k) {
+      Watched each = known_[k];
+      each.approach = approach(each.pair, x, step);
+      if (each.approach.apart - limit * each.approach.motion < each.thickness) found[begin / kGrain].push_back(each);
+    }
+  });
+  watched_.clear();
+  for (const auto& some : found) watched_.insert(watched_.end(), some.begin(), some.end());
   blocked_.assign(watched_.size(), 0);
-  apart_.clear();
+}
+
+// A way is often one that is known but for few nodes, or goes on from a place on it and moves few nodes far. So of what is known a
+// stretch is kept, and anew is looked only for what comes near nodes that are not about there.
+void ContactForm::know(const Places& from, const Places& to) {
+  const double about = kAbout * settings_.thickness_mm;
+  std::vector<char> changed(from.rows(), known_from_.rows() != from.rows());
+  if (known_from_.rows() != from.rows()) {
+    known_from_ = from;
+    known_to_ = to;
+  } else {
+    const Places way = known_to_ - known_from_;
+    const auto nearest_on_way = [&](const Places& place) {
+      const double squared = way.squaredNorm(), on_way = squared > 0 ? std::clamp((place - known_from_).cwiseProduct(way).sum() / squared, 0.0, 1.0) : 0;
+      Places nearest;
+      std::ptrdiff_t least = place.rows() + 1;
+      for (const double share : {0.0, 1.0, on_way}) {
+        const Places there = known_from_ + share * way;
+        const auto away = ((place - there).rowwise().squaredNorm().array() > about * about).count();
+        if (away < least) least = away, nearest = there;
+      }
+      return nearest;
+    };
+    const Places near_from = nearest_on_way(from), near_to = nearest_on_way(to);
+    known_from_ = near_from;
+    known_to_ = near_to;
+    for (Eigen::Index v = 0; v < from.rows(); ++v) {
+      if ((from.row(v) - near_from.row(v)).squaredNorm() <= about * about && (to.row(v) - near_to.row(v)).squaredNorm() <= about * about) continue;
+      changed[v] = 1;
+      known_from_.row(v) = from.row(v);
+      known_to_.row(v) = to.row(v);
+    }
+  }
+  std::erase_if(known_, [&](const Watched& each) {
+    const auto& node = each.pair.node;
+    return changed[node[0]] || changed[node[1]] || changed[node[2]] || changed[node[3]];
+  });
+  for (const ContactPair& pair : surface_.near(known_from_, known_to_ - known_from_, 1, {settings_.thickness_mm, kOfRest, 2 * about}, changed))
+    known_.push_back({pair, thickness(pair), {}});
 }
 
 ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step, double limit) const {
@@ -82,8 +133,10 @@ ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step
   std::vector<Bound> of_block((watched_.size() + kGrain - 1) / kGrain, {limit, {-1, -1, -1, -1}});
   parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Bound& bound = of_block[begin / kGrain];
-    for (auto k = begin; k < end; ++k)
-      if (const double length = limber::largest_step(watched_[k], x, step, bound.length, near); length < bound.length) bound = {length, watched_[k].node};
+    for (auto k = begin; k < end; ++k) {
+      const auto& [pair, h, approach] = watched_[k];
+      if (const double length = limber::largest_step(pair, approach, x, step, bound.length, near); length < bound.length) bound = {length, pair.node};
+    }
   });
   Bound bound{limit, {-1, -1, -1, -1}};
   for (const Bound& block : of_block)
@@ -93,16 +146,13 @@ ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step
 
 void ContactForm::block(const Places& x, const Places& step, const std::vector<char>& changed) {
   const double near = kNear * settings_.thickness_mm;
-  if (apart_.empty()) {
-    apart_.resize(watched_.size());
-    parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
-      for (auto k = begin; k < end; ++k) apart_[k] = nearest_points(watched_[k], x).distance;
-    });
-  }
   parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (auto k = begin; k < end; ++k)
-      if (const auto& node = watched_[k].node; changed[node[0]] || changed[node[1]] || changed[node[2]] || changed[node[3]])
-        blocked_[k] = is_too_far(watched_[k], apart_[k], x, step, near);
+    for (auto k = begin; k < end; ++k) {
+      const auto& [pair, h, watched] = watched_[k];
+      if (changed.empty()) blocked_[k] = is_too_far(pair, watched, x, step, near);
+      else if (changed[pair.node[0]] || changed[pair.node[1]] || changed[pair.node[2]] || changed[pair.node[3]])
+        blocked_[k] = is_too_far(pair, {watched.apart, motion(pair, step)}, x, step, near);
+    }
   });
 }
 
@@ -110,10 +160,8 @@ double ContactForm::value(const Places& x) const {
   return parallel_sum(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
     double sum = 0;
     for (auto k = begin; k < end; ++k) {
-      const ContactPair& pair = watched_[k];
+      const auto& [pair, h, approach] = watched_[k];
       const double d = nearest_points(pair, x).distance;
-      if (d >= settings_.thickness_mm) continue;
-      const double h = thickness(pair);
       if (d >= h) continue;
       if (!(d > 0)) return double(INFINITY);
       sum += scale_ * share_of(pair.kind) * barrier(d, h).value * fade(pair, x).value;
@@ -124,10 +172,8 @@ double ContactForm::value(const Places& x) const {
 
 void ContactForm::touch(const Places& x) {
   touching_.clear();
-  for (const ContactPair& pair : watched_) {
+  for (const auto& [pair, h, approach] : watched_) {
     const NearestPoints nearest = nearest_points(pair, x);
-    if (nearest.distance >= settings_.thickness_mm) continue;
-    const double h = thickness(pair);
     if (nearest.distance >= h) continue;
     const Barrier b = barrier(nearest.distance, h);
     const Fade faded = fade(pair, x);
@@ -158,9 +204,8 @@ void ContactForm::add_curvature(std::span<double> values) const {
 }
 
 void ContactForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x) {
-  for (const ContactPair& pair : watched_) {
-    const double d = nearest_points(pair, x).distance;
-    if (d >= kSoon * settings_.thickness_mm || d >= kSoon * kOfRest * nearest_points(pair, rest_).distance) continue;
+  for (const auto& [pair, h, approach] : watched_) {
+    if (nearest_points(pair, x).distance >= kSoon * h) continue;
     std::array<int, 4> element;
     for (int a = 0; a < 4; ++a) element[a] = unknown[pair.node[a]];
     graph.add(element);

@@ -40,17 +40,17 @@ class ContactForm {
     double length;
     std::array<int, 4> node;  // of the pair that bounds it, -1 none
   };
-  // Of the way that is watched.
+  // Of the way that is watched, whose step it is.
   Bound largest_step(const Places& x, const Places& step, double limit) const;
 
-  // Asks the pairs watched whose step has `changed` (#nodes) since they were last asked, or are new, whether all of it would take
-  // them too near.
+  // Asks the pairs watched whose step has `changed` since they were last asked whether all of it would take them too near.
+  //   changed  #nodes; empty: asks all about the step that is watched
   void block(const Places& x, const Places& step, const std::vector<char>& changed);
   // visit(nodes) of each that it would.
   template <class Visit>
   void for_blocked(const Visit& visit) const {
     for (std::size_t k = 0; k < watched_.size(); ++k)
-      if (blocked_[k]) visit(watched_[k].node);
+      if (blocked_[k]) visit(watched_[k].pair.node);
   }
 
   double value(const Places& x) const;
@@ -73,13 +73,19 @@ class ContactForm {
     bool pressed;                             // nearer than a share of the thickness
     Eigen::Matrix<double, 3, 4> way, fading;  // of the distance and of the fading by the nodes' places
     double faded;                             // energy without the fading
-    std::array<Cholesky::Place, 10> place;    // as in ElasticForm
+    std::array<Cholesky::Place, 10> place;    // lower triangle of its nodes, row by row; at -1: not in the matrix
     std::array<int, 4> order;
   };
   struct Fade {
     double value;
     Eigen::Matrix<double, 3, 4> slope;
   };
+  struct Watched {
+    ContactPair pair;
+    double thickness;   // h
+    Approach approach;  // from where the way begins, by its step
+  };
+  void know(const Places& from, const Places& to);
   double thickness(const ContactPair& pair) const;
   Fade fade(const ContactPair& pair, const Places& x) const;
 
@@ -87,10 +93,12 @@ class ContactForm {
   Places rest_;
   ContactSettings settings_;
   double scale_ = 0;  // c A H
-  Places watched_from_, watched_to_;  // ends of the way
-  std::vector<ContactPair> watched_;
+  Places known_from_, known_to_;  // ends of ways: as long as a node's are about these, what may come near it is known
+  std::vector<Watched> known_;
+  Places watched_from_, watched_to_;  // ends of the way,
+  double watched_limit_ = 0;          // of its step
+  std::vector<Watched> watched_;
   std::vector<char> blocked_;  // of those watched
-  std::vector<double> apart_;  // their distances where the way begins; empty until they are asked for
   std::vector<Touch> touching_;
 };
 

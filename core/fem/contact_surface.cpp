@@ -141,21 +141,45 @@ double largest_advance(ContactPair::Kind kind, Corners p, const Corners& s, doub
 }
 }  // namespace
 
-double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit, double near) {
-  const Corners p = at(pair, x);
+double motion(const ContactPair& pair, const Places& step) {
   Corners s = at(pair, step);
-  const double motion = relative_motion(pair.kind, s), now = distance(pair.kind, p), kept = kKept * std::min(now, near);
-  return now - limit * motion > kept ? limit : largest_advance(pair.kind, p, s, now, motion, kept, limit);
+  return relative_motion(pair.kind, s);
 }
 
-bool is_too_far(const ContactPair& pair, double apart, const Places& x, const Places& step, double near) {
+Approach approach(const ContactPair& pair, const Places& x, const Places& step) { return {distance(pair.kind, at(pair, x)), motion(pair, step)}; }
+
+double largest_step(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double limit, double near) {
+  const double kept = kKept * std::min(approach.apart, near);
+  if (approach.apart - limit * approach.motion > kept) return limit;
   Corners s = at(pair, step);
-  const double motion = relative_motion(pair.kind, s), kept = kKept * std::min(apart, near);
-  if (apart - motion > kept) return false;
-  const Corners p = at(pair, x);
+  const double motion = relative_motion(pair.kind, s);
+  return largest_advance(pair.kind, at(pair, x), s, approach.apart, motion, kept, limit);
+}
+
+namespace {
+// Whether the pair comes nearer than `kept` between two places on its way, where it is apart by what is known: in between at least by
+// what neither end can lose. Where that does not tell, what is in the middle does, down to a part of the way too short to matter.
+bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, double motion, double kept, double from, double apart_from, double to,
+                  double apart_to) {
+  constexpr double kShortest = 1.0 / 512;
+  if (apart_from + apart_to - (to - from) * motion > 2 * kept) return false;
+  if (to - from < kShortest) return true;
+  const double middle = 0.5 * (from + to);
+  Corners there = p;
+  for (int a = 0; a < 4; ++a) there[a] += middle * s[a];
+  const double apart = distance(kind, there);
+  return apart < kept || comes_nearer(kind, p, s, motion, kept, from, apart_from, middle, apart) || comes_nearer(kind, p, s, motion, kept, middle, apart, to, apart_to);
+}
+}  // namespace
+
+bool is_too_far(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double near) {
+  const double kept = kKept * std::min(approach.apart, near);
+  if (approach.apart - approach.motion > kept) return false;
+  const Corners p = at(pair, x), s = at(pair, step);
   Corners end = p;
   for (int a = 0; a < 4; ++a) end[a] += s[a];
-  return distance(pair.kind, end) < kept || largest_advance(pair.kind, p, s, apart, motion, kept, 1) < 1;
+  const double apart = distance(pair.kind, end);
+  return apart < kept || comes_nearer(pair.kind, p, s, approach.motion, kept, 0, approach.apart, 1, apart);
 }
 
 ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid)
@@ -203,7 +227,8 @@ void ContactSurface::grow(std::vector<int>& order, const std::vector<Eigen::Vect
   grow(order, centre, middle, end);
 }
 
-std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& step, double limit, double reach, double of_rest) const {
+std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& step, double limit, const Nearness& nearness,
+                                              const std::vector<char>& asked) const {
   if (faces_.empty()) return {};
   std::vector<Moving> node(x.rows()), face(faces_.size());
   double furthest = 0;
@@ -215,22 +240,26 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
   }
   for (std::size_t f = 0; f < faces_.size(); ++f)
     for (const int v : faces_[f].node) face[f].add(node[v]);
-  const float reach_of_boxes = float(reach + kRounding * furthest);
+  const float reach_of_boxes = float(nearness.reach + nearness.margin + kRounding * furthest);
 
   // Of every branch, last first, so that what is below is known: its place, and its whole step.
   std::vector<Moving> branch(tree_.size());
   std::vector<int> rigid_as(tree_.size());
+  const auto face_asked = [&](const Face& face) { return asked.empty() || asked[face.node[0]] || asked[face.node[1]] || asked[face.node[2]]; };
+  std::vector<char> branch_asked(tree_.size(), 0);
   const auto join = [&](std::size_t b, int rigid, bool first) { rigid_as[b] = first || rigid_as[b] == rigid ? rigid : -1; };
   for (std::size_t b = tree_.size(); b-- > 0;) {
     if (tree_[b].right) {
       for (const std::size_t below : {b + 1, std::size_t(tree_[b].right)}) {
         branch[b].add(branch[below]);
+        branch_asked[b] |= branch_asked[below];
         join(b, rigid_as[below], below == b + 1);
       }
       continue;
     }
     for (int f = tree_[b].begin; f < tree_[b].end; ++f) {
       branch[b].add(face[f]);
+      branch_asked[b] |= face_asked(faces_[f]);
       for (int k = 0; k < 3; ++k) join(b, rigid_[faces_[f].node[k]], f == tree_[b].begin && k == 0);
     }
   }
@@ -240,6 +269,7 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
   while (!open.empty()) {
     const auto [a, b] = open.back();
     open.pop_back();
+    if (!branch_asked[a] && !branch_asked[b]) continue;
     if (rigid_as[a] >= 0 && rigid_as[a] == rigid_as[b]) continue;
     if (a == b) {
       if (tree_[a].right) open.insert(open.end(), {{tree_[a].right, tree_[a].right}, {a + 1, tree_[a].right}, {a + 1, a + 1}});
@@ -263,10 +293,11 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
     // What of two faces stays apart by its boxes alone is left out first: most of it.
     const auto consider = [&](ContactPair::Kind kind, const std::array<int, 4>& four) {
       if (one_rigid(four)) return;
+      if (!asked.empty() && !asked[four[0]] && !asked[four[1]] && !asked[four[2]] && !asked[four[3]]) return;
       const ContactPair pair{four, kind};
-      Corners s = at(pair, step);
-      const double nearest = distance(kind, at(pair, x)) - limit * relative_motion(kind, s);
-      if (nearest < reach && (of_rest == INFINITY || nearest < of_rest * distance(kind, at(pair, rest_)))) mine.push_back(pair);
+      const auto [apart, motion] = approach(pair, x, step);
+      const double nearest = apart - limit * motion - nearness.margin;
+      if (nearest < nearness.reach && (nearness.of_rest == INFINITY || nearest < nearness.of_rest * distance(kind, at(pair, rest_)))) mine.push_back(pair);
     };
     const auto points = [&](const Face& a, const Face& b, const Moving& all_of_b) {
       for (int k = 0; k < 3; ++k) {
@@ -291,7 +322,7 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
       const Branch &a = tree_[leaves[l].first], &b = tree_[leaves[l].second];
       for (int i = a.begin; i < a.end; ++i)
         for (int j = leaves[l].first == leaves[l].second ? i + 1 : b.begin; j < b.end; ++j) {
-          if (apart(face[i], face[j], reach_of_boxes)) continue;
+          if (apart(face[i], face[j], reach_of_boxes) || !(face_asked(faces_[i]) || face_asked(faces_[j]))) continue;
           points(faces_[i], faces_[j], face[j]);
           points(faces_[j], faces_[i], face[i]);
           edges(faces_[i], faces_[j]);

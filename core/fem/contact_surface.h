@@ -34,13 +34,19 @@ struct NearestPoints {
 };
 NearestPoints nearest_points(const ContactPair& pair, const Places& x);
 
+// What two parts are apart at x, and the most that they come towards each other by a step.
+struct Approach {
+  double apart, motion;
+};
+Approach approach(const ContactPair& pair, const Places& x, const Places& step);
+double motion(const ContactPair& pair, const Places& step);
+
 // How much of `step`, at most `limit`, a pair may take and keep half of its distance, or half of `near` where it is further apart:
 // maybe a little less, and where that is `limit` itself a quarter is sure to be kept. (With a tenth, folds close faster than what
 // pushes them open can tell, and Newton's method has then no room left to move in.)
-double largest_step(const ContactPair& pair, const Places& x, const Places& step, double limit, double near = INFINITY);
-// Whether all of `step` is more than that, or ends at less than half of what largest_step() measures by.
-//   apart  the distance at x
-bool is_too_far(const ContactPair& pair, double apart, const Places& x, const Places& step, double near);
+double largest_step(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double limit, double near = INFINITY);
+// Whether it keeps less on the whole step, or as good as less.
+bool is_too_far(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double near);
 
 class ContactSurface {
  public:
@@ -50,9 +56,13 @@ class ContactSurface {
   ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid);
 
   bool empty() const { return faces_.empty(); }
-  // Pairs without a common node that may come nearer than `reach`, and than the share `of_rest` of what they are apart at rest,
-  // on the way from x to x + limit step. Each once, the same for any number of threads.
-  std::vector<ContactPair> near(const Places& x, const Places& step, double limit, double reach, double of_rest = INFINITY) const;
+  // What counts as near: less than `reach`, and than the share `of_rest` of what a pair is apart at rest; `margin` more than both.
+  struct Nearness {
+    double reach, of_rest = INFINITY, margin = 0;
+  };
+  // Pairs without a common node that may come near on the way from x to x + limit step. Each once, the same for any number of threads.
+  //   asked  #V: only pairs with such a node; empty: all
+  std::vector<ContactPair> near(const Places& x, const Places& step, double limit, const Nearness& nearness, const std::vector<char>& asked = {}) const;
 
  private:
   struct Face {

@@ -210,7 +210,7 @@ FemEnergy::Bound FemEnergy::largest_step(const Places& x, const Places& step, do
   }
   if (contact_.empty()) return bound;
   const CpuTimer timer(seconds_.contact);
-  contact_.watch(x, step, bound.length);
+  contact_.watch(x, step, std::max(bound.length, std::min(limit, 1.0)));  // what yielding() would ask about too
   if (const auto free = contact_.largest_step(x, step, bound.length); free.length < bound.length) bound = {free.length, Obstacle::Contact, free.node};
   return bound;
 }
@@ -225,7 +225,7 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
   Places sum(x.rows(), 3), there = x + step;
   std::vector<int> count(x.rows(), 0), nodes, asked(T.rows());  // tets that may have become flat, or still are
   std::iota(asked.begin(), asked.end(), 0);
-  std::vector<char> flattened(T.rows(), 0), changed(x.rows(), 1);
+  std::vector<char> flattened(T.rows(), 0), changed;
   for (int round = 0; round < kRounds; ++round) {
     parallel_for(std::ssize(asked), 4096, [&](std::int64_t begin, std::int64_t end) {
       for (auto k = begin; k < end; ++k) {
@@ -248,13 +248,13 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
     if (!contact_.empty()) {
       if (round % kSeen == 0) {
         contact_.watch(x, step, 1);
-        std::fill(changed.begin(), changed.end(), 1);
+        changed.clear();
       }
       contact_.block(x, step, changed);
       contact_.for_blocked(smooth);
     }
     if (nodes.empty()) break;
-    std::fill(changed.begin(), changed.end(), 0);
+    changed.assign(x.rows(), 0);
     for (const int v : nodes) {
       step.row(v) = 0.5 * step.row(v) + 0.5 / count[v] * sum.row(v);
       there.row(v) = x.row(v) + step.row(v);

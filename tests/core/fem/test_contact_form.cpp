@@ -81,27 +81,38 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
   Places x(4, 3), step = Places::Zero(4, 3);
   x << 0.2, 0.2, 3, 0, 0, 0, 1, 0, 0, 0, 1, 0;
   step(0, 2) = -1;
-  const double point = largest_step({{0, 1, 2, 3}, Kind::PointTriangle}, x, step, 8);
-  CHECK(point == doctest::Approx(1.5));
-  CHECK(largest_step({{0, 1, 2, 3}, Kind::PointTriangle}, x, step, 1.4) == 1.4);
-  const double far = largest_step({{0, 1, 2, 3}, Kind::PointTriangle}, x, step, 8, 1);  // to half of what counts as near
+  const auto bound = [](const ContactPair& pair, const Places& from, const Places& by, double limit, double near = INFINITY) {
+    return largest_step(pair, approach(pair, from, by), from, by, limit, near);
+  };
+  const ContactPair point{{0, 1, 2, 3}, Kind::PointTriangle};
+  CHECK(bound(point, x, step, 8) == doctest::Approx(1.5));
+  CHECK(bound(point, x, step, 1.4) == 1.4);
+  const double far = bound(point, x, step, 8, 1);  // to half of what counts as near
   CHECK(far > 2);
   CHECK(far <= 2.5);
-  CHECK(largest_step({{0, 1, 2, 3}, Kind::PointTriangle}, x, step, 8, 4) == doctest::Approx(1.5));  // nearer than that already
+  CHECK(bound(point, x, step, 8, 4) == doctest::Approx(1.5));  // nearer than that already
+  int too_far = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
     const Places from = random_places(4, 1, seed), by = random_places(4, 2, seed + 1000);
     for (const Kind kind : {Kind::PointTriangle, Kind::EdgeEdge}) {
       const ContactPair pair{{0, 1, 2, 3}, kind};
       const double before = nearest_points(pair, from).distance;
       for (const double near : {double(INFINITY), 0.3}) {
-        const double length = largest_step(pair, from, by, 1, near);
+        const double length = bound(pair, from, by, 1, near), kept = 0.5 * std::min(before, near);
         CHECK(length > 0);
-        const bool ends_near = nearest_points(pair, from + by).distance < 0.5 * std::min(before, near);
-        CHECK(is_too_far(pair, before, from, by, near) == (length < 1 || ends_near));
-        for (int k = 0; k <= 200; ++k) CHECK(nearest_points(pair, from + k / 200.0 * length * by).distance > 0.24 * std::min(before, near));
+        for (int k = 0; k <= 200; ++k) CHECK(nearest_points(pair, from + k / 200.0 * length * by).distance > 0.48 * kept);
+        double least = before;
+        for (int k = 1; k <= 1000; ++k) least = std::min(least, nearest_points(pair, from + k / 1000.0 * by).distance);
+        const bool is = is_too_far(pair, approach(pair, from, by), from, by, near);
+        too_far += is;
+        if (least < kept) CHECK(is);
+        if (is) CHECK(least < kept + approach(pair, from, by).motion / 500);
+        else CHECK(length == 1);
       }
     }
   }
+  CHECK(too_far > 200);
+  CHECK(too_far < 1000);
 }
 
 TEST_CASE("contact: the pairs that may come near are those that asking every pair finds, with one thread and two") {
@@ -132,7 +143,7 @@ TEST_CASE("contact: the pairs that may come near are those that asking every pai
   for (const int threads : {1, 2}) {
     const ThreadCount count(threads);
     std::vector<Key> found;
-    for (const ContactPair& pair : ContactSurface(F, boxes.rest, boxes.free()).near(boxes.rest, step, 1, 1)) found.push_back(key(pair));
+    for (const ContactPair& pair : ContactSurface(F, boxes.rest, boxes.free()).near(boxes.rest, step, 1, {1})) found.push_back(key(pair));
     if (threads == 1) first = found;
     CHECK(found == first);
     std::sort(found.begin(), found.end());
@@ -146,9 +157,9 @@ TEST_CASE("contact: pairs that keep a share of what they are apart at rest may b
   const Places step = boxes.upper_by({0, 0, -2.8}) + random_places(int(boxes.rest.rows()), 0.5, 5);
   const ContactSurface surface(boxes.F, boxes.rest, boxes.free());
   std::vector<Key> some;
-  for (const ContactPair& pair : surface.near(boxes.rest, step, 1, 2, 0.5)) some.push_back(key(pair));
+  for (const ContactPair& pair : surface.near(boxes.rest, step, 1, {2, 0.5})) some.push_back(key(pair));
   std::sort(some.begin(), some.end());
-  const std::vector<ContactPair> all = surface.near(boxes.rest, step, 1, 2);
+  const std::vector<ContactPair> all = surface.near(boxes.rest, step, 1, {2});
   CHECK(some.size() < all.size());
   int nearer = 0;
   for (const ContactPair& pair : all) {
@@ -165,9 +176,9 @@ TEST_CASE("contact: what one bone carries is not watched against itself") {
   const TwoBoxes boxes(0.5);
   std::vector<int> rigid(boxes.rest.rows(), 0);
   const Places still = Places::Zero(boxes.rest.rows(), 3);
-  CHECK(ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, 1).empty());
+  CHECK(ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, {1}).empty());
   std::fill(rigid.begin() + std::ssize(rigid) / 2, rigid.end(), 1);
-  CHECK(!ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, 1).empty());
+  CHECK(!ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, {1}).empty());
 }
 
 TEST_CASE("contact: of two ways to one place each is watched by itself") {
@@ -180,6 +191,40 @@ TEST_CASE("contact: of two ways to one place each is watched by itself") {
   CHECK(form.largest_step(beside, above - beside, 1).length == 1);
   form.watch(below, above - below, 1);
   CHECK(form.largest_step(below, above - below, 1).length < 1);
+}
+
+TEST_CASE("contact: what is known of one way serves the next, and is all that there is to know of it") {
+  const TwoBoxes boxes(1);
+  const int count = int(boxes.rest.rows());
+  ContactForm form(boxes.F, boxes.rest, boxes.free());
+  Places x = boxes.rest;
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> any_node(0, count - 1);
+  std::int64_t touching = 0;
+  for (unsigned k = 0; k < 60; ++k) {
+    // Far, near, or as before but for a node or two; from where the last way led, or from elsewhere.
+    Places step = boxes.upper_by({0, 0, k % 4 == 0 ? -0.9 : k % 4 == 2 ? 0.7 : -0.1}) + random_places(count, k % 3 ? 0.05 : 0.5, k);
+    if (k % 7 == 0) x += boxes.upper_by({0.4, 0, 0.1});
+    double along = 0;
+    for (int again = 0; again < 3; ++again, step.row(any_node(random)) *= -2) {
+      const double limit = again == 1 ? 0.6 : 1;
+      form.watch(x, step, limit);
+      ContactForm fresh(boxes.F, boxes.rest, boxes.free());
+      fresh.watch(x, step, limit);
+      along = std::min(form.largest_step(x, step, limit).length, fresh.largest_step(x, step, limit).length);
+      CHECK((along < limit) == (fresh.largest_step(x, step, limit).length < limit));
+      for (const double share : {0.0, 0.5, 1.0}) {
+        const Places there = x + share * along * step;
+        form.touch(there);
+        fresh.touch(there);
+        CHECK(form.touching() == fresh.touching());
+        CHECK(form.value(there) == doctest::Approx(fresh.value(there)).epsilon(1e-12));
+        touching += fresh.touching();
+      }
+      if (again == 2) x += along * step;
+    }
+  }
+  CHECK(touching > 1000);
 }
 
 TEST_CASE("contact: nothing pushes at rest, however close skin is, nearer it does, by a force that is the slope of its energy") {
