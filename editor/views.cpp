@@ -57,6 +57,19 @@ std::string name_of(ViewId id) {
   return kNames[static_cast<int>(id)];
 }
 
+namespace {
+// A face at the volume's end hides nothing, for a posed body goes beyond it.
+std::array<glm::dvec3, 2> cut_of(const ClipBox& box, const Grid& grid) {
+  constexpr double kFar = 1e6;  // voxels
+  std::array<glm::dvec3, 2> cut{box.low, box.high};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.low[axis] <= -0.5) cut[0][axis] = -kFar;
+    if (box.high[axis] >= grid.size[axis] - 0.5) cut[1][axis] = kFar;
+  }
+  return cut;
+}
+}  // namespace
+
 void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme) {
   render::Scene& scene = views.scene;
   const auto tissues = views.preview_tissues ? views.preview_tissues : document.tissues;
@@ -69,7 +82,7 @@ void update_scene(Views& views, const Document& document, const Selection& selec
   }
   scene.display = views.display;
   scene.clip = {};
-  if (visibility && visibility->clip_box.enabled) scene.clip.box = {visibility->clip_box.low, visibility->clip_box.high};
+  if (document.volume && visibility && visibility->clip_box.enabled) scene.clip.box = cut_of(visibility->clip_box, document.volume->grid);
   if (visibility && visibility->clip_plane.enabled) scene.clip.plane = {visibility->clip_plane.point, visibility->clip_plane.normal};
   scene.outlined = selection.tissue;
   scene.armature = !views.bones ? nullptr : views.preview_armature ? views.preview_armature : document.armature;

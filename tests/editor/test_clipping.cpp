@@ -38,6 +38,24 @@ TEST_CASE("replay: with Ctrl a face of the clip box goes by whole centimetres, a
   CHECK(box_of(test).high.z == grid.size.z - 0.5);
 }
 
+TEST_CASE("replay: a face of the clip box at the volume's end hides nothing of a body that is posed beyond it, one that was moved does") {
+  SmallEditor test({1280, 720});
+  test.play("key Num1\n wait 0.3\n key Alt+B");
+  const glm::dvec3 last = glm::dvec3(test.editor->document().volume->grid.size) - 1.0;
+  const auto hides = [&](const glm::dvec3& voxel) {
+    const auto& [low, high] = *test.editor->views->scene.clip.box;
+    return glm::any(glm::lessThan(voxel, low)) || glm::any(glm::greaterThan(voxel, high));
+  };
+  const glm::dvec3 within(last.x / 2, box_of(test).high.y == last.y + 0.5 ? last.y : 0, last.z / 2);
+  CHECK_FALSE(hides(within));
+  CHECK_FALSE(hides(within + glm::dvec3(0, 0, 200)));
+  CHECK_FALSE(hides(within - glm::dvec3(300, 0, 200)));
+  CHECK(hides({within.x, last.y - within.y, within.z}));  // the front half
+  test.play("drag \"Clip face z+\" 0 40");
+  CHECK(hides(within + glm::dvec3(0, 0, 200)));
+  CHECK_FALSE(hides(within - glm::dvec3(0, 0, 200)));
+}
+
 TEST_CASE("replay: Escape drops the drag of a clip handle") {
   SmallEditor test({1280, 720});
   test.play("key Num1\n wait 0.3\n key Alt+B");
