@@ -71,32 +71,44 @@ void ContactForm::watch(const Places& x, const Places& step, double limit) {
   Places end = x + limit * step;
   const bool ends_there = end.rows() == watched_to_.rows() && end == watched_to_;
   if (ends_there && (limit == 0 || (limit == watched_limit_ && x == watched_from_))) return;
-  watched_from_ = x;
-  watched_limit_ = limit;
-  watched_to_ = std::move(end);
-  know(watched_from_, watched_to_);
+  watched_to_.resize(0, 3);  // as long as that is not done
+  know(x, end);
 
-  std::vector<std::vector<Watched>> found((known_.size() + kGrain - 1) / kGrain);
+  // What has left the place that it is known to be near, as it does when only a stretch of a way is kept, is known no more.
+  const double about = kAbout * settings_.thickness_mm;
+  std::vector<std::vector<Watched>> near((known_.size() + kGrain - 1) / kGrain), still_known(near.size());
   parallel_for(std::ssize(known_), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto k = begin; k < end; ++k) {
-      Watched each = known_[k];
+      Watched& each = known_[k];
       each.approach = approach(each.pair, x, step);
-      if (each.approach.apart - limit * each.approach.motion < each.thickness) found[begin / kGrain].push_back(each);
+      const double nearest = each.approach.apart - limit * each.approach.motion;
+      if (nearest < each.thickness) near[begin / kGrain].push_back(each);
+      if (nearest < each.thickness + 4 * about) still_known[begin / kGrain].push_back(each);
     }
   });
-  watched_.clear();
-  for (const auto& some : found) watched_.insert(watched_.end(), some.begin(), some.end());
+  const auto join = [](const std::vector<std::vector<Watched>>& parts, std::vector<Watched>& all) {
+    all.clear();
+    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  };
+  join(near, watched_);
+  join(still_known, known_);
   blocked_.assign(watched_.size(), 0);
+  watched_from_ = x;
+  watched_to_ = std::move(end);
+  watched_limit_ = limit;
 }
 
 // A way is often one that is known but for few nodes, or goes on from a place on it and moves few nodes far. So of what is known a
 // stretch is kept, and anew is looked only for what comes near nodes that are not about there.
 void ContactForm::know(const Places& from, const Places& to) {
   const double about = kAbout * settings_.thickness_mm;
-  std::vector<char> changed(from.rows(), known_from_.rows() != from.rows());
+  const auto is_away = [&](const Places& a, const Places& b) -> Eigen::Array<bool, Eigen::Dynamic, 1> { return (a - b).rowwise().squaredNorm().array() > about * about; };
+  Eigen::Array<bool, Eigen::Dynamic, 1> changed;
   if (known_from_.rows() != from.rows()) {
+    known_.clear();
     known_from_ = from;
     known_to_ = to;
+    changed.setConstant(from.rows(), true);
   } else {
     const Places way = known_to_ - known_from_;
     const auto nearest_on_way = [&](const Places& place) {
@@ -104,28 +116,28 @@ void ContactForm::know(const Places& from, const Places& to) {
       Places nearest;
       std::ptrdiff_t least = place.rows() + 1;
       for (const double share : {0.0, 1.0, on_way}) {
-        const Places there = known_from_ + share * way;
-        const auto away = ((place - there).rowwise().squaredNorm().array() > about * about).count();
-        if (away < least) least = away, nearest = there;
+        Places there = known_from_ + share * way;
+        if (const auto away = is_away(place, there).count(); away < least) least = away, nearest = std::move(there);
       }
       return nearest;
     };
-    const Places near_from = nearest_on_way(from), near_to = nearest_on_way(to);
-    known_from_ = near_from;
-    known_to_ = near_to;
-    for (Eigen::Index v = 0; v < from.rows(); ++v) {
-      if ((from.row(v) - near_from.row(v)).squaredNorm() <= about * about && (to.row(v) - near_to.row(v)).squaredNorm() <= about * about) continue;
-      changed[v] = 1;
-      known_from_.row(v) = from.row(v);
-      known_to_.row(v) = to.row(v);
-    }
+    Places near_from = nearest_on_way(from), near_to = nearest_on_way(to);
+    known_from_ = std::move(near_from);
+    known_to_ = std::move(near_to);
+    changed = is_away(from, known_from_) || is_away(to, known_to_);
+    if (!changed.any()) return;
+    for (Eigen::Index v = 0; v < from.rows(); ++v)
+      if (changed[v]) known_from_.row(v) = from.row(v), known_to_.row(v) = to.row(v);
+    std::erase_if(known_, [&](const Watched& each) {
+      const auto& node = each.pair.node;
+      return changed[node[0]] || changed[node[1]] || changed[node[2]] || changed[node[3]];
+    });
   }
-  std::erase_if(known_, [&](const Watched& each) {
-    const auto& node = each.pair.node;
-    return changed[node[0]] || changed[node[1]] || changed[node[2]] || changed[node[3]];
-  });
-  for (const ContactPair& pair : surface_.near(known_from_, known_to_ - known_from_, 1, {settings_.thickness_mm, kOfRest, 2 * about}, changed))
+  Places steps = known_to_ - known_from_, begins;
+  begins.swap(known_from_);  // as long as that is not done, nothing is known
+  for (const ContactPair& pair : surface_.near(begins, steps, 1, {settings_.thickness_mm, kOfRest, 2 * about}, {changed.begin(), changed.end()}))
     known_.push_back({pair, thickness(pair), {}});
+  begins.swap(known_from_);
 }
 
 ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step, double limit) const {

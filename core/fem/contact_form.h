@@ -40,11 +40,11 @@ class ContactForm {
     double length;
     std::array<int, 4> node;  // of the pair that bounds it, -1 none
   };
-  // Of the way that is watched, whose step it is.
+  // x and step as they are watched, limit at most that.
   Bound largest_step(const Places& x, const Places& step, double limit) const;
 
-  // Asks the pairs watched whose step has `changed` since they were last asked whether all of it would take them too near.
-  //   changed  #nodes; empty: asks all about the step that is watched
+  // Asks the pairs watched whose step has `changed` since they were last asked whether all of it would take them too near. x as watched.
+  //   changed  #nodes; empty: asks all, about the step that is watched
   void block(const Places& x, const Places& step, const std::vector<char>& changed);
   // visit(nodes) of each that it would.
   template <class Visit>
@@ -83,8 +83,9 @@ class ContactForm {
   struct Watched {
     ContactPair pair;
     double thickness;   // h
-    Approach approach;  // from where the way begins, by its step
+    Approach approach;  // from where the way watched begins, by its step
   };
+  // Looks for what may come near on a way, as far as that is not known yet.
   void know(const Places& from, const Places& to);
   double thickness(const ContactPair& pair) const;
   Fade fade(const ContactPair& pair, const Places& x) const;
@@ -93,7 +94,8 @@ class ContactForm {
   Places rest_;
   ContactSettings settings_;
   double scale_ = 0;  // c A H
-  Places known_from_, known_to_;  // ends of ways: as long as a node's are about these, what may come near it is known
+  // Pairs that are not known keep their thickness, and twice what a node may be off, on these ways.
+  Places known_from_, known_to_;
   std::vector<Watched> known_;
   Places watched_from_, watched_to_;  // ends of the way,
   double watched_limit_ = 0;          // of its step

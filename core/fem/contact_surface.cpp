@@ -148,17 +148,10 @@ double motion(const ContactPair& pair, const Places& step) {
 
 Approach approach(const ContactPair& pair, const Places& x, const Places& step) { return {distance(pair.kind, at(pair, x)), motion(pair, step)}; }
 
-double largest_step(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double limit, double near) {
-  const double kept = kKept * std::min(approach.apart, near);
-  if (approach.apart - limit * approach.motion > kept) return limit;
-  Corners s = at(pair, step);
-  const double motion = relative_motion(pair.kind, s);
-  return largest_advance(pair.kind, at(pair, x), s, approach.apart, motion, kept, limit);
-}
-
 namespace {
 // Whether the pair comes nearer than `kept` between two places on its way, where it is apart by what is known: in between at least by
-// what neither end can lose. Where that does not tell, what is in the middle does, down to a part of the way too short to matter.
+// what neither end can lose. Where that does not tell, what is in the middle does; a part of
+// the way too short to go on with counts as nearer.
 bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, double motion, double kept, double from, double apart_from, double to,
                   double apart_to) {
   constexpr double kShortest = 1.0 / 512;
@@ -170,16 +163,29 @@ bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, do
   const double apart = distance(kind, there);
   return apart < kept || comes_nearer(kind, p, s, motion, kept, from, apart_from, middle, apart) || comes_nearer(kind, p, s, motion, kept, middle, apart, to, apart_to);
 }
+
+// Along p + a s from a = 0 to `limit`.
+bool keeps(ContactPair::Kind kind, const Corners& p, const Corners& s, const Approach& approach, double kept, double limit) {
+  Corners end = p;
+  for (int a = 0; a < 4; ++a) end[a] += limit * s[a];
+  const double apart = distance(kind, end);
+  return apart >= kept && !comes_nearer(kind, p, s, approach.motion, kept, 0, approach.apart, limit, apart);
+}
 }  // namespace
+
+double largest_step(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double limit, double near) {
+  const double kept = kKept * std::min(approach.apart, near);
+  if (approach.apart - limit * approach.motion > kept) return limit;
+  const Corners p = at(pair, x);
+  Corners s = at(pair, step);
+  if (keeps(pair.kind, p, s, approach, kept, limit)) return limit;
+  const double motion = relative_motion(pair.kind, s);
+  return largest_advance(pair.kind, p, s, approach.apart, motion, kept, limit);
+}
 
 bool is_too_far(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double near) {
   const double kept = kKept * std::min(approach.apart, near);
-  if (approach.apart - approach.motion > kept) return false;
-  const Corners p = at(pair, x), s = at(pair, step);
-  Corners end = p;
-  for (int a = 0; a < 4; ++a) end[a] += s[a];
-  const double apart = distance(pair.kind, end);
-  return apart < kept || comes_nearer(pair.kind, p, s, approach.motion, kept, 0, approach.apart, 1, apart);
+  return approach.apart - approach.motion <= kept && !keeps(pair.kind, at(pair, x), at(pair, step), approach, kept, 1);
 }
 
 ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid)

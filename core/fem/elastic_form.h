@@ -53,7 +53,7 @@ class ElasticForm {
 
   ElasticForm() = default;
   // T      #T corners with positive volume at `rest`, in an order that keeps neighbours close
-  // first  #patches + 1: where each begins, as in PatchOrder; empty: every tet is one
+  // first  #patches + 1: where each begins, as in PatchOrder: of a tet or more, and of less than 256 nodes; empty: every tet is one
   ElasticForm(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy, std::vector<std::int64_t> first = {});
 
   std::int64_t size() const { return std::ssize(tets_); }
@@ -67,7 +67,8 @@ class ElasticForm {
   void volume_ratios(const Places& x, std::vector<double>& J) const;
   // Infinite where a tet is inverted.
   double value(const Places& x, const std::vector<double>& J) const;
-  // pressure  of every tet, kPa, or empty
+  // After bind().
+  //   pressure  of every tet, kPa, or empty
   void add_derivatives(const Places& x, std::span<const double> pressure, const PatchStiffness& stiffness, Curvature curvature, Places& gradient,
                        std::span<double> matrix) const;
   void add_gradient(const Places& x, std::span<const double> pressure, Places& gradient) const;
@@ -82,7 +83,7 @@ class ElasticForm {
 
   std::vector<Tet> tets_;
   std::vector<Patch> patches_;
-  std::vector<int> node_;                            // in the order of the matrix, where it has them
+  std::vector<int> node_;                            // in the order of the matrix once it is known, first those that it has not
   std::vector<std::array<std::uint8_t, 4>> corner_;  // #T: places of a tet's nodes among its patch's, rising
   std::vector<Cholesky::Place> place_;               // at -1: not in the matrix
   ColouredChunks chunks_;                            // of patches

@@ -22,7 +22,7 @@ struct PatchOrder {
 
 // Patches grow from tet to tet over faces, to the neighbour that shares most nodes with the patch, in the order of a curve
 // through space [Morton 1966]. Only tets of `bulk` above 0 share a patch, and only those whose shear is within a factor of
-// two of the patch's first; the others are patches of their own.
+// 1.5 of the patch's first; the others are patches of their own.
 //   bulk, shear  #T, kPa
 PatchOrder grow_patches(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<double>& bulk, const std::vector<double>& shear, int size = 8);
 

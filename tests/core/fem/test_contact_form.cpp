@@ -211,9 +211,12 @@ TEST_CASE("contact: what is known of one way serves the next, and is all that th
       form.watch(x, step, limit);
       ContactForm fresh(boxes.F, boxes.rest, boxes.free());
       fresh.watch(x, step, limit);
-      along = std::min(form.largest_step(x, step, limit).length, fresh.largest_step(x, step, limit).length);
-      CHECK((along < limit) == (fresh.largest_step(x, step, limit).length < limit));
-      for (const double share : {0.0, 0.5, 1.0}) {
+      const double of_form = form.largest_step(x, step, limit).length, of_fresh = fresh.largest_step(x, step, limit).length;
+      CHECK((of_form < limit) == (of_fresh < limit));
+      CHECK(of_form > 0.5 * of_fresh);
+      CHECK(of_form < 2 * of_fresh);
+      along = std::min(of_form, of_fresh);
+      for (const double share : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
         const Places there = x + share * along * step;
         form.touch(there);
         fresh.touch(there);

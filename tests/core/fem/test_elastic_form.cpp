@@ -154,6 +154,76 @@ TEST_CASE("elastic form: projected curvature has nothing negative, and is the ex
   CHECK((blown.hessian(blown.x, Curvature::Projected, g) - blown.hessian(blown.x, Curvature::Exact, g)).norm() < 1e-10);
 }
 
+TEST_CASE("elastic form: in a large body, too, some of whose nodes are no unknowns, in any order of the matrix, with one thread and two") {
+  const TetMesh mesh = kuhn_box(9, 8, 7, {0, 0, 0}, {9, 8, 7});
+  const int nodes = int(mesh.V.rows());
+  const PatchOrder order = grow_patches(mesh.V, mesh.T, std::vector<double>(mesh.T.rows(), 90), std::vector<double>(mesh.T.rows(), 1));
+  Eigen::MatrixX4i T(mesh.T.rows(), 4);
+  for (Eigen::Index k = 0; k < T.rows(); ++k) T.row(k) = mesh.T.row(order.tet[k]);
+  ElasticForm tets(mesh.V, T, std::vector<TetEnergy>(T.rows(), {1, 2, 5, 0.7}), order.first);
+  const PatchForm patches(tets, order.first, std::vector<double>(T.rows(), 90), std::vector<double>(T.rows(), 0.8));
+  std::vector<int> unknown(nodes, -1), node_of;
+  for (int v = 0; v < nodes; ++v)
+    if (v % 7 != 3) unknown[v] = int(node_of.size()), node_of.push_back(v);
+
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const Places x = mesh.V + 0.08 * Places::NullaryExpr(nodes, 3, [&] { return uniform(random); });
+  REQUIRE(count_inverted(T, x) == 0);
+  Places way = Places::NullaryExpr(nodes, 3, [&] { return uniform(random); });
+  for (int v = 0; v < nodes; ++v)
+    if (unknown[v] < 0) way.row(v).setZero();
+  const auto gradient = [&](const Places& at) {
+    std::vector<double> J, pressure;
+    tets.volume_ratios(at, J);
+    patches.pressures(J, pressure);
+    Places g = Places::Zero(nodes, 3);
+    tets.add_gradient(at, pressure, g);
+    return g;
+  };
+  const double h = 1e-6;
+  const Places slope = (gradient(x + h * way) - gradient(x - h * way)) / (2 * h);
+
+  BlockGraphBuilder builder(int(node_of.size()));
+  tets.connect(builder, unknown);
+  Cholesky matrix(builder.build());
+  for (const bool once_more : {false, true}) {
+    if (once_more) {
+      for (int k = 0; k + 40 < std::ssize(node_of); k += 5) builder.add(std::array{k, k + 40});
+      matrix.analyse(builder.build());
+    }
+    tets.bind(matrix, unknown);
+    std::vector<double> first;
+    for (const int threads : {1, 2}) {
+      const ThreadCount count(threads);
+      std::vector<double> J, pressure;
+      tets.volume_ratios(x, J);
+      patches.pressures(J, pressure);
+      Places g = Places::Zero(nodes, 3);
+      matrix.clear();
+      tets.add_derivatives(x, pressure, patches.stiffness(), Curvature::Exact, g, matrix.values());
+      if (threads == 1) first.assign(matrix.values().begin(), matrix.values().end());
+      else CHECK(std::equal(first.begin(), first.end(), matrix.values().begin()));
+    }
+    Places product = Places::Zero(nodes, 3);
+    for (int a = 0; a < std::ssize(node_of); ++a)
+      for (int b = 0; b < std::ssize(node_of); ++b) {
+        if (matrix.rank(a) < matrix.rank(b)) continue;
+        const auto place = matrix.place(a, b);
+        if (place.at < 0) continue;
+        for (int c = 0; c < 3; ++c)
+          for (int r = a == b ? c : 0; r < 3; ++r) {
+            const double value = matrix.values()[place.at + c * place.stride + r];
+            product(node_of[a], r) += value * way(node_of[b], c);
+            if (a != b || r != c) product(node_of[b], c) += value * way(node_of[a], r);
+          }
+      }
+    double off = 0;
+    for (const int v : node_of) off = std::max(off, (product.row(v) - slope.row(v)).cwiseAbs().maxCoeff());
+    CHECK(off < 1e-6 * slope.cwiseAbs().maxCoeff());
+  }
+}
+
 TEST_CASE("elastic form: a rotation costs nothing and pulls at nothing") {
   const Shaken shaken(0);
   const Eigen::Matrix3d R = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.1).normalized().toRotationMatrix();
