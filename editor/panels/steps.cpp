@@ -66,9 +66,12 @@ Step pose_step(const Editor& editor) {
 Step resample_step(const Editor& editor) {
   Step step{"Resample", StepState::Later, "Not resampled yet", "resample.run", "Resample", {"resample.lbs", "resample.dqs", "resample.fem", "result.toggle"}};
   const Document& document = editor.document();
-  for (const auto& result : document.results) {
+  // The newest that still holds; where none does, the newest.
+  for (auto at = document.results.rbegin(); at != document.results.rend(); ++at) {
+    const auto& result = *at;
     if (!is_of_this_pose(document, *result)) continue;
     const std::string reason = stale_reason(document, *result);
+    if (!reason.empty() && step.state == StepState::Warning) continue;
     step.state = reason.empty() ? StepState::Done : StepState::Warning;
     step.line = reason.empty() ? result->name : "Stale: " + reason;
     if (reason.empty()) break;

@@ -89,6 +89,11 @@ TEST_CASE("steps: the list names what is missing next, from nothing to a posed v
   )");
   CHECK(next_step(*test.editor) == "none");
   CHECK(steps(*test.editor)[4].state == StepState::Done);
+  CHECK(steps(*test.editor)[4].line == "Fore 30\u00b0, DQ");
+  run(*test.editor, "resample.lbs");
+  run(*test.editor, "resample.run");
+  test.play("wait-job");
+  CHECK(steps(*test.editor)[4].line == "Fore 30\u00b0, LBS");  // the newest
 }
 
 TEST_CASE("resample: the result is what the core computes, is undone, shown, and has its figures") {
