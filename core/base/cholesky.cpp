@@ -22,7 +22,7 @@ namespace limber {
 namespace {
 constexpr double kMostMended = 0.125;  // of the nodes; with more, dissecting anew is sure to be better
 constexpr std::size_t kMostNumbers = INT32_MAX;  // in a factor: CHOLMOD counts them by int
-constexpr double kDearer = 1.25;       // than when the ordering was found: one that is mended for longer is given up
+constexpr double kDearer = 1.16;       // than when the ordering was found: one that is mended for longer is given up
 
 // Debian's CHOLMOD starts four threads inside a factorization, which on few cores doubles what it costs. Nested regions that
 // are not active run on the calling thread.
