@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/geodesic.h"
 #include "core/skin/recomputed.h"
 #include "core/skin/rigid.h"

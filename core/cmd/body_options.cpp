@@ -3,9 +3,10 @@
 
 #include <cstdio>
 
+#include "core/bones/input_doubts.h"
 #include "core/cmd/command.h"
 #include "core/rig/armature_io.h"
-#include "core/rig/bone_tissue.h"
+#include "core/bones/guess_bone_labels.h"
 
 namespace limber::cmd {
 
@@ -14,6 +15,7 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
   command.add_option("--rig", options.rig, "rig (JSON, Bender .vtk or .arm, BVH)")->required();
   command.add_option("--tissues", options.tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
   command.add_option("--bones", options.bones, "labels that are bone, as in the file")->delimiter(',')->type_name("L,L");
+  command.add_option("--bone-map", options.bone_map, "JSON that says which rig bone a label follows: {\"label or label@left\": \"rig bone\"}")->type_name("FILE");
 }
 
 namespace {
@@ -48,6 +50,8 @@ Body read_body(const BodyOptions& options, Progress& progress) {
     body.tissues = with_bones(std::move(body.tissues), options.bones);
   else
     guess_bones(body, options.volume);
+  if (!options.bone_map.empty()) body.bone_map = read_bone_map(options.bone_map);
+  warn(input_doubts(body.file.volume, body.tissues, body.rig));
   return body;
 }
 

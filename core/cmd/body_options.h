@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a command is told a body: VOLUME --rig RIG [--tissues T] [--bones L,L].
+// How a command is told a body: VOLUME --rig RIG [--tissues T] [--bones L,L] [--bone-map FILE].
 #pragma once
 
 #include <string>
@@ -8,13 +8,14 @@
 #include <CLI/CLI.hpp>
 
 #include "core/base/progress.h"
+#include "core/bones/bone_identity.h"
 #include "core/rig/armature.h"
 #include "core/volume/volume_io.h"
 
 namespace limber::cmd {
 
 struct BodyOptions {
-  std::string volume, rig, tissues;  // files
+  std::string volume, rig, tissues, bone_map;  // files
   std::vector<double> bones;         // labels that are bone, as in the file; none: what the tissue table says, else a guess by the rig
 };
 
@@ -22,6 +23,7 @@ struct Body {
   VolumeFile file;
   TissueTable tissues;
   Armature rig;
+  BoneMap bone_map;  // which rig bones labels follow, where the user says
 };
 
 // `options` must live as long as the command.

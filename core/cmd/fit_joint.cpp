@@ -33,7 +33,7 @@ void run(const Options& options) {
   const int bone = require_bone(body.rig, options.bone);
 
   const TissueVoxels tissue(volume);
-  const BoneParts parts = split_bones(volume, tissue, body.tissues, body.rig, progress);
+  const BoneParts parts = split_bones(volume, tissue, body.tissues, body.rig, progress, body.bone_map);
   const FitJoint settings{.minimum_degrees = options.range[0], .maximum_degrees = options.range[1]};
   const FittedJoint fitted = fit_joint(volume, tissue, parts, body.rig, bone, settings, progress);
   write_armature(fitted.armature, options.output);

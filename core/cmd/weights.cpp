@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/geodesic.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/rigid.h"
@@ -33,6 +33,17 @@ void print_table(const BoneParts& parts, const Armature& armature) {
     if (!has_part[b]) std::printf("%-28s %10s   holds the tissue around its axis\n", armature.bones[b].name.c_str(), "none");
 }
 
+// Which rig bone each label of bone follows, and how that was found.
+void print_identities(const BoneParts& parts, const TissueTable& tissues, const Armature& armature) {
+  std::printf("\n%-44s %-20s %10s   %s\n", "bone tissue", "follows", "voxels", "found by");
+  for (const auto& identity : parts.identities) {
+    const Tissue* tissue = tissues.find(identity.label);
+    const std::string name = tissue && !tissue->name.empty() ? tissue->name : "label " + std::to_string(identity.label);
+    std::printf("%-44.44s %-20s %10lld   %s%s\n", name.c_str(), armature.bones[identity.bone].name.c_str(), static_cast<long long>(identity.voxel_count),
+                std::string(to_string(identity.found_by)).c_str(), identity.is_substitute ? ", not sure" : "");
+  }
+}
+
 void make_weights(const Options& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
@@ -44,18 +55,20 @@ void make_weights(const Options& options) {
   const Armature& rig = body.rig;
 
   const TissueVoxels tissue(volume);
-  const BoneParts parts = split_bones(volume, tissue, body.tissues, rig, progress);
+  const BoneParts parts = split_bones(volume, tissue, body.tissues, rig, progress, body.bone_map);
   WeightsReport report;
   const SkinWeights weights =
       options.method == "rigid"      ? bind_rigid(volume, tissue, rig, parts, progress, &report)
       : options.method == "geodesic" ? bind_geodesic(volume, tissue, rig, parts, {}, progress, &report)
                                      : diffuse_heat(volume, tissue, body.tissues, rig, parts, {}, progress, &report);
   warn(report.warnings);
+  warn(unsure_bones(parts, body.tissues, rig));
   if (!options.bender_folder.empty()) write_bender_weights(weights, volume, tissue, options.bender_folder);
   write_weights(weights, volume, tissue, options.output);
 
   std::printf("tissue: %lld voxels, table: %s\n", static_cast<long long>(tissue.size()), body.tissues.source.c_str());
   print_table(parts, rig);
+  print_identities(parts, body.tissues, rig);
   if (options.method == "heat") std::printf("heat: residual %.1e in %d iterations\n", report.residual, report.iterations);
 }
 }  // namespace

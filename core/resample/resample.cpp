@@ -9,7 +9,7 @@
 #include "core/resample/output_grid.h"
 #include "core/resample/pose_path.h"
 #include "core/resample/posed_voxels.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 
 namespace limber {
 

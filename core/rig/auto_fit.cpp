@@ -17,7 +17,7 @@
 #include "core/rig/articulated_fit.h"
 #include "core/rig/body_atlas.h"
 #include "core/rig/body_skeleton.h"
-#include "core/rig/bone_tissue.h"
+#include "core/bones/guess_bone_labels.h"
 #include "core/rig/draw_inside.h"
 #include "core/rig/fit_starts.h"
 #include "core/rig/joint_landmarks.h"

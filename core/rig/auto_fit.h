@@ -5,7 +5,7 @@
 //      the body lies in the world;
 //   2  the skin gives pose and proportions (core/rig/articulated_fit.h);
 //   3  where the table says what is bone, the bones' surfaces give the joints; bones drawn as mere rods are followed along
-//      their axes instead. Without a table bone is the label that the long bones run through (core/rig/bone_tissue.h);
+//      their axes instead. Without a table bone is the label that the long bones run through (core/bones/guess_bone_labels.h);
 //   4  where the skin is not that of the known body, landmarks of the volume's own shape put joints right
 //      (core/rig/joint_landmarks.h).
 // Of a body that was cut off (core/rig/tissue_cuts.h) only what is there is fitted; what lies beyond is laid on by proportion,

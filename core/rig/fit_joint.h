@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/pose/pose.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 
 namespace limber {
 

@@ -12,7 +12,7 @@
 
 #include "core/base/progress.h"
 #include "core/rig/armature.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/skin_weights.h"
 #include "core/volume/tissue_table.h"
 

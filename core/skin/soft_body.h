@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "core/rig/armature.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/multigrid.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/tissue_voxels.h"

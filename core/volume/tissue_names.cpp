@@ -31,7 +31,7 @@ const std::vector<Rule>& rules() {
       {TissueKind::Blood, {"blood"}},
       {TissueKind::Nail, {"nail", "toenail", "fingernail"}},
       {TissueKind::Skin, {"skin", "dermis", "epidermis", "cutis"}},
-      {TissueKind::Marrow, {"marrow"}},
+      {TissueKind::Marrow, {"marrow", "medullary"}},
       {TissueKind::CancellousBone, {"cancellous", "trabecular", "spongiosa", "spongy"}},
       {TissueKind::Connective, {"membrane", "capsule", "bursa", "fascia", "connective", "synovium", "synovial"}},
       {TissueKind::Brain, {"brain", "cerebrum", "cerebral", "cerebellum", "cerebellar", "brainstem", "thalamus", "hypothalamus", "hippocampus", "putamen",

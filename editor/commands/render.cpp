@@ -24,7 +24,7 @@
 #include "core/project/project_io.h"
 #include "core/resample/resample.h"
 #include "core/rig/armature_io.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
 #include "editor/commands/command.h"

@@ -12,7 +12,7 @@
 #include "core/base/file.h"
 #include "core/project/document.h"
 #include "core/rig/armature_io.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/geodesic.h"
 #include "core/volume/phantom.h"
 #include "core/volume/volume_io.h"

@@ -12,7 +12,7 @@
 
 #include "core/project/history.h"
 #include "core/rig/armature_io.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/geodesic.h"
 #include "core/skin/stroke.h"
 #include "core/volume/phantom.h"

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "core/deform/preview_map.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/rigid.h"
 #include "editor/editor_state.h"
 #include "editor/live_pose.h"

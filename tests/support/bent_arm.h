@@ -11,7 +11,7 @@
 #include "core/resample/pose_path.h"
 #include "core/resample/resample.h"
 #include "core/rig/armature_io.h"
-#include "core/rig/bone_tissue.h"
+#include "core/bones/guess_bone_labels.h"
 #include "core/rig/fit_joint.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/volume/volume_io.h"

@@ -15,7 +15,7 @@
 #include "core/report/metrics.h"
 #include "core/resample/resample.h"
 #include "core/rig/armature_io.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/stroke.h"
 #include "core/volume/volume_io.h"

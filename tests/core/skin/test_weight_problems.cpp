@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/geodesic.h"
 #include "core/skin/weight_problems.h"
 #include "core/volume/phantom.h"

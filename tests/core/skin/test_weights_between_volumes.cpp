@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "core/rig/armature_io.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weight_edits.h"
 #include "core/volume/phantom.h"

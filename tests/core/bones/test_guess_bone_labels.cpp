@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/rig/bone_tissue.h"
+#include "core/bones/guess_bone_labels.h"
 
 #include <doctest/doctest.h>
 

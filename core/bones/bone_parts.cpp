@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,8 @@
 #include <tuple>
 #include <utility>
 
-#include "core/rig/bone_basins.h"
+#include "core/bones/named_bones.h"
+#include "core/bones/bone_watershed.h"
 
 namespace limber {
 
@@ -109,7 +110,9 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
 // bone than it would be alone.
 class Pieces {
  public:
-  Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging, const std::vector<std::int32_t>& basin, double voxel)
+  //   may_follow  rig bones that the basin of a voxel may follow; none means any
+  Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging, const std::vector<std::int32_t>& basin, double voxel,
+         const auto& may_follow)
       : bones_(hugging.bone_count()), surface_(static_cast<float>(voxel / 2)) {
     const auto members = members_of(basin);
     cluster_.resize(members.size());
@@ -128,6 +131,9 @@ class Pieces {
         for (size_t k = 0; k < members[p].size(); k += stride) sum += hugging.distance(b, graph.voxel[members[p][k]]);
         cluster.distance[b] = static_cast<float>(sum / samples);
       }
+      if (const std::vector<int>& allowed = may_follow(members[p].front()); !allowed.empty())
+        for (int b = 0; b < bones_; ++b)
+          if (std::find(allowed.begin(), allowed.end(), b) == allowed.end()) cluster.distance[b] += kForbidden;
     }
     for (std::int32_t i = 0; i < graph.size(); ++i)
       for (std::int32_t n : graph.neighbour[i]) {
@@ -207,6 +213,7 @@ class Pieces {
   // A pass this much lower than the summit is a joint, not a waist. Marrow runs through a bone and never across a joint,
   // so its raised passes tell a condyle's own shaft from the bone it rolls on also where voxels are coarse.
   static constexpr float kWeakestContact = 0.35f;
+  static constexpr float kForbidden = 1e6f;  // mm: further than any bone
   static constexpr double kFar = 3, kSmall = 4;  // times the distance of the piece along a bone; so much smaller than it
 
   struct Cluster {
@@ -348,29 +355,28 @@ std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tis
   return bone;
 }
 
-// The touching pieces of one rig bone are one part; what touches none of its bone's other pieces and is small (under a
+// The touching voxels of one rig bone are one part; what touches none of its bone's other voxels and is small (under a
 // hundredth of its largest) belongs to that largest one.
-void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vector<std::int32_t>& basin, const Pieces& pieces,
-                  const std::vector<int>& bone, BoneParts& result) {
-  const std::int32_t basins = *std::max_element(basin.begin(), basin.end()) + 1;
-  std::vector<std::int32_t> joined(basins);
-  for (std::int32_t p = 0; p < basins; ++p) joined[p] = pieces.root(p);
+//   bone  #graph
+void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vector<int>& bone, BoneParts& result) {
+  std::vector<std::int32_t> joined(graph.size());
+  std::iota(joined.begin(), joined.end(), 0);
   auto root = [&](std::int32_t p) {
     while (joined[p] != p) p = joined[p] = joined[joined[p]];
     return p;
   };
-  for (std::int64_t i = 0; i < graph.size(); ++i)
+  for (std::int32_t i = 0; i < graph.size(); ++i)
     for (std::int32_t n : graph.neighbour[i])
-      if (n >= 0 && basin[n] != basin[i] && bone[basin[n]] == bone[basin[i]]) joined[root(basin[n])] = root(basin[i]);
+      if (n > i && bone[n] == bone[i]) joined[root(n)] = root(i);
 
-  std::vector<std::int64_t> voxels(basins);
-  for (std::int32_t b : basin) ++voxels[root(b)];
+  std::vector<std::int64_t> voxels(graph.size(), 0);
+  for (std::int32_t i = 0; i < graph.size(); ++i) ++voxels[root(i)];
   std::map<int, std::int32_t> largest;
-  for (std::int32_t p = 0; p < basins; ++p)
-    if (root(p) == p && voxels[p] > 0)
+  for (std::int32_t p = 0; p < graph.size(); ++p)
+    if (voxels[p] > 0)
       if (auto [at, is_new] = largest.insert({bone[p], p}); !is_new && voxels[p] > voxels[at->second]) at->second = p;
   constexpr int kMostParts = 60'000;  // part numbers have 16 bits
-  std::vector<int> number(basins, -1);
+  std::vector<int> number(graph.size(), -1);
   auto number_of = [&](std::int32_t p) {
     const std::int32_t home = largest[bone[p]];
     if (100 * voxels[p] < voxels[home] || std::ssize(result.parts) >= kMostParts) p = home;
@@ -380,26 +386,48 @@ void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vec
     }
     return number[p];
   };
-  for (std::int64_t i = 0; i < graph.size(); ++i) {
-    const int part = number_of(root(basin[i]));
+  for (std::int32_t i = 0; i < graph.size(); ++i) {
+    const int part = number_of(root(i));
     result.part_of[graph.place[i]] = static_cast<std::uint16_t>(1 + part);
     result.parts[part].voxel_count += 1;
     result.parts[part].centre += glm::dvec3(graph.voxel[i]);
   }
   for (auto& part : result.parts) part.centre = hugging.world(part.centre / double(part.voxel_count));
 }
-}  // namespace
 
-BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-                      const Armature& armature, Progress& progress) {
-  BoneParts result;
-  result.part_of.assign(tissue.size(), 0);
-  progress.update("bones", 0);
-  const std::vector<TissueKind> kinds = tissues.kinds();
-  const BoneGraph graph = gather_bone(volume, tissue, kinds);
-  if (graph.size() == 0) return result;
-  progress.update("bones", 0.4);
+// The part of the graph that names do not decide. Voxels of different groups are not neighbours there.
+struct Unsettled {
+  BoneGraph graph;
+  std::vector<std::int32_t> from;  // #graph, in the whole one
+};
+Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named) {
+  Unsettled part;
+  std::vector<std::int32_t> number(whole.size(), kNotBone);
+  for (std::int32_t i = 0; i < whole.size(); ++i)
+    if (named.bone[i] < 0) number[i] = static_cast<std::int32_t>(part.from.size()), part.from.push_back(i);
+  if (part.from.size() == static_cast<std::size_t>(whole.size())) {
+    // Nothing is settled; groups alone may part what touches.
+    part.graph = whole;
+    for (std::int32_t i = 0; i < whole.size(); ++i)
+      for (std::int32_t& n : part.graph.neighbour[i])
+        if (n >= 0 && named.group[n] != named.group[i]) n = kNotBone;
+    return part;
+  }
+  for (const std::int32_t i : part.from) {
+    part.graph.place.push_back(whole.place[i]);
+    part.graph.voxel.push_back(whole.voxel[i]);
+    auto& around = part.graph.neighbour.emplace_back(whole.neighbour[i]);
+    for (std::int32_t& n : around)
+      if (n >= 0) n = named.group[n] == named.group[i] ? number[n] : kNotBone;
+  }
+  return part;
+}
 
+// The rig bone of every voxel by shape: a watershed, whose basins join to the pieces that move as one.
+//   group       #graph, into `candidates`
+std::vector<int> bones_by_shape(const BoneGraph& graph, const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds,
+                                const Armature& armature, const Hugging& hugging, const std::vector<std::int32_t>& group,
+                                const std::vector<std::vector<int>>& candidates, Progress& progress) {
   // Marrow raises the ground: two cores are two summits however thin the shells between them.
   const std::vector<float> depth = bone_depth(graph, volume.grid.spacing);
   std::vector<float> height = depth;
@@ -409,7 +437,6 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
 
   const double voxel = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
   std::vector<std::int32_t> basin = flood(graph, height, kWiggleVoxels * voxel);
-  const Hugging hugging(armature, volume.grid);
   cut_where_several_bones_run(graph, armature, volume.grid, tissue, hugging, basin);
   for (std::int64_t fewest = 8; ; fewest *= 2) {
     join_specks(graph, fewest, basin);
@@ -418,11 +445,70 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   }
   progress.update("bones", 0.8);
 
-  Pieces pieces(graph, height, hugging, basin, voxel);
+  Pieces pieces(graph, height, hugging, basin, voxel, [&](std::int32_t i) -> const std::vector<int>& { return candidates[group[i]]; });
   pieces.join();
   pieces.settle(armature);
-  gather_parts(graph, hugging, basin, pieces, bones_of_basins(graph, tissue, volume, basin, pieces), result);
+  const std::vector<int> of_basin = bones_of_basins(graph, tissue, volume, basin, pieces);
+  std::vector<int> bone(graph.size());
+  for (std::int64_t i = 0; i < graph.size(); ++i) {
+    bone[i] = of_basin[basin[i]];
+    // What touched nothing of its own took what lay nearest, which its name may forbid.
+    const std::vector<int>& allowed = candidates[group[i]];
+    if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), bone[i]) == allowed.end())
+      bone[i] = *std::min_element(allowed.begin(), allowed.end(), [&](int a, int b) { return hugging.distance(a, graph.voxel[i]) < hugging.distance(b, graph.voxel[i]); });
+  }
+  return bone;
+}
+
+std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const LabelVolume& volume, const NamedBones& named, const std::vector<int>& bone,
+                                               const std::map<Label, LabelBones>& labels) {
+  std::map<std::pair<Label, int>, BoneParts::Identity> found;
+  for (std::int64_t i = 0; i < graph.size(); ++i) {
+    const Label label = volume.at(graph.voxel[i]);
+    auto& identity = found[{label, bone[i]}];
+    const auto name = labels.find(label);
+    identity = {label, bone[i], named.found_by[i], name != labels.end() && name->second.is_substitute, identity.voxel_count + 1};
+  }
+  std::vector<BoneParts::Identity> all;
+  for (const auto& [_, identity] : found) all.push_back(identity);
+  return all;
+}
+}  // namespace
+
+BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                      const Armature& armature, Progress& progress, const BoneMap& map) {
+  BoneParts result;
+  result.part_of.assign(tissue.size(), 0);
+  progress.update("bones", 0);
+  const std::vector<TissueKind> kinds = tissues.kinds();
+  const std::map<Label, LabelBones> labels = bones_of_labels(tissues, armature, map);
+  const BoneGraph graph = gather_bone(volume, tissue, kinds);
+  if (graph.size() == 0) return result;
+  progress.update("bones", 0.4);
+
+  const Hugging hugging(armature, volume.grid);
+  const NamedBones named = assign_named_bones(graph, volume, kinds, armature, labels);
+  std::vector<int> bone = named.bone;
+  if (const Unsettled unsettled = unsettled_part(graph, named); !unsettled.from.empty()) {
+    std::vector<std::int32_t> group;
+    for (const std::int32_t i : unsettled.from) group.push_back(named.group[i]);
+    const std::vector<int> found = bones_by_shape(unsettled.graph, volume, tissue, kinds, armature, hugging, group, named.candidates, progress);
+    for (std::size_t k = 0; k < found.size(); ++k) bone[unsettled.from[k]] = found[k];
+  }
+  gather_parts(graph, hugging, bone, result);
+  result.identities = identities_of(graph, volume, named, bone, labels);
   progress.update("bones", 1);
   return result;
+}
+
+std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable& tissues, const Armature& armature) {
+  std::vector<std::string> lines;
+  for (const BoneParts::Identity& identity : parts.identities) {
+    const Tissue* tissue = tissues.find(identity.label);
+    if (!identity.is_substitute || !tissue) continue;
+    lines.push_back("the rig has no bone for \"" + tissue->name.substr(0, 80) + "\": it follows " + armature.bones[identity.bone].name +
+                    "; say another with --bone-map");
+  }
+  return lines;
 }
 }  // namespace limber

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/rig/bone_basins.h"
+#include "core/bones/bone_watershed.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,12 +3,17 @@
 // (joints are thinner than a voxel), so the blob is split by a watershed that grows from the marrow cores, or without
 // marrow from the deepest points of the bone's distance map; each part goes to the rig bone it hugs. A bone is never
 // cut by a plane of the skin map: that puts 1004 voxels of the paper's arm on the wrong bone.
+//
+// Where labels say which bone of the body they are, that counts before any shape (core/bones/bone_identity.h). A label of several
+// bones ("Wrists and hand bones") is parted by its shape among the rig bones that its name allows.
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/bones/bone_identity.h"
 #include "core/rig/armature.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/tissue_voxels.h"
@@ -23,9 +28,22 @@ struct BoneParts {
   };
   std::vector<Part> parts;
   std::vector<std::uint16_t> part_of;  // #N tissue voxels: 0 = not bone, else 1 + place in `parts`
+
+  // Which rig bones each label of bone tissue follows, and how that was found.
+  struct Identity {
+    Label label;
+    int bone;
+    FoundBy found_by;
+    bool is_substitute;      // the rig has no bone for what the label's name means
+    std::int64_t voxel_count;
+  };
+  std::vector<Identity> identities;  // by label, then bone
 };
 
 BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-                      const Armature& armature, Progress& progress = no_progress());
+                      const Armature& armature, Progress& progress = no_progress(), const BoneMap& map = {});
+
+// One line for each label that follows a rig bone only because the rig has none for it.
+std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable& tissues, const Armature& armature);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 
 #include <map>
 #include <set>

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/bones/input_doubts.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "core/bones/bone_identity.h"
+
+namespace limber {
+
+namespace {
+// Atlases of a body have up to some 500 labels and differ at a tenth of their faces; a CT has 250 values and more and differs at nine tenths.
+constexpr int kManyLabels = 64;
+constexpr double kMostlyDiffers = 0.5;
+// A rig that fits has nine tenths of its length in tissue; a hand's rig runs along thin fingers and has less.
+constexpr double kMostlyOutside = 0.5, kFitsMuchBetter = 0.3;
+constexpr int kPoints = 32;  // asked along each bone
+
+struct Extent {
+  glm::dvec3 low{0}, high{0};  // world, mm, of the grid
+};
+Extent extent_of(const Grid& grid) {
+  const AffineTransform to_world = world_from_voxel(grid);
+  Extent extent{glm::dvec3(1e300), glm::dvec3(-1e300)};
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 at = to_world * (glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) * glm::dvec3(grid.size - 1));
+    extent.low = glm::min(extent.low, at);
+    extent.high = glm::max(extent.high, at);
+  }
+  return extent;
+}
+
+// The rig as it would lie if its file had meant other axes.
+template <class Move>
+Armature moved(Armature armature, const Move& move) {
+  for (Bone& bone : armature.bones) bone.head = move(bone.head), bone.tail = move(bone.tail);
+  return armature;
+}
+
+std::optional<std::string> doubt_about_grey(const LabelVolume& volume, const TissueTable& tissues) {
+  if (std::ssize(tissues.tissues) < kManyLabels) return std::nullopt;
+  const double share = share_of_differing_neighbours(volume);
+  if (share < kMostlyDiffers) return std::nullopt;
+  char text[200];
+  std::snprintf(text, sizeof text, "this looks like a grey image, not a label volume: it has %d values, and %.0f %% of neighbouring voxels differ; give the labels, and the image with --with",
+                int(tissues.tissues.size()), 100 * share);
+  return text;
+}
+
+std::optional<std::string> doubt_about_place(const LabelVolume& volume, const Armature& armature) {
+  const double inside = share_in_tissue(volume, armature);
+  if (inside >= kMostlyOutside) return std::nullopt;
+  const Extent extent = extent_of(volume.grid);
+  const glm::dvec3 twice_middle = extent.low + extent.high;
+  const double turned = share_in_tissue(volume, moved(armature, [](const glm::dvec3& p) { return glm::dvec3(-p.x, -p.y, p.z); }));
+  const double mirrored = std::max(share_in_tissue(volume, moved(armature, [](const glm::dvec3& p) { return glm::dvec3(-p.x, p.y, p.z); })),
+                                   share_in_tissue(volume, moved(armature, [&](const glm::dvec3& p) { return glm::dvec3(twice_middle.x - p.x, p.y, p.z); })));
+  char text[240];
+  const char* advice = std::max(turned, mirrored) < inside + kFitsMuchBetter ? "fit it with `limber fit-rig`, or give the rig of this body"
+                       : turned >= mirrored ? "negate its x and y: it seems to be in RAS axes, and Limber's are LPS"
+                                            : "mirror its x: it fits the body's other side";
+  std::snprintf(text, sizeof text, "the rig lies outside the body: only %.0f %% of its length is in tissue; %s", 100 * inside, advice);
+  return text;
+}
+
+// World, mm; of the labels that are there.
+std::map<Label, glm::dvec3> centres_of(const LabelVolume& volume, const std::set<Label>& labels) {
+  struct Sum {
+    glm::dvec3 place{0};
+    std::int64_t count = 0;
+  };
+  std::vector<Sum> sums(65536);
+  std::vector<bool> is_asked(65536, false);
+  for (const Label label : labels) is_asked[label] = true;
+  std::int64_t at = 0;
+  for (int z = 0; z < volume.grid.size.z; ++z)
+    for (int y = 0; y < volume.grid.size.y; ++y)
+      for (int x = 0; x < volume.grid.size.x; ++x, ++at)
+        if (const Label label = volume.voxels[at]; is_asked[label]) sums[label].place += glm::dvec3(x, y, z), ++sums[label].count;
+  std::map<Label, glm::dvec3> centres;
+  for (const Label label : labels)
+    if (sums[label].count) centres[label] = world_from_voxel(volume.grid) * (sums[label].place / double(sums[label].count));
+  return centres;
+}
+
+// The rig bones of one region on both sides, the named one first; none where the rig does not tell its sides apart.
+std::optional<std::array<std::vector<int>, 2>> both_sides(BoneRegion region, BodySide side, const Armature& armature) {
+  static const std::array<const char*, 15> kWord = {"skull", "atlas", "rib", "lumbar", "spine", "pelvis", "scapula", "humerus", "ulna", "wrist", "thumb", "femur", "tibia", "talus", "toe"};
+  TissueTable asked;
+  asked.tissues.resize(2);
+  for (int k = 0; k < 2; ++k) {
+    asked.tissues[k].label = static_cast<Label>(k + 1);
+    asked.tissues[k].kind = TissueKind::Bone;
+    asked.tissues[k].name = ((side == BodySide::Left) == (k == 0) ? "left " : "right ") + std::string(kWord[static_cast<int>(region)]);
+  }
+  const auto bones = bones_of_labels(asked, armature);
+  if (!bones.contains(1) || !bones.contains(2) || bones.at(1).candidates[0] == bones.at(2).candidates[0]) return std::nullopt;
+  return std::array{bones.at(1).candidates[0], bones.at(2).candidates[0]};
+}
+
+// Labels that say their side, against the rig's bones of that side and of the other.
+std::optional<std::string> doubt_about_sides(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature) {
+  std::map<Label, AnatomicalName> sided;
+  std::set<Label> labels;
+  for (const Tissue& tissue : tissues.tissues) {
+    if (!is_bone(tissue.kind)) continue;
+    AnatomicalName name = anatomical_name(tissue.name);
+    if (name.side == BodySide::Middle || name.regions.size() != 1 || *name.regions.begin() < BoneRegion::UpperArm) continue;
+    labels.insert(tissue.label);
+    sided[tissue.label] = std::move(name);
+  }
+  if (sided.empty()) return std::nullopt;
+
+  const std::map<Label, glm::dvec3> centres = centres_of(volume, labels);
+  int agree = 0, disagree = 0;
+  std::string example;
+  for (const auto& [label, centre] : centres) {
+    const AnatomicalName& name = sided.at(label);
+    const auto bones = both_sides(*name.regions.begin(), name.side, armature);
+    if (!bones) continue;
+    const auto distance = [&](int side) {
+      double least = 1e300;
+      for (const int b : (*bones)[side]) least = std::min(least, distance_to_bone(armature.bones[b], centre));
+      return least;
+    };
+    if (distance(0) <= distance(1)) ++agree;
+    else if (disagree++ == 0) example = tissues.find(label)->name.substr(0, 60);
+  }
+  if (disagree <= agree) return std::nullopt;
+  return "left and right are swapped between rig and labels: \"" + example + "\" lies at the rig's other side, and so do most; mirror the rig or correct the labels' names";
+}
+
+// The limb that a region belongs to; the trunk and the head belong to every rig.
+int limb_of(BoneRegion region) {
+  using enum BoneRegion;
+  return region >= UpperArm && region <= Finger ? 1 : region >= Thigh ? 2 : 0;
+}
+const char* name_of_limb(int limb) { return limb == 1 ? "arm" : "leg"; }
+
+std::optional<std::string> doubt_about_limb(const TissueTable& tissues, const Armature& armature) {
+  std::set<int> of_labels, of_rig;
+  for (const Tissue& tissue : tissues.tissues)
+    if (is_bone(tissue.kind))
+      for (const BoneRegion region : anatomical_name(tissue.name).regions) of_labels.insert(limb_of(region));
+  std::vector<std::string> names;
+  std::vector<int> parents;
+  for (const Bone& bone : armature.bones) names.push_back(bone.name), parents.push_back(bone.parent);
+  for (const auto& role : joint_roles(names, parents)) {
+    if (!role) continue;
+    const bool leg = role->part >= BodyPart::HipLink && role->part <= BodyPart::Toes;
+    const bool arm = (role->part >= BodyPart::UpperArm && role->part <= BodyPart::Fingers) || role->part >= BodyPart::Thumb;
+    of_rig.insert(leg ? 2 : arm ? 1 : 0);
+  }
+  // Trunks fit each other; one limb's rig on another one's bones does not.
+  if (of_labels.size() != 1 || of_rig.size() != 1 || of_labels == of_rig || of_labels.contains(0) || of_rig.contains(0)) return std::nullopt;
+  return std::string("this is a rig of the ") + name_of_limb(*of_rig.begin()) + ", and the labels are bones of the " + name_of_limb(*of_labels.begin()) + "; give the rig of this limb";
+}
+}  // namespace
+
+double share_of_differing_neighbours(const LabelVolume& volume) {
+  std::int64_t pairs = 0, differing = 0;
+  const std::int64_t row = volume.grid.size.x;
+  for (std::int64_t at = 0; at + 1 < std::ssize(volume.voxels); ++at) {
+    if ((at + 1) % row == 0 || volume.voxels[at] == 0 || volume.voxels[at + 1] == 0) continue;
+    ++pairs;
+    differing += volume.voxels[at] != volume.voxels[at + 1];
+  }
+  return pairs ? double(differing) / double(pairs) : 0;
+}
+
+double share_in_tissue(const LabelVolume& volume, const Armature& armature) {
+  const AffineTransform from_world = voxel_from_world(volume.grid);
+  double length = 0, inside = 0;
+  for (const Bone& bone : armature.bones) {
+    const double own = glm::distance(bone.head, bone.tail);
+    if (!(own > 0)) continue;
+    length += own;
+    for (int k = 0; k < kPoints; ++k) {
+      const glm::dvec3 at = glm::floor(from_world * glm::mix(bone.head, bone.tail, 0.1 + 0.8 * (k + 0.5) / kPoints) + 0.5);
+      const bool in_grid = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, glm::dvec3(volume.grid.size)));
+      if (in_grid && volume.at(glm::ivec3(at)) != 0) inside += own / kPoints;
+    }
+  }
+  return length > 0 ? inside / length : 1;
+}
+
+std::vector<std::string> input_doubts(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature) {
+  std::vector<std::string> doubts;
+  const auto add = [&](std::optional<std::string> doubt) {
+    if (doubt) doubts.push_back(std::move(*doubt));
+  };
+  add(doubt_about_grey(volume, tissues));
+  add(doubt_about_place(volume, armature));
+  add(doubt_about_sides(volume, tissues, armature));
+  add(doubt_about_limb(tissues, armature));
+  return doubts;
+}
+
+}  // namespace limber

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/bones/named_bones.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace limber {
+
+namespace {
+constexpr double kClearMajority = 0.85;  // of a piece's voxels on one side: the rest are the other side's rig bone reaching across
+constexpr double kAttached = 0.1;        // of a bone's voxels, those nearest to the rig bones that may carry it
+
+class Assigning {
+ public:
+  Assigning(const BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
+            const std::map<Label, LabelBones>& labels)
+      : graph_(graph), volume_(volume), kinds_(kinds), armature_(armature), labels_(labels), world_from_voxel_(world_from_voxel(volume.grid)) {
+    named_.bone.assign(graph.size(), -1);
+    named_.group.assign(graph.size(), NamedBones::kUnnamed);
+    named_.found_by.assign(graph.size(), FoundBy::Shape);
+    named_.candidates.resize(1);
+  }
+
+  NamedBones run() && {
+    gather_sets();
+    for (const Set& set : sets_) assign(set);
+    spread_into_marrow();
+    return std::move(named_);
+  }
+
+ private:
+  // Voxels that may follow the same rig bones. A bone that must stay whole has a set of its own where there is a choice.
+  struct Set {
+    const LabelBones* bones;
+    std::vector<std::int32_t> voxels;
+  };
+
+  void gather_sets() {
+    using Key = std::tuple<std::vector<int>, std::vector<int>, bool, Label, bool>;
+    std::map<Key, std::size_t> at;
+    std::vector<int> set_of(65536, -1);
+    for (const auto& [label, bones] : labels_) {
+      const bool has_choice = std::max(bones.candidates[0].size(), bones.candidates[1].size()) > 1;
+      const auto [found, is_new] = at.insert({{bones.candidates[0], bones.candidates[1], bones.has_sides, bones.single && has_choice ? label : Label{0}, bones.found_by == FoundBy::Map}, sets_.size()});
+      if (is_new) sets_.push_back({&bones, {}});
+      set_of[label] = static_cast<int>(found->second);
+    }
+    set_of_.assign(graph_.size(), -1);
+    for (std::int32_t i = 0; i < graph_.size(); ++i) {
+      const Label label = volume_.at(graph_.voxel[i]);
+      set_of_[i] = set_of[label];
+      if (set_of_[i] < 0) continue;
+      sets_[set_of_[i]].voxels.push_back(i);
+      named_.found_by[i] = labels_.at(label).found_by;
+    }
+  }
+
+  void assign(const Set& set) {
+    const LabelBones& bones = *set.bones;
+    if (!bones.has_sides) return follow(set.voxels, bones.candidates[0], bones.single);
+    std::array<std::vector<std::int32_t>, 2> sides;
+    for (const std::vector<std::int32_t>& piece : pieces_of(set)) {
+      std::array<std::vector<std::int32_t>, 2> nearer;
+      for (const std::int32_t i : piece) nearer[nearest(bones.side_bones[1], i).distance < nearest(bones.side_bones[0], i).distance].push_back(i);
+      for (int side = 0; side < 2; ++side) {
+        const bool has_all = double(nearer[side].size()) >= kClearMajority * double(piece.size());
+        const bool has_none = double(nearer[1 - side].size()) >= kClearMajority * double(piece.size());
+        const auto& own = has_all ? piece : nearer[side];
+        if (!has_none) sides[side].insert(sides[side].end(), own.begin(), own.end());
+      }
+    }
+    for (int side = 0; side < 2; ++side) follow(sides[side], bones.candidates[side], bones.single);
+  }
+
+  // Connected pieces of a set.
+  std::vector<std::vector<std::int32_t>> pieces_of(const Set& set) {
+    std::vector<std::vector<std::int32_t>> pieces;
+    std::vector<bool>& seen = seen_;
+    seen.resize(graph_.size(), false);
+    for (const std::int32_t start : set.voxels) {
+      if (seen[start]) continue;
+      std::vector<std::int32_t>& piece = pieces.emplace_back(1, start);
+      seen[start] = true;
+      for (std::size_t k = 0; k < piece.size(); ++k)
+        for (const std::int32_t n : graph_.neighbour[piece[k]])
+          if (n >= 0 && !seen[n] && set_of_[n] == set_of_[start]) seen[n] = true, piece.push_back(n);
+    }
+    return pieces;
+  }
+
+  void follow(const std::vector<std::int32_t>& voxels, const std::vector<int>& candidates, bool whole) {
+    if (voxels.empty()) return;
+    if (candidates.size() == 1 || whole) {
+      const int bone = candidates.size() == 1 ? candidates[0] : bone_where_attached(voxels, candidates);
+      for (const std::int32_t i : voxels) named_.bone[i] = bone;
+    }
+    const auto group = static_cast<std::int32_t>(named_.candidates.size());
+    named_.candidates.push_back(candidates);
+    for (const std::int32_t i : voxels) named_.group[i] = group;
+  }
+
+  struct Nearest {
+    double distance;
+    int bone;
+  };
+  Nearest nearest(const std::vector<int>& bones, std::int32_t i) const {
+    const glm::dvec3 at = world_from_voxel_ * glm::dvec3(graph_.voxel[i]);
+    Nearest best{std::numeric_limits<double>::max(), bones.front()};
+    for (const int b : bones)
+      if (const double d = distance_to_bone(armature_.bones[b], at); d < best.distance) best = {d, b};
+    return best;
+  }
+
+  int bone_where_attached(const std::vector<std::int32_t>& voxels, const std::vector<int>& candidates) const {
+    std::vector<Nearest> all;
+    for (const std::int32_t i : voxels) all.push_back(nearest(candidates, i));
+    const std::size_t attached = std::max<std::size_t>(1, static_cast<std::size_t>(kAttached * double(all.size())));
+    std::nth_element(all.begin(), all.begin() + (attached - 1), all.end(),
+                     [](const Nearest& a, const Nearest& b) { return std::pair(a.distance, a.bone) < std::pair(b.distance, b.bone); });
+    std::map<int, std::size_t> votes;
+    for (std::size_t k = 0; k < attached; ++k) ++votes[all[k].bone];
+    return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
+  }
+
+  // Breadth first from the named bones through marrow and spongy bone without a name.
+  void spread_into_marrow() {
+    std::vector<std::int32_t> front;
+    for (std::int32_t i = 0; i < graph_.size(); ++i)
+      if (named_.group[i] != NamedBones::kUnnamed) front.push_back(i);
+    for (std::size_t k = 0; k < front.size(); ++k) {
+      const std::int32_t from = front[k];
+      for (const std::int32_t n : graph_.neighbour[from]) {
+        if (n < 0 || named_.group[n] != NamedBones::kUnnamed) continue;
+        const TissueKind kind = kinds_[volume_.at(graph_.voxel[n])];
+        if (kind != TissueKind::Marrow && kind != TissueKind::CancellousBone) continue;
+        named_.group[n] = named_.group[from];
+        named_.bone[n] = named_.bone[from];
+        named_.found_by[n] = FoundBy::Kind;
+        front.push_back(n);
+      }
+    }
+  }
+
+  const BoneGraph& graph_;
+  const LabelVolume& volume_;
+  const std::vector<TissueKind>& kinds_;
+  const Armature& armature_;
+  const std::map<Label, LabelBones>& labels_;
+  AffineTransform world_from_voxel_;
+  std::vector<Set> sets_;
+  std::vector<int> set_of_;  // #graph, -1: no name
+  std::vector<bool> seen_;
+  NamedBones named_;
+};
+}  // namespace
+
+NamedBones assign_named_bones(const BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
+                              const std::map<Label, LabelBones>& labels) {
+  return Assigning(graph, volume, kinds, armature, labels).run();
+}
+
+}  // namespace limber
