@@ -23,7 +23,7 @@
 #include "core/resample/fem_steps.h"
 #include "core/resample/pose_path.h"
 #include "core/resample/posed_points.h"
-#include "core/rig/bone_parts.h"
+#include "core/bones/bone_parts.h"
 #include "core/rig/fit_joint.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
@@ -317,6 +317,13 @@ void finish(const Options& options, const Body& body, const Pose& pose, const La
   note_shape(report, posed.report, pose, options.contact);
   if (posed.report.mass_exact) note_masses(report, *posed.report.mass_exact, body.tissues);
 
+  // Weights from a file may be older than the rig, or painted by another program.
+  if (!options.report.empty() || !options.weights.empty()) {
+    const auto motions = bone_motions(landmarks.weights.bones(), body.rig, posed.shape ? posed.shape->pose : pose);
+    report.whole_bones = whole_bones(body.file.volume, landmarks.tissue, body.tissues, body.rig, landmarks.weights, motions, body.bone_map);
+    note(report, astray_bones(report.whole_bones));
+  }
+
   Outputs outputs;
   const Stopwatch writing;
   write_outputs(options, body, posed, outputs);
@@ -368,7 +375,8 @@ void run(const Options& options) {
   const Stopwatch weighting;
   const TissueVoxels tissue(body.file.volume);
   BoneParts parts;
-  if (options.weights.empty() || options.fit_joints) parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress);
+  if (options.weights.empty() || options.fit_joints) parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress, body.bone_map);
+  if (options.weights.empty()) note(report, unsure_bones(parts, body.tissues, body.rig));
   const SkinWeights weights = weights_of(body, tissue, parts, options, report, progress);
   if (options.fit_joints) {
     FittedPose fitted = fit_joints(body.file.volume, tissue, parts, body.rig, poses[0], progress);

@@ -228,6 +228,11 @@ std::string to_json(const Report& report) {
   if (report.deform && !report.deform->bones.empty())
     for (const auto& bone : report.deform->bones)
       json["bones"].push_back({{"name", bone.name}, {"rigid_residual_mm", bone.rigid_residual_mm}});
+  for (const WholeBone& bone : report.whole_bones) {
+    Json row{{"label", bone.file_value}, {"name", bone.name}, {"belongs_to", bone.belongs_to}, {"voxels", bone.voxels}, {"wrong_voxels", bone.wrong_voxels}, {"residual_mm", bone.residual_mm}};
+    if (!bone.went_with.empty()) row["went_with"] = bone.went_with;
+    json["whole_bones"].push_back(std::move(row));
+  }
   if (report.deform && report.deform->mass_exact) json["mass_exact"] = mass_exact_of(report, *report.deform->mass_exact);
   if (report.deform && report.deform->mesh) json["mesh"] = mesh_of(report, *report.deform->mesh);
   if (report.deform && report.deform->solve) json["solve"] = solve_of(*report.deform->solve);
@@ -266,7 +271,14 @@ void print_report(std::ostream& out, const Report& report) {
     double worst = 0;
     for (const auto& bone : deform.bones) worst = std::max(worst, bone.rigid_residual_mm);
     if (!deform.bones.empty())
-      out << line("%zu bones are rigid within %.4f mm", deform.bones.size(), worst);
+      out << line("bone parts of %zu rig bones are rigid within %.4f mm", deform.bones.size(), worst);
+  }
+  if (!report.whole_bones.empty()) {
+    std::int64_t astray = 0;
+    double worst = 0;
+    for (const WholeBone& bone : report.whole_bones) astray += bone.wrong_voxels, worst = std::max(worst, bone.residual_mm);
+    out << line("%zu named bones: %lld voxels follow a wrong rig bone, whole bones are rigid within %.2f mm", report.whole_bones.size(),
+                static_cast<long long>(astray), worst);
   }
   if (report.deform && report.deform->mesh) {
     const MeshReport& mesh = *report.deform->mesh;

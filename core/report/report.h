@@ -14,6 +14,7 @@
 #include "core/base/file.h"
 #include "core/pose/pose.h"
 #include "core/report/metrics.h"
+#include "core/report/whole_bones.h"
 #include "core/resample/resample.h"
 
 namespace limber {
@@ -50,6 +51,7 @@ struct Report {
   std::vector<TurnedJoint> joints;
   StageSeconds seconds;
   std::optional<VolumeMetrics> metrics;
+  std::vector<WholeBone> whole_bones;  // of labels that name a bone, or none
   std::vector<double> dice;  // by label [dice.h], or empty
   std::optional<DeformReport> deform;
   std::vector<std::string> warnings;
