@@ -146,6 +146,12 @@ AnatomicalName anatomical_name(std::string_view label_name) {
       name.plural |= found->second.plural;
     }
   }
+  // "Lower leg bones": a limb's half where no bone is named.
+  if (name.regions.empty() && has_any(words, {"bone", "bones"}) && has(words, "upper") != has(words, "lower")) {
+    const bool upper = has(words, "upper");
+    if (has_any(words, {"arm", "arms"})) name.regions.insert(upper ? BoneRegion::UpperArm : BoneRegion::Forearm);
+    if (has_any(words, {"leg", "legs"})) name.regions.insert(upper ? BoneRegion::Thigh : BoneRegion::Shank);
+  }
   // "Fifth lumbar vertebra", "vertebrae_L5" and "Spine T4" are one bone, "Lumbar spine" and "Thoracic vertebrae" are several.
   if (levels == 1 || has(words, "vertebra")) name.plural = false;
   if (is_vertebra && name.regions.empty()) name.regions.insert(BoneRegion::Spine), name.plural = true;

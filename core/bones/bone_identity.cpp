@@ -221,10 +221,17 @@ void apply(const BoneMap& map, const TissueTable& tissues, const Armature& armat
             throw Error("the rig's names do not tell left from right", "bone map, \"" + key.substr(0, 80) + "\"", "leave @left and @right out, or name the rig's bones by their side");
         }
         for (int side = 0; side < 2; ++side)
-          if (!of_sides || side == *parts.side || bones.candidates[side].empty()) bones.candidates[side] = {bone};
+          if (!of_sides || side == *parts.side) bones.candidates[side] = {bone};
       }
       if (!any) throw Error("the volume has no bone tissue \"" + parts.label.substr(0, 80) + "\"", "bone map", "write a label's name or value as `limber info` shows it");
     }
+  for (const auto& [label, bones] : found)
+    for (int side = 0; side < 2; ++side)
+      if (bones.candidates[side].empty()) {
+        const Tissue* tissue = tissues.find(label);
+        throw Error("the bone map says only one side of \"" + (tissue ? tissue->name.substr(0, 80) : std::string()) + "\", and its name does not say the other", "bone map",
+                    side == 0 ? "add the label with @left" : "add the label with @right");
+      }
 }
 }  // namespace
 

@@ -61,7 +61,8 @@ const std::vector<Rule>& rules() {
         "cranium",   "mandible",  "maxilla",     "pelvis",     "hip",       "ilium",     "ischium",  "pubis",      "carpal",     "metacarpal", "tarsal", "metatarsal",
         "phalanx",   "phalanges", "capitate",    "hamate",     "lunate",    "scaphoid",  "trapezium", "trapezoid", "triquetral", "triquetrum", "pisiform", "calcaneus",
         "talus",     "navicular", "cuboid",      "cuneiform",  "sesamoid",  "hyoid",     "ethmoid",  "vomer",      "sphenoid",   "zygomatic", "tooth",   "teeth",
-        "incisor",   "molar",     "premolar",    "canine", "concha",     "cortical",  "compact"}},
+        "incisor",   "molar",     "premolar",    "canine", "concha",     "cortical",  "compact",
+        "costae",    "claviculae", "scapulae",   "femora",     "humeri",    "ulnae",     "radii",    "tibiae",     "fibulae",  "patellae", "innominate", "calvaria"}},
   };
   return kRules;
 }

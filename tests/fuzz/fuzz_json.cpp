@@ -26,8 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* bytes, std::size_t si
     switch (bytes[0] % 4) {
       case 0: posed_from_rest(rig, parse_pose(text, "fuzz", rig)); break;
       case 1: parse_armature_json(text, "fuzz"); break;
-      case 3: bones_of_labels(bones, rig, parse_bone_map(text, "fuzz")); break;
       case 2: parse_retarget_map(text, "fuzz", motion, rig); break;
+      case 3: bones_of_labels(bones, rig, parse_bone_map(text, "fuzz")); break;
     }
   } catch (const Error&) {
   }

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "core/volume/tissue_table.h"
+
 using namespace limber;
 
 namespace {
@@ -53,6 +55,8 @@ TEST_CASE("anatomical names: regions of reference phantoms hold several bones or
   check_one("Humeri, lower half, cortical", UpperArm, BodySide::Middle, false);
   check_one("Ulnae and radii, spongiosa", Forearm, BodySide::Middle, false);
   check_one("Tibiae, fibulae and patellae, cortical", Shank, BodySide::Middle, false);
+  check_one("Lower leg bones, spongiosa", Shank, BodySide::Middle, false);
+  check_one("Upper arm bones, medullary cavity", UpperArm, BodySide::Middle, false);
   check_one("Ribs, cortical", Thorax, BodySide::Middle, true);
   check_one("Lumbar spine, spongiosa", Lumbar, BodySide::Middle, true);
   check_one("Pelvis, cortical", Pelvis, BodySide::Middle, false);
@@ -61,6 +65,15 @@ TEST_CASE("anatomical names: regions of reference phantoms hold several bones or
   CHECK(hands.regions == std::set<BoneRegion>{Hand, Finger});
   CHECK(feet.plural);
   CHECK(hands.plural);
+}
+
+TEST_CASE("anatomical names: a bone in Latin plural is bone tissue, and a medullary cavity is marrow") {
+  for (const char* text : {"Ulnae and radii", "Femora", "Humeri, upper half", "Tibiae, fibulae and patellae", "Scapulae"}) {
+    CAPTURE(text);
+    CHECK(tissue_kind_from_name(text) == TissueKind::Bone);
+  }
+  CHECK(tissue_kind_from_name("Femora, upper half, medullary cavity") == TissueKind::Marrow);
+  CHECK(tissue_kind_from_name("Body cavity interior") == TissueKind::Cavity);
 }
 
 TEST_CASE("anatomical names: a finger's bone is read with finger and segment") {

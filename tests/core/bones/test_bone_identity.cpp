@@ -95,6 +95,9 @@ TEST_CASE("bone identity: what a map says of nothing that is there is refused wi
   CHECK_THROWS_AS(counts_of(body, {{"Pelvis, cortical", "Tail"}}), Error);
   CHECK_THROWS_AS(counts_of(body, {{"Ribs", "Pelvis"}}), Error);
   CHECK_THROWS_AS(counts_of(body, {{"muscle", "Pelvis"}}), Error);
+  // Marrow has no name that would say its right side.
+  CHECK_THROWS_AS(counts_of(body, {{"marrow@left", "LeftThigh"}}), Error);
+  CHECK(counts_of(body, {{"marrow@left", "LeftThigh"}, {"marrow@right", "Pelvis"}}).contains({kMarrow, "Pelvis"}));
 }
 
 TEST_CASE("bone identity: each label's table says how it was found") {
