@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/bones/bone_parts.h"
+#include "core/seams/find_seams.h"
 #include "core/skin/geodesic.h"
 #include "core/skin/recomputed.h"
 #include "core/skin/rigid.h"
@@ -69,9 +70,10 @@ TissueRegion region_of(const Part& part, const LabelVolume& volume, const Tissue
   });
 }
 
-SkinWeights computed(const Document& from, const TissueVoxels& tissue, const Computation& computation, Progress& progress, WeightsReport& report) {
+SkinWeights computed(const Document& from, TissueVoxels tissue, const Computation& computation, Progress& progress, WeightsReport& report) {
   const LabelVolume& volume = *from.volume;
   const BoneParts parts = split_bones(volume, tissue, *from.tissues, *from.armature, progress);
+  tissue.set_seams(std::make_shared<const Seams>(find_seams(volume, tissue, *from.tissues, *from.armature, parts, progress)));
   switch (computation.method) {
     case BindingMethod::Rigid: return bind_rigid(volume, tissue, *from.armature, parts, progress, &report);
     case BindingMethod::Geodesic: return bind_geodesic(volume, tissue, *from.armature, parts, {.stiffness = computation.stiffness}, progress, &report);

@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber prepare IN -o OUT [--orient CODE] [--flip x|y|z] [--merge A=B ...] [--spacing MM] [--drop-specks N] [--crop]
-//        [--pad N] [--statistics CSV] [--tissues T]
+//        [--pad N] [--statistics CSV] [--tissues T] [--seams SEAMS.nrrd --rig RIG]
 #include "core/volume/prepare.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/bones/bone_parts.h"
 #include "core/cmd/command.h"
+#include "core/rig/armature_io.h"
+#include "core/seams/find_seams.h"
+#include "core/seams/seams_io.h"
 #include "core/volume/volume_io.h"
 
 namespace limber::cmd {
 
 namespace {
 struct Options {
-  std::string in, out, tissues, statistics, orientation, flip;
+  std::string in, out, tissues, statistics, orientation, flip, seams, rig;
   std::vector<std::string> merges;
   std::optional<double> spacing;
   std::int64_t specks = 0;
@@ -58,13 +63,25 @@ void keep_present(TissueTable& tissues, const LabelVolume& volume) {
   std::erase_if(tissues.tissues, [&](const Tissue& tissue) { return !present[tissue.label]; });
 }
 
+// Of the volume as it is written, in the rig's world.
+void write_seams_found(const LabelVolume& volume, const TissueTable& tissues, const Options& options, Progress& progress) {
+  const ArmatureFile rig = read_armature_file(options.rig);
+  warn(rig.warnings);
+  const TissueVoxels tissue(volume);
+  const BoneParts parts = split_bones(volume, tissue, tissues, rig.armature, progress);
+  const Seams seams = find_seams(volume, tissue, tissues, rig.armature, parts, progress);
+  write_seams(seams, volume.grid, options.seams);
+  std::printf("seams: %lld voxel faces between limbs that touch\n", static_cast<long long>(seams.size()));
+}
+
 void prepare(const Options& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
   check_writable(options.out);
   if (!options.statistics.empty()) check_place(options.statistics);
-  check_distinct({options.out, options.statistics});
+  if (!options.seams.empty()) check_writable(options.seams);
+  check_distinct({options.out, options.statistics, options.seams});
   VolumeFile file = read_volume(options.in, progress);
   warn(file.warnings);
   TissueTable user;
@@ -83,6 +100,7 @@ void prepare(const Options& options) {
 
   progress.update("write", 0);
   write_volume(volume, options.out, tissues, file.type);
+  if (!options.seams.empty()) write_seams_found(volume, tissues, options, progress);
   if (!options.statistics.empty()) write_file_atomically(options.statistics, to_csv(label_statistics(volume), tissues));
   progress.update("write", 1);
 }
@@ -92,7 +110,7 @@ void add_prepare(CLI::App& app) {
   auto* command = app.add_subcommand(
       "prepare",
       "makes a label volume ready; whatever is asked is done in this order: --orient, --flip, --merge, --spacing, "
-      "--drop-specks, --crop, --pad, --statistics");
+      "--drop-specks, --crop, --pad, --seams, --statistics");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "label volume")->required();
   command->add_option("-o,--output", options->out, "label volume to write; its format by extension")->required();
@@ -106,6 +124,10 @@ void add_prepare(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--crop", options->crop, "take away air around the tissue");
   command->add_option("--pad", options->pad, "voxels of air to put on every side")->check(CLI::NonNegativeNumber);
+  auto* seams = command->add_option("--seams", options->seams, "finds where limbs touch without being one (hand on hip, thigh on thigh) and writes the faces between them as a label volume: 1 towards x, 2 towards y, 4 towards z, summed");
+  auto* rig = command->add_option("--rig", options->rig, "seams: the rig that says what the limbs are");
+  seams->needs(rig);
+  rig->needs(seams);
   command->add_option("--statistics", options->statistics, "CSV file: per label voxels, volume, mass, centre, box, pieces, surface");
   add_run_options(*command, options->run);
   command->callback([options] { prepare(*options); });

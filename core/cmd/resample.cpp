@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] POSE-OPTIONS --method lbs|dqs|fem [--fit-joints]
+// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS --method lbs|dqs|fem [--fit-joints]
 //        [--contact] [--quality draft|normal|fine] [--mesher lattice|tetgen] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2]
 //        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--threads N] [--progress json]
 #include "core/resample/resample.h"
@@ -15,6 +15,7 @@
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/pose_options.h"
+#include "core/cmd/seam_options.h"
 #include "core/deck/tet_phantom.h"
 #include "core/fem/solve_pose.h"
 #include "core/mesh/tetgen_files.h"
@@ -37,7 +38,7 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method, output, report, grey, field, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps;
+  std::string weights, method, output, report, grey, field, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps, seams;
   std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
@@ -373,9 +374,9 @@ void run(const Options& options) {
   report.seconds.read = reading.seconds();
 
   const Stopwatch weighting;
-  const TissueVoxels tissue(body.file.volume);
-  BoneParts parts;
-  if (options.weights.empty() || options.fit_joints) parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress, body.bone_map);
+  TissueVoxels tissue(body.file.volume);
+  const BoneParts parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress, body.bone_map);
+  set_seams(tissue, options.seams, body, parts, progress);
   if (options.weights.empty()) note(report, unsure_bones(parts, body.tissues, body.rig));
   const SkinWeights weights = weights_of(body, tissue, parts, options, report, progress);
   if (options.fit_joints) {
@@ -389,7 +390,8 @@ void run(const Options& options) {
   const ResampleSettings settings{.nearest = options.nearest, .mass_exact = options.mass_exact, .mass_limit_percent = options.mass_limit, .spacing = options.spacing,
                                   .displacement = !options.field.empty(), .jacobian = !options.jacobian.empty(),
                                   .overlap = !options.overlap.empty(),
-                                  .grey = grey ? &*grey : nullptr};
+                                  .grey = grey ? &*grey : nullptr,
+                                  .seams = tissue.shared_seams()};
   SolveProgress solve(progress, options, weights.bones(), body.rig, poses[0]);
   bool all_reached = true;
   std::optional<CommandProgress::LeavesAtOnce> nothing_is_being_written(std::in_place);
@@ -413,6 +415,7 @@ void add_resample(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "W.nrrd (default: heat diffusion)");
+  add_seam_option(*command, options->seams);
   add_pose_options(*command, options->pose);
   command->add_option("--frames", options->frames, "several frames of the motion, one after the other: put {frame} into the outputs' names; fem meshes once and starts each from the one before")->type_name("FIRST:LAST[:STEP]");
   command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions) or fem (finite elements)")->required()->check(CLI::IsMember({"lbs", "dqs", "fem"}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber weights VOLUME --rig RIG [--tissues T] [--bones L,L] [--method heat|geodesic|rigid] -o W.nrrd [--bender-dir DIR]
+// limber weights VOLUME --rig RIG [--tissues T] [--bones L,L] [--method heat|geodesic|rigid] [--seams FILE|none] -o W.nrrd [--bender-dir DIR]
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
+#include "core/cmd/seam_options.h"
 #include "core/bones/bone_parts.h"
 #include "core/skin/geodesic.h"
 #include "core/skin/heat_diffusion.h"
@@ -18,7 +19,7 @@ namespace limber::cmd {
 namespace {
 struct Options {
   BodyOptions body;
-  std::string method = "heat", output, bender_folder;
+  std::string method = "heat", output, bender_folder, seams;
   RunOptions run;
 };
 
@@ -54,8 +55,9 @@ void make_weights(const Options& options) {
   const LabelVolume& volume = body.file.volume;
   const Armature& rig = body.rig;
 
-  const TissueVoxels tissue(volume);
+  TissueVoxels tissue(volume);
   const BoneParts parts = split_bones(volume, tissue, body.tissues, rig, progress, body.bone_map);
+  set_seams(tissue, options.seams, body, parts, progress);
   WeightsReport report;
   const SkinWeights weights =
       options.method == "rigid"      ? bind_rigid(volume, tissue, rig, parts, progress, &report)
@@ -78,6 +80,7 @@ void add_weights(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
   command->add_option("--method", options->method, "heat, geodesic or rigid")->check(CLI::IsMember({"heat", "geodesic", "rigid"}));
+  add_seam_option(*command, options->seams);
   command->add_option("-o,--output", options->output, "W.nrrd")->required();
   command->add_option("--bender-dir", options->bender_folder, "also write weight_NN.mha, one a bone, into this folder");
   add_run_options(*command, options->run);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "core/deform/claims.h"
 
@@ -36,6 +37,28 @@ PosedCell cell_at(const PosedLattice::Corners& corners, const glm::ivec3& brick_
   return PosedCell(&corners[PosedLattice::place(place.x, place.y, place.z)], PosedLattice::place(0, 1, 0), PosedLattice::place(0, 0, 1),
                    brick_corner + place);
 }
+
+// The cells of a brick that bends, with shared corners or, where a seam is near, each with its own.
+class BentBrick {
+ public:
+  // Room for the brick's corners is needed where the lattice does not keep them.
+  BentBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room) : lowest_(lattice.tissue().bricks()[brick].corner) {
+    if (lattice.is_split(brick))
+      lattice.split_corners(brick, *(split_ = std::make_unique_for_overwrite<PosedLattice::SplitBrick>()));
+    else
+      shared_ = &lattice.corners(brick, room);
+  }
+  PosedCell at(const glm::ivec3& voxel) const {
+    const glm::ivec3 v = voxel - lowest_;
+    if (split_) return PosedCell(&(*split_)[8 * (v.x + 8 * (v.y + 8 * v.z))], 2, 4, voxel);
+    return cell_at(*shared_, lowest_, v);
+  }
+
+ private:
+  glm::ivec3 lowest_;
+  std::unique_ptr<PosedLattice::SplitBrick> split_;
+  const PosedLattice::Corners* shared_ = nullptr;
+};
 
 // A brick whose cells all move as one. Their bone's motion, read backward, gives the cell and the rest point at once; only
 // next to a cell's border, where the fixed-point corners decide, are cells asked.
@@ -106,12 +129,12 @@ bool rasterize_some(const PosedLattice& lattice, std::int64_t brick, const std::
   if (std::all_of(without.begin(), without.end(), [](std::uint64_t slice) { return slice == 0; })) return false;
   const TissueVoxels::Brick& cells = lattice.tissue().bricks()[brick];
   if (without == cells.mask) return true;
-  const PosedLattice::Corners& corners = lattice.corners(brick, room);
+  const BentBrick bent(lattice, brick, room);
   const Grid& grid = lattice.volume().grid;
   lattice.tissue().for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
     const glm::ivec3 v = voxel - cells.corner;
     if (without[v.z] >> (v.x + 8 * v.y) & 1) return;
-    cell_at(corners, cells.corner, v).rasterize(range, [&](const CellClaim& cell) {
+    bent.at(voxel).rasterize(range, [&](const CellClaim& cell) {
       claims.claim(static_cast<std::uint32_t>(grid.index(voxel)), voxel, cell);
     });
   });
@@ -170,10 +193,9 @@ void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::ve
         cells.rasterize(reach, claim);
         continue;
       }
-    const PosedLattice::Corners& corners = lattice.corners(brick, room);
-    const glm::ivec3 first = tissue.bricks()[brick].corner;
+    const BentBrick bent(lattice, brick, room);
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
-      cell_at(corners, first, voxel - first).rasterize(reach, [&](const CellClaim& cell) { claim(voxel, cell); });
+      bent.at(voxel).rasterize(reach, [&](const CellClaim& cell) { claim(voxel, cell); });
     });
   }
 }
@@ -278,6 +300,8 @@ bool RigidBones::has(int bone, const glm::dvec3& rest, const LabelSampler& sampl
   if (!(*is_bone_)[label]) return false;
   if (const int own = owner(voxel); own >= 0) return own == bone;
 
+  // What touches a seam belongs to one side of it alone.
+  if (const Seams* seams = lattice_->tissue().seams(); seams && lattice_->volume().grid.contains(voxel) && seams->touches(voxel)) return false;
   // Bone by its membership, though the nearest voxel is not: the nearest bone voxel around decides.
   double least = INFINITY;
   int found = -1;

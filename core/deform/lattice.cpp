@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/pages.h"
+#include "core/deform/split_corners.h"
 
 namespace limber {
 
@@ -184,6 +185,7 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
   const std::int64_t count = std::ssize(tissue.bricks());
   bounds_.resize(count);
   still_.resize(count);
+  split_.resize(count);
   only_bone_.resize(count);
   rigid_.resize(count);
   for (const RigidTransform& posed : posed_from_rest) {
@@ -212,10 +214,40 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
       const BrickBounds posed = compute(brick, room);
       bounds_[brick] = posed.box;
       still_[brick] = posed.still;
+      split_[brick] = tissue.seams() && rigid_[brick] == kSeveral && tissue.seams()->is_near_brick(tissue.bricks()[brick].corner);
+      if (split_[brick]) {
+        bounds_[brick] = split_bounds(brick);
+        still_[brick] = false;
+      }
       if (keeps && rigid_[brick] == kSeveral) kept_[kept_at_[brick] = kept++] = room;
     }
   });
   progress.update("pose", 1);
+}
+
+void PosedLattice::split_corners(std::int64_t brick, SplitBrick& corners) const {
+  SplitCorners split(*tissue_, *weights_, moves_as_, brick);
+  const glm::ivec3 lowest = tissue_->bricks()[brick].corner;
+  tissue_->for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+    const glm::ivec3 v = voxel - lowest;
+    FixedPoint* own = &corners[8 * (v.x + 8 * (v.y + 8 * v.z))];
+    for (int c = 0; c < 8; ++c) own[c] = posed(voxel + glm::ivec3(c & 1, c >> 1 & 1, c >> 2), split.at(v, c));
+  });
+}
+
+PosedLattice::FixedBox PosedLattice::split_bounds(std::int64_t brick) const {
+  SplitBrick corners;
+  split_corners(brick, corners);
+  FixedBox box{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)};
+  const glm::ivec3 lowest = tissue_->bricks()[brick].corner;
+  tissue_->for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+    const glm::ivec3 v = voxel - lowest;
+    for (int c = 0; c < 8; ++c) {
+      const FixedPoint& corner = corners[8 * (v.x + 8 * (v.y + 8 * v.z)) + c];
+      box = {glm::min(box.low, corner), glm::max(box.high, corner)};
+    }
+  });
+  return box;
 }
 
 const PosedLattice::Corners& PosedLattice::corners(std::int64_t brick, Corners& room) const {

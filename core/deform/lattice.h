@@ -61,6 +61,10 @@ class PosedLattice {
   using Corners = std::array<FixedPoint, kSide * kSide * kSide>;
   static int place(int i, int j, int k) { return i + kSide * (j + kSide * k); }
 
+  // Where a seam is near, every voxel has corners of its own: those of voxel (i, j, k) of the brick, in the order of bits x, y, z,
+  // begin at 8 * (i + 8 * (j + 8 * k)). Unset where no tissue is.
+  using SplitBrick = std::array<FixedPoint, 8 * TissueVoxels::kBrick * TissueVoxels::kBrick * TissueVoxels::kBrick>;
+
   struct FixedBox {
     FixedPoint low, high;
   };
@@ -84,6 +88,9 @@ class PosedLattice {
   const AffineTransform& rest_from_posed(int bone) const { return rest_from_posed_[bone]; }
   // The brick's corners; computed into `room` where they are not kept.
   const Corners& corners(std::int64_t brick, Corners& room) const;
+  // Whether a seam is near and the brick bends, so that its voxels' own corners count.
+  bool is_split(std::int64_t brick) const { return split_[brick]; }
+  void split_corners(std::int64_t brick, SplitBrick& corners) const;
 
  private:
   FixedPoint posed(const glm::ivec3& corner, std::span<const BoneWeight> influences) const;
@@ -95,6 +102,7 @@ class PosedLattice {
     bool still;
   };
   BrickBounds compute(std::int64_t brick, Corners& corners) const;
+  FixedBox split_bounds(std::int64_t brick) const;
   template <class Visit, class Posed>
   BrickBounds compute_by(std::int64_t brick, const Visit& visit, const Posed& posed, Corners& corners) const;
   AffineTransform backward(const RigidTransform& posed_from_rest) const;
@@ -110,7 +118,7 @@ class PosedLattice {
   Blend blend_;
   OutputLattice output_;
   std::vector<FixedBox> bounds_;
-  std::vector<std::uint8_t> still_;  // by brick
+  std::vector<std::uint8_t> still_, split_;  // by brick
   std::vector<AffineTransform> rest_from_posed_;  // per bone
   std::vector<int> moves_as_;        // per bone: the first that moves as it does
   std::vector<int> only_bone_;       // by brick: what moves_as_ says of all its tissue, or kSeveral

@@ -100,9 +100,12 @@ struct RigidBody {
   LabelSets labels;
   SkinWeights weights;
 
-  RigidBody(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights, Progress& progress)
+  RigidBody(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
+            std::shared_ptr<const Seams> seams, Progress& progress)
       : volume(volume), tissues(tissues), armature(armature), tissue(volume), labels(tissues),
-        weights(with_rigid_bones(weights, volume, tissue, tissues, labels.bone, armature, progress)) {}
+        weights(with_rigid_bones(weights, volume, tissue, tissues, labels.bone, armature, progress)) {
+    tissue.set_seams(std::move(seams));
+  }
 };
 
 //   shape  by finite elements, where anything bends
@@ -154,7 +157,7 @@ void resample_sequence(const LabelVolume& volume, const TissueTable& tissues, co
                        const std::vector<Pose>& poses, const Method& method, const ResampleSettings& settings,
                        const std::function<void(std::size_t place, Posed posed)>& on_posed, Progress& progress) {
   const Seconds preparing;
-  const RigidBody body(volume, tissues, armature, weights, progress);
+  const RigidBody body(volume, tissues, armature, weights, settings.seams, progress);
   const double prepared = preparing();
   std::optional<FemSequence> shapes;
   if (const Fem* fem = std::get_if<Fem>(&method)) shapes.emplace(volume, body.tissue, tissues, body.labels.bone, body.weights, armature, poses, *fem, progress);

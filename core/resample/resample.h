@@ -34,6 +34,7 @@ struct ResampleSettings {
   bool jacobian = false;                // also return det of the posed-from-rest map
   bool overlap = false;                 // also return where the body claims a voxel twice
   const GreyVolume* grey = nullptr;     // moved by the same map
+  std::shared_ptr<const Seams> seams;   // across which tissue does not hang together; none: all that touches does
 };
 
 // What it took to give soft tissues their rest volumes.
@@ -53,6 +54,8 @@ struct DeformReport {
   std::int64_t overlap_voxels = 0;        // posed voxels claimed by cells that are no neighbours at rest
   std::int64_t bone_overlap_voxels = 0;   // posed voxels claimed by two rig bones' bone tissue
   std::int64_t mended_voxels = 0;         // given to a neighbouring tissue where the pose had torn it: skin, connected parts (mend.h)
+  std::int64_t new_skin_voxels = 0;       // flesh that a seam or a stretch laid bare, and that is skin now
+  std::int64_t filled_air_voxels = 0;     // of hollows that the pose closed or made larger
   std::vector<std::int64_t> overlap_by_label;  // [65536], rest voxels that lost their place, by label
   struct BoneResidual {
     std::string name;

@@ -249,11 +249,16 @@ struct SoftBody::Window {
   static constexpr int kStep[3] = {1, 10, 100};
   std::array<std::int32_t, 1000> place;
   std::array<Label, 1000> label;
+  const Seams* seams = nullptr;  // where one is near
 
   static int at(const glm::ivec3& v) { return (v.x + 1) + 10 * (v.y + 1) + 100 * (v.z + 1); }  // v from the corner
 
+  bool is_cut(const glm::ivec3& voxel, int direction) const { return seams && seams->is_cut_towards(voxel, direction); }
+
   void look(const SoftBody& body, std::int64_t brick) {
     const auto& here = body.tissue_.bricks()[brick];
+    seams = body.tissue_.seams();
+    if (seams && !seams->is_near_brick(here.corner)) seams = nullptr;
     place.fill(-1);
     label.fill(0);
     body.tissue_.for_each(brick, brick + 1, [&](std::int64_t p, const glm::ivec3& v) {
@@ -322,7 +327,7 @@ SoftBody::Region SoftBody::region(const std::vector<std::int32_t>& bricks) const
         for (int direction = 0; direction < 6; ++direction) {
           const int axis = direction >> 1, there = here + (direction & 1 ? Window::kStep[axis] : -Window::kStep[axis]);
           const std::int32_t other = window.place[there];
-          if (other < 0) continue;
+          if (other < 0 || window.is_cut(v, direction)) continue;
           if (counting) {
             next += cell_of[other] >= 0;
             continue;
@@ -384,7 +389,7 @@ SoftBody::Coarse SoftBody::coarse() const {
           w[direction >> 1] += direction & 1 ? 1 : -1;
           if ((w >> 2) != octant) continue;
           const std::int32_t place = window.place[Window::at(w - corner)];
-          if (place < 0 || held_by_[place] != kSoft || cell_of[place] >= 0) continue;
+          if (place < 0 || held_by_[place] != kSoft || cell_of[place] >= 0 || window.is_cut(v, direction)) continue;
           cell_of[place] = cell;
           open[open_count++] = w;
         }
@@ -429,7 +434,7 @@ SoftBody::Coarse SoftBody::coarse() const {
       for (int direction = 0; direction < 6; ++direction) {
         const int axis = direction >> 1, there = here + (direction & 1 ? Window::kStep[axis] : -Window::kStep[axis]);
         const std::int32_t other = window.place[there];
-        if (other < 0 || cell_of[other] == cell) continue;
+        if (other < 0 || cell_of[other] == cell || window.is_cut(v, direction)) continue;
         if (held_by_[other] != kSoft) {
           const float g = 0.5f * face_[axis] * conductivity_[window.label[here]];
           graph.diagonal[cell] += g;

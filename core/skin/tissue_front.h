@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Shortest ways through tissue, spread as a front from voxel to voxel through faces. Each voxel remembers the corner
 // its way last came round (at first the voxel it started from) and the length of the way to there; the rest is
-// straight. Where the voxel before it on that straight line is air, the way bends, and the voxel the front came from is
+// straight. Where the voxel before it on that straight line is air, or a seam is near, the way bends, and the voxel the front came from is
 // the new corner. So lengths are straight distances wherever one can see the start, at the cost of a few visits a voxel.
 #pragma once
 
@@ -31,19 +31,20 @@ class TissueFront {
   template <class Shorter>
   void spread(const Shorter& shorter) {
     std::vector<std::pair<std::int32_t, glm::i16vec3>> next;
+    const Seams* seams = tissue_.seams();
     while (!front_.empty()) {
       next.clear();
       for (const auto& [place, voxel] : front_)
         for (int direction = 0; direction < 6; ++direction) {
           glm::ivec3 w(voxel);
           w[direction >> 1] += direction & 1 ? 1 : -1;
-          if (volume_.at_or_air(w) == 0) continue;
+          if (volume_.at_or_air(w) == 0 || (seams && seams->is_cut_towards(glm::ivec3(voxel), direction))) continue;
           glm::ivec3 corner(corner_[place]);
           if (corner == w) continue;
           float before = to_corner_[place];
           const glm::vec3 steps = glm::vec3(w - corner), size = glm::abs(steps);
           const glm::ivec3 back = w - glm::ivec3(glm::round(steps / std::max({size.x, size.y, size.z})));
-          if (volume_.at(back) == 0) {
+          if (volume_.at(back) == 0 || (seams && seams->touches(w))) {
             before += straight(corner, glm::ivec3(voxel));
             corner = glm::ivec3(voxel);
           }

@@ -10,9 +10,11 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/volume/label_volume.h"
+#include "core/volume/seams.h"
 
 namespace limber {
 
@@ -56,6 +58,11 @@ class TissueVoxels {
 
   RowSet rows() const;  // that hold tissue
 
+  // Faces across which tissue does not hang together; nullptr where none is known.
+  const Seams* seams() const { return seams_.get(); }
+  const std::shared_ptr<const Seams>& shared_seams() const { return seams_; }
+  void set_seams(std::shared_ptr<const Seams> seams) { seams_ = seams && !seams->empty() ? std::move(seams) : nullptr; }
+
   // body(place, voxel) for every tissue voxel of bricks [first_brick, end_brick), in list order.
   template <class Body>
   void for_each(std::int64_t first_brick, std::int64_t end_brick, const Body& body) const {
@@ -78,6 +85,7 @@ class TissueVoxels {
   glm::ivec3 grid_size_{0}, brick_grid_{0};
   std::int64_t size_ = 0;
   std::vector<Brick> bricks_;
+  std::shared_ptr<const Seams> seams_;
   std::vector<std::int32_t> brick_of_;
 };
 

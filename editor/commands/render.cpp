@@ -25,6 +25,7 @@
 #include "core/resample/resample.h"
 #include "core/rig/armature_io.h"
 #include "core/bones/bone_parts.h"
+#include "core/seams/find_seams.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
 #include "editor/commands/command.h"
@@ -134,12 +135,18 @@ Document read_document(const Options& options, Progress& progress) {
   return std::move(document);
 }
 
+std::shared_ptr<const Seams> seams_of(const Document& document, const TissueVoxels& tissue, const BoneParts& parts, Progress& progress) {
+  return std::make_shared<const Seams>(find_seams(*document.volume, tissue, *document.tissues, *document.armature, parts, progress));
+}
+
 SkinWeights weights_of(const Options& options, const Document& document, Progress& progress) {
   if (document.weights) return *document.weights;
-  const TissueVoxels tissue(*document.volume);
-  if (options.weights.empty())
-    return diffuse_heat(*document.volume, tissue, *document.tissues, *document.armature,
-                        split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress), {}, progress);
+  TissueVoxels tissue(*document.volume);
+  if (options.weights.empty()) {
+    const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress);
+    tissue.set_seams(seams_of(document, tissue, parts, progress));
+    return diffuse_heat(*document.volume, tissue, *document.tissues, *document.armature, parts, {}, progress);
+  }
   WeightsFile file = read_weights(options.weights, *document.volume, tissue, *document.armature);
   cmd::warn(file.warnings);
   return std::move(file.weights);
@@ -192,8 +199,9 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
     result.tissue = box_of_posed(document.volume->grid, document.volume->grid, tissue, weights, scene.posed_from_rest, blend);
     return result;
   }
+  const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress);
   Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose,
-                         linear ? Method(LinearBlend{}) : Method(DualQuaternion{}), {}, progress);
+                         linear ? Method(LinearBlend{}) : Method(DualQuaternion{}), {.seams = seams_of(document, tissue, parts, progress)}, progress);
   scene.volume = std::make_shared<const LabelVolume>(std::move(posed.volume));
   result.tissue = box_of_posed(document.volume->grid, scene.volume->grid, tissue, weights, scene.posed_from_rest, blend);
   return result;

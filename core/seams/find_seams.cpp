@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/seams/find_seams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/seams/limbs.h"
+#include "core/seams/max_flow.h"
+#include "core/skin/soft_body.h"
+#include "core/skin/tissue_front.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kBandShare = 0.2;     // of the limb's first bone: how far from where limbs meet the cut may lie
+constexpr double kWidestBand = 50;     // mm
+constexpr double kNarrowestBand = 4;   // of the longest voxel edge
+constexpr int kCostUnit = 8;
+
+// What it costs to cut through a tissue, relative to connective tissue.
+double cost_of(TissueKind kind) {
+  switch (kind) {
+    case TissueKind::Skin: return 0.5;
+    case TissueKind::Connective: return 1;
+    case TissueKind::Unknown: case TissueKind::Fat: return 3;
+    case TissueKind::Muscle: case TissueKind::Vessel: case TissueKind::Blood: case TissueKind::Nerve: return 6;
+    default: return 12;
+  }
+}
+
+bool is_sheet(TissueKind kind) { return kind == TissueKind::Skin || kind == TissueKind::Connective; }
+
+// What labels say of limbs. Only kinds that are found all over the body are named so; "head" of an organ is part of it.
+std::optional<LimbName> limb_of_tissue(const Tissue& tissue) {
+  if (is_bone(tissue.kind) || tissue.kind == TissueKind::Organ || tissue.kind == TissueKind::Brain) return std::nullopt;
+  return limb_named(tissue.name);
+}
+
+class SeamFinder {
+ public:
+  SeamFinder(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const Armature& armature, const BoneParts& parts)
+      : volume_(volume), tissue_(tissue), armature_(armature), limbs_(limbs_of(armature)), seams_(volume.grid.size), kind_(65536, TissueKind::Unknown),
+        named_(65536), world_(world_from_voxel(volume.grid)) {
+    for (const Tissue& t : tissues.tissues) {
+      kind_[t.label] = t.kind;
+      named_[t.label] = limb_of_tissue(t);
+    }
+    if (limbs_.empty()) return;
+    held_by_ = bone_holding(volume, tissue, parts, armature);
+    name_of_bones();
+    spread_bones();
+  }
+
+  Seams run(Progress& progress) {
+    node_of_.assign(tissue_.size(), -1);
+    for (size_t k = 0; k < limbs_.size(); ++k) {
+      if (progress.cancelled()) throw Cancelled();
+      progress.update("seams", double(k) / double(limbs_.size()));
+      part(limbs_[k]);
+    }
+    progress.update("seams", 1);
+    return std::move(seams_);
+  }
+
+ private:
+  struct Node {
+    glm::ivec3 voxel;
+    std::int64_t place;
+    float way;  // mm, from where the limbs meet
+  };
+
+  void name_of_bones() {
+    std::vector<std::string> names;
+    std::vector<int> parents;
+    for (const Bone& bone : armature_.bones) {
+      names.push_back(bone.name);
+      parents.push_back(bone.parent);
+    }
+    limb_of_bone_.resize(names.size());
+    const auto roles = joint_roles(names, parents);
+    for (size_t b = 0; b < names.size(); ++b)
+      if (roles[b]) limb_of_bone_[b] = limb_name_of(*roles[b]);
+  }
+
+  bool may_hold(int bone, Label label) const { return !named_[label] || !limb_of_bone_[bone] || *named_[label] == *limb_of_bone_[bone]; }
+
+  // Every voxel goes to the bone nearest to it through tissue whose name does not contradict.
+  void spread_bones() {
+    bone_ = held_by_;
+    std::vector<float> distance(tissue_.size(), std::numeric_limits<float>::infinity());
+    std::vector<Label> label(tissue_.size());
+    TissueFront front(volume_, tissue_);
+    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      label[place] = volume_.at(v);
+      if (held_by_[place] == kSoft) return;
+      distance[place] = 0;
+      front.start(place, v);
+    });
+    front.spread([&](std::int64_t from, std::int64_t to, float way) {
+      if (held_by_[to] != kSoft || way >= distance[to] || !may_hold(bone_[from], label[to])) return false;
+      distance[to] = way;
+      bone_[to] = bone_[from];
+      return true;
+    });
+  }
+
+  // body(direction, voxel there, its place) for the tissue that a voxel hangs together with.
+  template <class Body>
+  void for_each_joined(const glm::ivec3& v, const Body& body) const {
+    for (int direction = 0; direction < 6; ++direction) {
+      glm::ivec3 w = v;
+      w[direction >> 1] += direction & 1 ? 1 : -1;
+      if (volume_.at_or_air(w) == 0 || seams_.is_cut_towards(v, direction)) continue;
+      body(direction, w, tissue_.index_of(w));
+    }
+  }
+
+  glm::dvec3 face_centre(const glm::ivec3& v, const glm::ivec3& w) const { return world_ * (0.5 * (glm::dvec3(v) + glm::dvec3(w))); }
+
+  bool is_of(const Limb& limb, std::int64_t place) const { return bone_[place] != kSoft && limb.has_bone[bone_[place]]; }
+  bool may_touch(const Limb& limb, std::int64_t place) const { return bone_[place] != kSoft && limb.may_touch[bone_[place]]; }
+
+  void part(const Limb& limb) {
+    find_band(limb);
+    if (!band_.empty()) {
+      const std::vector<bool> inside = cheapest_cut(limb);
+      take_sides(limb, inside);
+      cut_faces(limb);
+    }
+    for (const Node& node : band_) node_of_[node.place] = -1;
+    band_.clear();
+  }
+
+  // The tissue around the free faces where the limb meets what it may touch.
+  void find_band(const Limb& limb) {
+    std::vector<std::int32_t> open;
+    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      if (!is_of(limb, place)) return;
+      for_each_joined(v, [&](int, const glm::ivec3& w, std::int64_t there) {
+        if (is_of(limb, there) || !may_touch(limb, there) || !is_free(limb, armature_, face_centre(v, w))) return;
+        for (const auto& [voxel, at] : {std::pair{v, place}, {w, there}})
+          if (node_of_[at] < 0) {
+            node_of_[at] = static_cast<std::int32_t>(band_.size());
+            open.push_back(node_of_[at]);
+            band_.push_back({voxel, at, 0});
+          }
+      });
+    });
+    const glm::dvec3 spacing = volume_.grid.spacing;
+    const double longest = std::max({spacing.x, spacing.y, spacing.z});
+    double width = kWidestBand;
+    if (limb.root >= 0) width = std::min(width, kBandShare * glm::distance(armature_.bones[limb.root].head, armature_.bones[limb.root].tail));
+    width = std::max(width, kNarrowestBand * longest);
+    for (size_t i = 0; i < open.size(); ++i) {
+      const Node from = band_[open[i]];
+      for_each_joined(from.voxel, [&](int direction, const glm::ivec3& w, std::int64_t there) {
+        const float way = from.way + static_cast<float>(spacing[direction >> 1]);
+        if (way > width || bone_[there] == kSoft) return;
+        std::int32_t& node = node_of_[there];
+        if (node < 0) {
+          node = static_cast<std::int32_t>(band_.size());
+          band_.push_back({w, there, way});
+        } else if (way < band_[node].way) {
+          band_[node].way = way;
+        } else {
+          return;
+        }
+        open.push_back(node);
+      });
+    }
+  }
+
+  // Of each voxel of a sheet, how many steps lie between it and tissue that is not: largest in the middle.
+  std::vector<float> depth_in_sheets() const {
+    std::vector<float> depth(band_.size(), std::numeric_limits<float>::infinity());
+    std::vector<std::int32_t> open;
+    for (size_t n = 0; n < band_.size(); ++n)
+      if (!is_sheet(kind_[volume_.at(band_[n].voxel)])) {
+        depth[n] = 0;
+        open.push_back(static_cast<std::int32_t>(n));
+      }
+    const glm::vec3 step = glm::vec3(volume_.grid.spacing) / static_cast<float>(std::min({volume_.grid.spacing.x, volume_.grid.spacing.y, volume_.grid.spacing.z}));
+    for (size_t i = 0; i < open.size(); ++i)
+      for_each_joined(band_[open[i]].voxel, [&](int direction, const glm::ivec3&, std::int64_t there) {
+        const std::int32_t node = node_of_[there];
+        if (node < 0 || depth[node] <= depth[open[i]] + step[direction >> 1]) return;
+        depth[node] = depth[open[i]] + step[direction >> 1];
+        open.push_back(node);
+      });
+    for (float& d : depth)
+      if (d == std::numeric_limits<float>::infinity()) d = 0;
+    return depth;
+  }
+
+  // Bones, tissue whose name tells, and the band's ends stay what they are.
+  MaxFlow::Side fixed_side(const Limb& limb, const Node& node) const {
+    const MaxFlow::Side own = is_of(limb, node.place) ? MaxFlow::Side::Source : MaxFlow::Side::Sink;
+    if (held_by_[node.place] != kSoft) return own;
+    const auto named = named_[volume_.at(node.voxel)];
+    const auto limb_name = limb_of_bone_[std::find(limb.has_bone.begin(), limb.has_bone.end(), true) - limb.has_bone.begin()];
+    if (named && limb_name && (*named != *limb_name || own == MaxFlow::Side::Source)) return own;
+    bool is_end = false;
+    for_each_joined(node.voxel, [&](int, const glm::ivec3&, std::int64_t there) { is_end |= node_of_[there] < 0; });
+    return is_end ? own : MaxFlow::Side::Free;
+  }
+
+  std::vector<bool> cheapest_cut(const Limb& limb) const {
+    const std::vector<float> depth = depth_in_sheets();
+    MaxFlow flow(static_cast<std::int32_t>(band_.size()));
+    const glm::dvec3 s = volume_.grid.spacing, area(s.y * s.z, s.x * s.z, s.x * s.y);
+    const double smallest = std::min({area.x, area.y, area.z});
+    const auto cost = [&](std::int32_t n) { return cost_of(kind_[volume_.at(band_[n].voxel)]) / (1 + depth[n]); };
+    for (std::int32_t n = 0; n < std::ssize(band_); ++n) {
+      flow.fix(n, fixed_side(limb, band_[n]));
+      for_each_joined(band_[n].voxel, [&](int direction, const glm::ivec3&, std::int64_t there) {
+        const std::int32_t m = node_of_[there];
+        if (m < 0 || !(direction & 1)) return;
+        const double capacity = kCostUnit * area[direction >> 1] / smallest * (cost(n) + cost(m));
+        flow.connect(n, direction, m, direction ^ 1, std::max(1, static_cast<int>(std::lround(capacity))));
+      });
+    }
+    return flow.source_side();
+  }
+
+  // What changes sides follows the bone of what is around it there. A fragment of one side that hangs on nothing else of it goes
+  // with the other.
+  void take_sides(const Limb& limb, const std::vector<bool>& inside) {
+    std::vector<bool> settled(band_.size());
+    std::vector<std::int32_t> open;
+    for (std::int32_t n = 0; n < std::ssize(band_); ++n)
+      if (is_of(limb, band_[n].place) == inside[n] && fixed_side(limb, band_[n]) != MaxFlow::Side::Free) {
+        settled[n] = true;
+        open.push_back(n);
+      }
+    for (const bool keeps_sides : {true, false})
+      for (size_t i = 0; i < open.size(); ++i)
+        for_each_joined(band_[open[i]].voxel, [&](int, const glm::ivec3&, std::int64_t there) {
+          const std::int32_t m = node_of_[there];
+          if (m < 0 || settled[m] || (keeps_sides && inside[m] != inside[open[i]])) return;
+          settled[m] = true;
+          if (is_of(limb, there) != is_of(limb, band_[open[i]].place)) bone_[there] = bone_[band_[open[i]].place];
+          open.push_back(m);
+        });
+  }
+
+  void cut_faces(const Limb& limb) {
+    struct Face {
+      glm::ivec3 lower;
+      int axis;
+    };
+    std::vector<Face> faces;
+    for (const Node& node : band_) {
+      if (!is_of(limb, node.place)) continue;
+      for_each_joined(node.voxel, [&](int direction, const glm::ivec3& w, std::int64_t there) {
+        if (is_of(limb, there) || !may_touch(limb, there) || !is_free(limb, armature_, face_centre(node.voxel, w))) return;
+        faces.push_back({direction & 1 ? node.voxel : w, direction >> 1});
+      });
+    }
+    for (const Face& face : faces) seams_.cut(face.lower, face.axis);
+  }
+
+  const LabelVolume& volume_;
+  const TissueVoxels& tissue_;
+  const Armature& armature_;
+  const std::vector<Limb> limbs_;
+  Seams seams_;
+  std::vector<TissueKind> kind_;                  // by label
+  std::vector<std::optional<LimbName>> named_;    // by label
+  std::vector<std::optional<LimbName>> limb_of_bone_;
+  AffineTransform world_;
+  std::vector<std::uint16_t> held_by_, bone_;     // by place
+  std::vector<std::int32_t> node_of_;             // by place, -1 outside the band
+  std::vector<Node> band_;
+};
+
+}  // namespace
+
+Seams find_seams(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const Armature& armature,
+                 const BoneParts& parts, Progress& progress) {
+  return SeamFinder(volume, tissue, tissues, armature, parts).run(progress);
+}
+
+}  // namespace limber
