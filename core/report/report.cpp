@@ -73,6 +73,8 @@ Json total(const Report& report) {
     row["dropped_voxels"] = report.deform->dropped_voxels;
     row["bone_overlap_voxels"] = report.deform->bone_overlap_voxels;
     row["mended_voxels"] = report.deform->mended_voxels;
+    row["new_skin_voxels"] = report.deform->new_skin_voxels;
+    row["filled_air_voxels"] = report.deform->filled_air_voxels;
   }
   return row;
 }

@@ -10,6 +10,8 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/deform/inverse_map.h"
+#include "core/resample/air_pockets.h"
+#include "core/resample/skin_at_rest.h"
 #include "core/resample/bone_volumes.h"
 #include "core/resample/mend.h"
 #include "core/resample/tissue_volumes.h"
@@ -19,13 +21,12 @@ namespace limber {
 namespace {
 
 constexpr glm::ivec3 kTile{64, 64, 32};  // output voxels: 3 MB of map a thread
-constexpr double kSkinReach = 3;         // voxels below air: as deep as what touches a thin skin from below can lie
 constexpr int kReach = 8;                // voxels: as far as soft tissue is looked for where a joint opens between bones
 
 constexpr double kMostSure = 0.8;        // of memberships: a voxel that is surer of its tissue keeps it
 constexpr std::int64_t kJudged = 5000;   // voxels: the grid alone changes smaller tissues by more than is asked here
 
-double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
+constexpr std::array<glm::ivec3, 6> kFaceSteps{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
 // Grey values between voxel centres, linear; the nearest voxel's outside the grid.
 class GreySampler {
@@ -55,10 +56,10 @@ class GreySampler {
   AffineTransform voxel_from_world_;
 };
 
-// A posed voxel of soft tissue, maybe bare, that was covered by skin at rest.
+// A posed voxel of soft tissue, maybe bare, that was covered at rest.
 struct UnderSkin {
   std::int64_t at;
-  Label skin;
+  Label skin;  // what lay right over it at rest; 0 where it lay deeper, or a seam
 };
 
 // A posed voxel of skin that is covered itself.
@@ -106,6 +107,9 @@ class PosedVoxels {
     posed.volume.voxels.resize(voxels);
     rows_.resize(std::int64_t{output_.grid.size.y} * output_.grid.size.z);
     bone_rows_ = rows_;
+    flesh_ = labels_.soft;
+    for (size_t label = 0; label < flesh_.size(); ++label) flesh_[label] = labels_.soft[label] && !labels_.skin[label];
+    if (mends_) skin_.emplace(volume_, body.lattice.tissue(), *depth_, labels_.soft, labels_.skin);
     if (mends_) posed_bones_ = {output_.grid, ZeroedVector<Label>(voxels)};
     if (settings.displacement) posed.displacement.resize(voxels);
     if (settings.jacobian) posed.jacobian.resize(voxels);
@@ -167,6 +171,8 @@ class PosedVoxels {
     posed_.report.mended_voxels = std::ssize(bridges) + kept + closed + thin_skin(closed) +
                                   mend(posed_.volume, volume_, labels_.soft, rest_point, {&rows_, &rest_rows},
                                        {&bone_rows_, &bone_rest_rows});
+    posed_.report.filled_air_voxels = fill_grown_pockets(posed_.volume, volume_, flesh_, labels_.soft, rest_point);
+    posed_.report.new_skin_voxels = cover_bare_flesh();
   }
 
  private:
@@ -175,11 +181,27 @@ class PosedVoxels {
     std::int64_t closed = 0;
     for (const UnderSkin& voxel : under_skin_) {
       const glm::ivec3 v = voxel_at(output_.grid, voxel.at);
-      if (!touches_air(posed_.volume, v) || !can_spare(posed_.volume, v)) continue;
+      if (voxel.skin == 0 || !flesh_[posed_.volume.voxels[voxel.at]] || !touches_air(posed_.volume, v) || !can_spare(posed_.volume, v)) continue;
       posed_.volume.voxels[voxel.at] = voxel.skin;
       ++closed;
     }
     return closed;
+  }
+
+  // Where a seam opens or a stretch goes deeper, flesh lies bare that was covered at rest: its outermost voxels are skin now, and
+  // bone that lay right at a seam gets skin over it, of
+  // the kind that the skin beside them is.
+  std::int64_t cover_bare_flesh() {
+    std::vector<glm::ivec3> bare;
+    for (const UnderSkin& voxel : under_skin_) {
+      const glm::ivec3 v = voxel_at(output_.grid, voxel.at);
+      const Label label = posed_.volume.voxels[voxel.at];
+      if (flesh_[label] && touches_air(posed_.volume, v)) bare.push_back(v);
+      if (labels_.bone[label])
+        for (const glm::ivec3& step : kFaceSteps)
+          if (output_.grid.contains(v + step) && posed_.volume.at(v + step) == 0) bare.push_back(v + step);
+    }
+    return cover_with_skin(posed_.volume, std::move(bare), labels_.skin);
   }
 
   // Where skin was closed it gained voxels, and elsewhere the grid laid some of it two voxels thick: the deepest of those go to
@@ -199,13 +221,7 @@ class PosedVoxels {
   }
 
   // The soft tissue, not skin, that most of the 26 voxels around have; 0 when none is.
-  Label tissue_under_skin(const glm::ivec3& v) const {
-    std::map<Label, int> counts;
-    for (const glm::ivec3& step : neighbours())
-      if (const Label label = posed_.volume.at_or_air(v + step); label && labels_.soft[label] && !labels_.skin[label]) ++counts[label];
-    const auto most = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-    return most == counts.end() ? Label{0} : most->first;
-  }
+  Label tissue_under_skin(const glm::ivec3& v) const { return most_common_around(posed_.volume, v, 1, flesh_); }
 
   // work(range, Tile) by many threads, then add(Tile) in order.
   template <class Tile, class Work, class Add>
@@ -360,8 +376,10 @@ class PosedVoxels {
     const Label label = label_of(map, i);
     posed_.volume.voxels[at] = label;
     if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
-    if (mends_ && labels_.soft[label] && !labels_.skin[label] && may_touch_air(map, i, v))
-      if (const Label skin = skin_over(map.rest[i])) counts.under_skin.push_back({at, skin});
+    if (mends_ && !labels_.skin[label] && may_touch_air(map, i, v)) {
+      const glm::dvec3 rest = map.rest[i];
+      if (labels_.bone[label] ? skin_->was_at_seam(rest) : skin_->was_covered(rest)) counts.under_skin.push_back({at, skin_->skin_over(rest)});
+    }
     if (mends_ && labels_.skin[label] && !may_touch_air(map, i, v)) counts.inner_skin.push_back({static_cast<float>((*depth_)(map.rest[i])), at});
     write_fields(map, i, v, at);
     count(map, i, v, label, counts);
@@ -381,15 +399,6 @@ class PosedVoxels {
       if (!is_covered(map, i - stride) || !is_covered(map, i + stride)) return true;
     }
     return false;
-  }
-
-  // The skin that touches the rest point's voxel, 0 when there is none or the voxel lay bare itself.
-  Label skin_over(const glm::dvec3& rest) const {
-    const glm::ivec3 voxel = glm::ivec3(rest + 1.5) - 1;  // rest points lie in tissue; std::floor would be a call
-    if (depth_->at_voxel(voxel) > skin_reach_ || touches_air(volume_, voxel)) return 0;
-    for (const glm::ivec3& step : neighbours())
-      if (const Label label = volume_.at_or_air(voxel + step); labels_.skin[label]) return label;
-    return 0;
   }
 
   Label label_of(const InverseMap& map, std::int64_t i) const {
@@ -480,7 +489,8 @@ class PosedVoxels {
   const OutputGrid& output_;
   const bool mends_;
   Posed& posed_;
-  const double skin_reach_ = kSkinReach * largest(volume_.grid.spacing);  // mm below air
+  std::optional<SkinAtRest> skin_;
+  LabelSet flesh_;  // soft tissues but skin
   std::vector<UnderSkin> under_skin_;
   std::vector<InnerSkin> inner_skin_;
   RowSet rows_, bone_rows_;  // of the output that hold tissue, and bone

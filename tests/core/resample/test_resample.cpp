@@ -65,7 +65,7 @@ TEST_CASE("resample: skin of one voxel stays closed over a bent limb, and bare t
       const VolumeMetrics change = compare(tube.volume, result.volume, tube.tissues);
       INFO("at ", degrees);
       CHECK(change.skin_share_before < 0.99);
-      CHECK(change.skin_share_after > change.skin_share_before - 0.015);
+      CHECK(change.skin_share_after > change.skin_share_before - 0.02);
       CHECK(change.skin_share_after < 0.9);
       const Posed as_it_falls = posed(tube, tube.pose(degrees, 20), method, {.nearest = true});
       CHECK(compare(tube.volume, as_it_falls.volume, tube.tissues).skin_share_after < change.skin_share_after - 0.02);

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/air_pockets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <unordered_map>
+
+#include "core/resample/skin_at_rest.h"
+
+namespace limber {
+
+namespace {
+
+struct AirRun {
+  int begin, end;  // x
+};
+
+// Runs of air of all rows, joined where they touch through faces.
+class AirRuns {
+ public:
+  explicit AirRuns(const LabelVolume& volume) : size_(volume.grid.size) {
+    first_.push_back(0);
+    for (int z = 0; z < size_.z; ++z)
+      for (int y = 0; y < size_.y; ++y) {
+        add_row(&volume.voxels[volume.grid.index({0, y, z})]);
+        first_.push_back(std::ssize(runs_));
+      }
+    joined_.resize(runs_.size());
+    std::iota(joined_.begin(), joined_.end(), 0);
+    for (int z = 0; z < size_.z; ++z)
+      for (int y = 0; y < size_.y; ++y) {
+        if (y > 0) join_rows(row(y, z), row(y - 1, z));
+        if (z > 0) join_rows(row(y, z), row(y, z - 1));
+      }
+  }
+
+  std::vector<AirPocket> pockets() {
+    std::vector<bool> is_open(runs_.size());
+    for_each_run([&](std::int64_t r, int y, int z) {
+      const bool at_border = y == 0 || z == 0 || y == size_.y - 1 || z == size_.z - 1 || runs_[r].begin == 0 || runs_[r].end == size_.x;
+      if (at_border) is_open[root(r)] = true;
+    });
+    std::map<std::int64_t, AirPocket> found;
+    for_each_run([&](std::int64_t r, int y, int z) {
+      if (is_open[root(r)]) return;
+      for (int x = runs_[r].begin; x < runs_[r].end; ++x) found[root(r)].push_back({x, y, z});
+    });
+    std::vector<AirPocket> pockets;
+    for (auto& [_, pocket] : found) pockets.push_back(std::move(pocket));
+    return pockets;
+  }
+
+ private:
+  std::int64_t row(int y, int z) const { return y + std::int64_t{size_.y} * z; }
+
+  void add_row(const Label* labels) {
+    for (int x = 0; x < size_.x;) {
+      if (labels[x]) {
+        ++x;
+        continue;
+      }
+      const int begin = x;
+      while (x < size_.x && !labels[x]) ++x;
+      runs_.push_back({begin, x});
+    }
+  }
+
+  std::int64_t root(std::int64_t run) {
+    while (joined_[run] != run) run = joined_[run] = joined_[joined_[run]];
+    return run;
+  }
+
+  void join_rows(std::int64_t a, std::int64_t b) {
+    std::int64_t i = first_[a], k = first_[b];
+    while (i < first_[a + 1] && k < first_[b + 1]) {
+      if (std::max(runs_[i].begin, runs_[k].begin) < std::min(runs_[i].end, runs_[k].end)) {
+        const std::int64_t one = root(i), other = root(k);
+        joined_[std::max(one, other)] = std::min(one, other);
+      }
+      runs_[i].end < runs_[k].end ? ++i : ++k;
+    }
+  }
+
+  template <class Body>
+  void for_each_run(const Body& body) {
+    for (int z = 0; z < size_.z; ++z)
+      for (int y = 0; y < size_.y; ++y)
+        for (std::int64_t r = first_[row(y, z)]; r < first_[row(y, z) + 1]; ++r) body(r, y, z);
+  }
+
+  glm::ivec3 size_;
+  std::vector<AirRun> runs_;
+  std::vector<std::int64_t> first_, joined_;
+};
+
+template <class Body>
+void for_each_face_neighbour(const glm::ivec3& v, const Body& body) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side : {-1, 1}) {
+      glm::ivec3 beside = v;
+      beside[axis] += side;
+      body(beside);
+    }
+}
+
+// Which pocket at rest, of those around the rest places of a pocket's walls, holds how many voxels: their sum, each counted once.
+std::int64_t size_at_rest(const AirPocket& pocket, const LabelVolume& posed, const LabelVolume& rest, const std::vector<AirPocket>& rest_pockets,
+                          const std::unordered_map<std::int64_t, int>& pocket_at_rest, const RestPoint& rest_point) {
+  std::set<int> found;
+  for (const glm::ivec3& v : pocket)
+    for_each_face_neighbour(v, [&](const glm::ivec3& wall) {
+      if (posed.at_or_air(wall) == 0) return;
+      const glm::ivec3 from = glm::ivec3(glm::floor(rest_point(wall) + 0.5));
+      for (const glm::ivec3& step : neighbours())
+        if (rest.grid.contains(from + step))
+          if (const auto at = pocket_at_rest.find(rest.grid.index(from + step)); at != pocket_at_rest.end()) found.insert(at->second);
+    });
+  std::int64_t size = 0;
+  for (int p : found) size += std::ssize(rest_pockets[p]);
+  return size;
+}
+
+bool touches_tissue(const LabelVolume& posed, const glm::ivec3& v) {
+  bool found = false;
+  for_each_face_neighbour(v, [&](const glm::ivec3& beside) { found |= posed.at_or_air(beside) != 0; });
+  return found;
+}
+
+// The flesh at a voxel of a pocket's border, looked for at most two voxels behind its wall; else the skin there.
+Label flesh_behind(const LabelVolume& posed, const glm::ivec3& v, const LabelSet& flesh, const LabelSet& soft) {
+  for (int reach : {1, 2})
+    if (const Label found = most_common_around(posed, v, reach, flesh)) return found;
+  return most_common_around(posed, v, 1, soft);
+}
+
+// From the walls inwards, layer by layer, until `kept` voxels are left.
+std::int64_t fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSet& flesh, const LabelSet& soft) {
+  std::int64_t filled = 0;
+  while (std::ssize(pocket) > kept) {
+    AirPocket inner;
+    std::vector<std::pair<glm::ivec3, Label>> layer;
+    for (const glm::ivec3& v : pocket) {
+      const bool is_next = std::ssize(pocket) - std::ssize(layer) > kept && touches_tissue(posed, v);
+      const Label found = is_next ? flesh_behind(posed, v, flesh, soft) : Label{0};
+      if (found)
+        layer.push_back({v, found});
+      else
+        inner.push_back(v);
+    }
+    if (layer.empty()) break;
+    for (const auto& [v, label] : layer) posed.at(v) = label;
+    filled += std::ssize(layer);
+    pocket = std::move(inner);
+  }
+  return filled;
+}
+
+}  // namespace
+
+std::vector<AirPocket> air_pockets(const LabelVolume& volume) { return AirRuns(volume).pockets(); }
+
+std::int64_t fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point) {
+  const std::vector<AirPocket> pockets = air_pockets(posed), rest_pockets = air_pockets(rest);
+  if (pockets.empty()) return 0;
+  std::unordered_map<std::int64_t, int> pocket_at_rest;
+  for (size_t p = 0; p < rest_pockets.size(); ++p)
+    for (const glm::ivec3& v : rest_pockets[p]) pocket_at_rest[rest.grid.index(v)] = static_cast<int>(p);
+  const double posed_per_rest = rest.grid.voxel_volume() / posed.grid.voxel_volume();
+  std::int64_t filled = 0;
+  for (const AirPocket& pocket : pockets) {
+    const std::int64_t before = size_at_rest(pocket, posed, rest, rest_pockets, pocket_at_rest, rest_point);
+    filled += fill(posed, pocket, std::llround(posed_per_rest * double(before)), flesh, soft);
+  }
+  return filled;
+}
+
+}  // namespace limber

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Air that a body encloses. A fold that closes over a hollow would leave a bubble where in a body flesh is pressed together, and a
+// hollow that was there would grow with the flesh that is stretched around it: a body holds as much air as before.
+#pragma once
+
+#include <vector>
+
+#include "core/resample/neighbourhood.h"
+#include "core/volume/label_sampler.h"
+
+namespace limber {
+
+// The voxels of one hollow, none of which a way through faces of air joins to the border of the grid.
+using AirPocket = std::vector<glm::ivec3>;
+std::vector<AirPocket> air_pockets(const LabelVolume& volume);
+
+// Pockets of `posed` get the size that the hollows behind their walls had at rest, none where there was none: what is more is filled,
+// from the walls on, with the soft tissue nearest to it, with what lies under the skin where skin lines the walls.
+//   flesh  soft tissues but skin, by label      soft  with skin
+//   returns  the voxels filled
+std::int64_t fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point);
+
+}  // namespace limber

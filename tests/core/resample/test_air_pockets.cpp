@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/air_pockets.h"
+
+#include <doctest/doctest.h>
+
+using namespace limber;
+
+namespace {
+
+// A block of flesh (2) in skin (1) with one voxel of air around.
+LabelVolume block() {
+  LabelVolume volume;
+  volume.grid.size = {14, 12, 10};
+  volume.voxels = ZeroedVector<Label>(volume.grid.voxel_count());
+  for (int z = 1; z < 9; ++z)
+    for (int y = 1; y < 11; ++y)
+      for (int x = 1; x < 13; ++x) volume.at({x, y, z}) = x == 1 || x == 12 || y == 1 || y == 10 || z == 1 || z == 8 ? 1 : 2;
+  return volume;
+}
+
+LabelSet set_of(std::initializer_list<Label> labels) {
+  LabelSet set(65536, 0);
+  for (Label label : labels) set[label] = 1;
+  return set;
+}
+
+const RestPoint kStays = [](const glm::ivec3& v) { return glm::dvec3(v); };
+
+}  // namespace
+
+TEST_CASE("air pockets: a hollow is one, a shaft to the outside is none, and hollows that meet at an edge are two") {
+  LabelVolume volume = block();
+  CHECK(air_pockets(volume).empty());
+  for (int x = 4; x < 7; ++x) volume.at({x, 5, 5}) = 0;
+  volume.at({7, 6, 5}) = 0;  // along an edge
+  for (int z = 0; z < 6; ++z) volume.at({10, 8, z}) = 0;
+  const auto pockets = air_pockets(volume);
+  REQUIRE(pockets.size() == 2);
+  CHECK(pockets[0].size() + pockets[1].size() == 4);
+}
+
+TEST_CASE("air pockets: what the pose closed is filled with flesh, what was there stays, and what grew shrinks to what it was") {
+  const LabelSet flesh = set_of({2}), soft = set_of({1, 2});
+  LabelVolume rest = block();
+  for (int x = 3; x < 6; ++x) rest.at({x, 4, 4}) = 0;
+  LabelVolume posed = rest;
+  CHECK(fill_grown_pockets(posed, rest, flesh, soft, kStays) == 0);
+  CHECK(posed.voxels == rest.voxels);
+
+  posed.at({9, 8, 6}) = 0;  // new
+  posed.at({10, 8, 6}) = 0;
+  for (int x = 3; x < 6; ++x) posed.at({x, 5, 4}) = 0;  // twice the hollow
+  CHECK(fill_grown_pockets(posed, rest, flesh, soft, kStays) == 5);
+  CHECK(posed.at({9, 8, 6}) == 2);
+  std::int64_t hollow = 0;
+  for (const AirPocket& pocket : air_pockets(posed)) hollow += std::ssize(pocket);
+  CHECK(hollow == 3);
+}

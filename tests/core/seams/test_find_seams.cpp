@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/seams/find_seams.h"
+
+#include <filesystem>
+
+#include <doctest/doctest.h>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/resample/resample.h"
+#include "core/report/metrics.h"
+#include "core/seams/limbs.h"
+#include "core/seams/seams_io.h"
+#include "core/skin/heat_diffusion.h"
+#include "tests/support/glued_arm.h"
+
+using namespace limber;
+
+namespace {
+
+struct Agreement {
+  std::int64_t found = 0, glued = 0, near_glued = 0;  // faces below the shoulder
+};
+
+// Of the faces found, how many lie at most one voxel beside a glued one.
+Agreement agreement(const test::GluedArm& body, const Seams& seams) {
+  const auto height = [&](const glm::ivec3& v) { return (world_from_voxel(body.volume.grid) * glm::dvec3(v)).z; };
+  std::vector<bool> is_near(body.volume.grid.voxel_count(), false);
+  Agreement all;
+  body.for_each_glued_face([&](const glm::ivec3& v, int) {
+    all.glued += height(v) < 320;
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x)
+          if (const glm::ivec3 w = v + glm::ivec3(x, y, z); body.volume.grid.contains(w)) is_near[body.volume.grid.index(w)] = true;
+  });
+  seams.for_each([&](const glm::ivec3& v, int) {
+    ++all.found;
+    all.near_glued += is_near[body.volume.grid.index(v)];
+  });
+  return all;
+}
+
+Pose arm_raised(const Armature& rig, double degrees) {
+  Pose pose = rest_pose(rig);
+  pose.rotation[1] = glm::angleAxis(glm::radians(-degrees), glm::dvec3(0, 1, 0));
+  return pose;
+}
+
+struct Raised {
+  Posed posed;
+  std::int64_t trunk_moved = 0, trunk = 0, arm_left = 0, arm = 0;  // posed voxels from below the shoulder, away from where the two touch
+};
+
+Raised raise(const test::GluedArm& body, std::shared_ptr<const Seams> seams, double degrees) {
+  TissueVoxels tissue(body.volume);
+  tissue.set_seams(seams);
+  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.rig);
+  const SkinWeights weights = diffuse_heat(body.volume, tissue, body.tissues, body.rig, parts);
+  Raised raised{resample(body.volume, body.tissues, body.rig, weights, arm_raised(body.rig, degrees), DualQuaternion{}, {.displacement = true, .seams = seams})};
+  const Grid& grid = raised.posed.volume.grid;
+  const glm::dmat3 half = glm::mat3_cast(arm_raised(body.rig, degrees).rotation[1]);
+  glm::ivec3 v;
+  for (v.z = 0; v.z < grid.size.z; ++v.z)
+    for (v.y = 0; v.y < grid.size.y; ++v.y)
+      for (v.x = 0; v.x < grid.size.x; ++v.x) {
+        if (raised.posed.volume.at(v) == 0) continue;
+        const glm::dvec3 at = world_from_voxel(grid) * glm::dvec3(v), moved(raised.posed.displacement[grid.index(v)]), rest = at - moved;
+        const glm::ivec3 from(glm::floor(voxel_from_world(body.volume.grid) * rest + 0.5));
+        if (rest.z > 250 || !body.volume.grid.contains(from)) continue;
+        const glm::dvec3 head = body.rig.bones[1].head, asked = half * (rest - head) + head - rest;
+        if (body.is_arm[body.volume.grid.index(from)]) {
+          ++raised.arm;
+          raised.arm_left += glm::length(moved - asked) > 8;
+        } else {
+          ++raised.trunk;
+          raised.trunk_moved += glm::length(moved) > 8;
+        }
+      }
+  return raised;
+}
+
+}  // namespace
+
+TEST_CASE("seams: an arm grown to the trunk is cut from it where the two touch, and from nowhere else") {
+  for (const bool names : {false, true}) {
+    INFO("labels that name limbs: ", names);
+    const test::GluedArm body(-3, names);
+    const Agreement found = agreement(body, body.seams());
+    CHECK(found.glued > 200);
+    CHECK(found.found > 0.8 * found.glued);
+    CHECK(found.near_glued > 0.95 * found.found);
+  }
+}
+
+TEST_CASE("seams: limbs that do not touch have none, and neither has a rig whose names say nothing") {
+  CHECK(test::GluedArm(10).seams().empty());
+  test::GluedArm body(-3);
+  for (size_t b = 0; b < body.rig.bones.size(); ++b) body.rig.bones[b].name = "b" + std::to_string(b);
+  CHECK(body.seams().empty());
+}
+
+TEST_CASE("seams: the same with one, two and four threads") {
+  const test::GluedArm body(-3);
+  const Seams first = body.seams();
+  for (int threads : {1, 2, 4}) {
+    ThreadCount limit(threads);
+    CHECK(body.seams() == first);
+  }
+}
+
+TEST_CASE("seams: a raised arm leaves the trunk where it is and takes all of itself along; without them it drags a web") {
+  const test::GluedArm body(-3);
+  const auto seams = std::make_shared<const Seams>(body.seams());
+  const Raised cut = raise(body, seams, 60), grown = raise(body, nullptr, 60);
+  MESSAGE("with seams ", cut.trunk_moved, " of ", cut.trunk, " and ", cut.arm_left, " of ", cut.arm, " voxels go astray, without ", grown.trunk_moved, " and ", grown.arm_left);
+  CHECK(cut.trunk_moved < 0.01 * cut.trunk);
+  CHECK(cut.arm_left < 0.03 * cut.arm);
+  CHECK(grown.trunk_moved > 5 * cut.trunk_moved + 100);
+  // The sides that come apart are covered with skin, and hang together as two limbs do.
+  const VolumeMetrics metrics = compare(body.volume, cut.posed.volume, body.tissues);
+  CHECK(metrics.skin_share_after > 0.999);
+  CHECK(cut.posed.report.new_skin_voxels > 100);
+}
+
+TEST_CASE("seams: at rest the volume stays as it is, bit for bit") {
+  const test::GluedArm body(-3);
+  const auto seams = std::make_shared<const Seams>(body.seams());
+  TissueVoxels tissue(body.volume);
+  tissue.set_seams(seams);
+  const SkinWeights weights = diffuse_heat(body.volume, tissue, body.tissues, body.rig, split_bones(body.volume, tissue, body.tissues, body.rig));
+  const Posed rest = resample(body.volume, body.tissues, body.rig, weights, rest_pose(body.rig), DualQuaternion{}, {.seams = seams});
+  CHECK(rest.volume.voxels == body.volume.voxels);
+}
+
+TEST_CASE("seams: files keep them, and what is no such file is refused") {
+  const test::GluedArm body(-3);
+  const Seams seams = body.seams();
+  const auto folder = std::filesystem::temp_directory_path() / "limber-seams-test";
+  std::filesystem::create_directories(folder);
+  const Path path = folder / "seams.nrrd";
+  write_seams(seams, body.volume.grid, path);
+  CHECK(read_seams(path, body.volume) == seams);
+  const test::GluedArm other(10);
+  LabelVolume moved = body.volume;
+  moved.grid.origin.x += 40;
+  CHECK_THROWS_AS(read_seams(path, moved), Error);
+  Seams nothing(body.volume.grid.size);
+  write_seams(nothing, body.volume.grid, path);
+  CHECK(read_seams(path, body.volume).empty());
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("limbs: names of tissues that mean a limb, and heads that do not") {
+  CHECK(limb_named("Muscle, arms") == LimbName::Arms);
+  CHECK(limb_named("Residual tissue of the legs") == LimbName::Legs);
+  CHECK(limb_named("Skin, head") == LimbName::Head);
+  CHECK(limb_named("skin_trunk") == std::nullopt);
+  CHECK(limb_named("biceps brachii, long head") == std::nullopt);
+  CHECK(limb_named("neck of gallbladder") == std::nullopt);
+  CHECK(limb_named("armpit") == std::nullopt);
+}
