@@ -183,7 +183,7 @@ struct Editor {
   } renaming_result;
   std::vector<KnownResult> known_results;
   struct {
-    std::string method = "dqs";
+    std::string method = "mix";
     double spacing = 0;  // mm; 0: as the volume
     bool fit_joints = false;
     bool mass_exact = false;  // soft tissues keep their volume to the voxel's accuracy

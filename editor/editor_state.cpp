@@ -98,7 +98,7 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   take_choice(json, "workspace", 4, editor.workspace);
   take_choice(json, "display", 3, views.display);
   take_choice(json, "slices", 2, views.slice_display);
-  if (const Json method = json.value("method", Json()); method == "lbs" || method == "dqs" || method == "fem") editor.resampling.method = method;
+  if (const Json method = json.value("method", Json()); method == "lbs" || method == "dqs" || method == "mix" || method == "fem") editor.resampling.method = method;
   if (const auto fem = json.find("finite_elements"); fem != json.end() && fem->is_object()) {
     if (const Json quality = fem->value("quality", Json()); quality == "draft" || quality == "normal" || quality == "fine") editor.resampling.quality = quality;
     take(*fem, "contact", editor.resampling.contact);

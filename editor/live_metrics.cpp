@@ -16,7 +16,7 @@ std::optional<double> PoseMetrics::Row::change_percent() const {
 }
 
 PoseMetrics measure(const DenseWish& wish, Progress& progress) {
-  const Method method = wish.blend == Blend::Linear ? Method(LinearBlend{}) : Method(DualQuaternion{});
+  const Method method = wish.blend == Blend::Linear ? Method(LinearBlend{}) : wish.blend == Blend::Mixed ? Method(MixedBlend{}) : Method(DualQuaternion{});
   const Posed posed = resample(*wish.volume, *wish.tissues, *wish.armature, *wish.weights, wish.pose, method, {}, progress);
   progress.update("measure", 0);
   const VolumeMetrics changes = compare(*wish.volume, posed.volume, *wish.tissues);

@@ -121,7 +121,8 @@ void MapMaker::work() {
 
 LivePose::LivePose(const std::function<void()>& wake) : swift_(1, wake), thorough_(2, wake), wake_(wake) {}
 
-Blend preview_blend(const Editor& editor) { return editor.resampling.method == "lbs" ? Blend::Linear : Blend::DualQuaternion; }
+// Where the method is none of blending, as the default blends.
+Blend preview_blend(const Editor& editor) { return editor.resampling.method == "fem" ? Blend::Mixed : blend_named(editor.resampling.method); }
 
 void LivePose::follow(Editor& editor) {
   if (auto made = swift_.take()) coarse_ = std::move(*made), editor.touch();

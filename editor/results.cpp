@@ -168,7 +168,7 @@ std::string text_of_report(const std::string& name, const ResultFacts& facts) {
 }
 
 std::string method_name(const std::string& method) {
-  return method == "lbs" ? "LBS" : method == "dqs" ? "DQ" : method == "fem" ? "FEM" : method == "fem-contact" ? "FEM with contact" : method;
+  return method == "lbs" ? "LBS" : method == "dqs" ? "DQ" : method == "mix" ? "Mixed" : method == "fem" ? "FEM" : method == "fem-contact" ? "FEM with contact" : method;
 }
 
 std::string stale_reason(const Document& document, const Result& result) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS --method lbs|dqs|fem [--fit-joints]
+// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS [--method lbs|dqs|mix|fem] [--fit-joints]
 //        [--contact] [--quality draft|normal|fine] [--mesher lattice|tetgen] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2]
 //        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--threads N] [--progress json]
 #include "core/resample/resample.h"
@@ -38,7 +38,7 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method, output, report, grey, field, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps, seams;
+  std::string weights, method = "mix", output, report, grey, field, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps, seams;
   std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
@@ -179,6 +179,7 @@ class SolveProgress {
 };
 
 Method method_of(const Options& options, SolveProgress& solve) {
+  if (options.method == "mix") return MixedBlend{};
   if (options.method == "dqs") return DualQuaternion{};
   if (options.method == "lbs") return LinearBlend{};
   Fem fem;
@@ -299,7 +300,7 @@ struct Landmarks {
 std::vector<Landmark> posed_landmarks(const Landmarks& landmarks, const Options& options, const Body& body, const Pose& pose, const FemShape* shape) {
   std::vector<glm::dvec3> places;
   for (const Landmark& landmark : landmarks.rest) places.push_back(landmark.position);
-  const Blend blend = options.method == "dqs" ? Blend::DualQuaternion : Blend::Linear;
+  const Blend blend = blend_named(options.method);
   places = posed_points(body.file.volume, landmarks.tissue, body.tissues, landmarks.weights, body.rig, pose, blend, shape, places);
   std::vector<Landmark> there = landmarks.rest;
   for (size_t i = 0; i < there.size(); ++i) there[i].position = places[i];
@@ -418,7 +419,7 @@ void add_resample(CLI::App& app) {
   add_seam_option(*command, options->seams);
   add_pose_options(*command, options->pose);
   command->add_option("--frames", options->frames, "several frames of the motion, one after the other: put {frame} into the outputs' names; fem meshes once and starts each from the one before")->type_name("FIRST:LAST[:STEP]");
-  command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions) or fem (finite elements)")->required()->check(CLI::IsMember({"lbs", "dqs", "fem"}));
+  command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions), mix (between the two: joints neither thin nor bulge) or fem (finite elements)")->capture_default_str()->check(CLI::IsMember({"lbs", "dqs", "mix", "fem"}));
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));
   command->add_option("--mesher", options->mesher, "fem: who fills the body's surface with tets: lattice (default) or tetgen")->check(CLI::IsMember({"lattice", "tetgen"}));

@@ -123,13 +123,13 @@ void add_skin_points(CLI::App& app) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("skin-points", "points of a skin-ref/1 case through the blend kernel");
   command->add_option("CASE", options->file, "JSON of schema skin-ref/1")->required();
-  command->add_option("--method", options->method, "lbs (linear) or dqs (dual quaternions)")
+  command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions) or mix (between the two)")
       ->required()
-      ->check(CLI::IsMember({"lbs", "dqs"}));
+      ->check(CLI::IsMember({"lbs", "dqs", "mix"}));
   command->add_flag("--json", options->json, "print {\"points\": [x, y, z, ...]}");
   command->callback([options] {
     SkinCase skin = CaseReader(options->file).read();
-    const Blend blend = options->method == "lbs" ? Blend::Linear : Blend::DualQuaternion;
+    const Blend blend = blend_named(options->method);
     blend_points(blend, skin.bones, skin.influences, skin.offsets, skin.points, skin.points);
     print(skin.points, options->json);
   });

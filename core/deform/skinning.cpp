@@ -88,11 +88,19 @@ glm::dvec3 blend_dual(std::span<const SkinTransform> bones, std::span<const Bone
   return transform(sum, p);
 }
 
+template <bool Stretched>
+glm::dvec3 blend_mixed(std::span<const SkinTransform> bones, std::span<const BoneWeight> influences, const glm::dvec3& p) {
+  const glm::dvec3 linear = blend_linear(bones, influences, p) - p, dual = blend_dual<Stretched>(bones, influences, p) - p;
+  return p + ((1 - kQuaternionShare) * linear + kQuaternionShare * dual);
+}
+
 bool any_stretch(std::span<const SkinTransform> bones) {
   return std::any_of(bones.begin(), bones.end(), [](const SkinTransform& bone) { return bone.has_stretch; });
 }
 
 }  // namespace
+
+Blend blend_named(std::string_view word) { return word == "mix" ? Blend::Mixed : word == "dqs" ? Blend::DualQuaternion : Blend::Linear; }
 
 SkinTransform skin_transform(const RigidTransform& posed_from_rest) {
   SkinTransform bone;
@@ -132,11 +140,10 @@ SkinTransform skin_transform(const glm::dmat4& posed_from_rest, const glm::dmat4
 
 SkinTransform blended_transform(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences) {
   SkinTransform sum;
-  if (blend == Blend::DualQuaternion) sum.dual_quaternion = {};
+  if (blend != Blend::Linear) sum.dual_quaternion = {};
   for (const auto& [bone, weight] : influences) {
-    if (blend == Blend::DualQuaternion)
-      add_aligned(sum.dual_quaternion, bones[bone].dual_quaternion, weight);
-    else
+    if (blend != Blend::Linear) add_aligned(sum.dual_quaternion, bones[bone].dual_quaternion, weight);
+    if (blend != Blend::DualQuaternion)
       for (int i = 0; i < 12; ++i) sum.displacement[i] += weight * bones[bone].displacement[i];
   }
   return sum;
@@ -146,8 +153,8 @@ glm::dvec3 blend_point(Blend blend, std::span<const SkinTransform> bones, std::s
                        const glm::dvec3& rest_point) {
   if (blend == Blend::Linear) return blend_linear(bones, influences, rest_point);
   for (const BoneWeight& influence : influences)
-    if (bones[influence.bone].has_stretch) return blend_dual<true>(bones, influences, rest_point);
-  return blend_dual<false>(bones, influences, rest_point);
+    if (bones[influence.bone].has_stretch) return blend == Blend::Mixed ? blend_mixed<true>(bones, influences, rest_point) : blend_dual<true>(bones, influences, rest_point);
+  return blend == Blend::Mixed ? blend_mixed<false>(bones, influences, rest_point) : blend_dual<false>(bones, influences, rest_point);
 }
 
 void blend_points(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
@@ -163,6 +170,10 @@ void blend_points(Blend blend, std::span<const SkinTransform> bones, std::span<c
   };
   if (blend == Blend::Linear)
     each([](auto... a) { return blend_linear(a...); });
+  else if (blend == Blend::Mixed && stretched)
+    each([](auto... a) { return blend_mixed<true>(a...); });
+  else if (blend == Blend::Mixed)
+    each([](auto... a) { return blend_mixed<false>(a...); });
   else if (stretched)
     each([](auto... a) { return blend_dual<true>(a...); });
   else

@@ -6,6 +6,9 @@
 //                     *running sum in influence order* (Blender's rule, which differs from aligning to the first or to
 //                     the heaviest bone where rotations are more than 180 degrees apart), and the sum is normalized
 //                     [Kavan, Collins, Zara & O'Sullivan 2008, Geometric skinning with approximate dual quaternion blending]
+//   mixed             between the two, kQuaternionShare of the way from linear to dual quaternions: linear blending thins bent
+//                     and twisted joints, dual quaternions make them bulge, and most of both cancels. Whole bodies that sit or
+//                     raise their arms keep their volume best that way (assets/docs/guide.md has the figures).
 // Dual quaternions hold no scale. A bone that stretches is split into a stretch along its own rest axes, then a rigid
 // motion; the stretches are blended linearly and applied first.
 #pragma once
@@ -13,13 +16,19 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/base/rigid_transform.h"
 
 namespace limber {
 
-enum class Blend { Linear, DualQuaternion };
+enum class Blend { Linear, DualQuaternion, Mixed };
+
+constexpr double kQuaternionShare = 0.3;
+
+// Of "lbs", "dqs" and "mix"; linear for any other word.
+Blend blend_named(std::string_view word);
 
 struct BoneWeight {
   int bone;

@@ -24,6 +24,7 @@ class Seconds {
 };
 
 Blend blend_of(const Method& method) {
+  if (std::holds_alternative<MixedBlend>(method)) return Blend::Mixed;
   return std::holds_alternative<DualQuaternion>(method) ? Blend::DualQuaternion : Blend::Linear;
 }
 

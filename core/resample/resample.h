@@ -23,7 +23,8 @@ namespace limber {
 
 struct LinearBlend {};
 struct DualQuaternion {};
-using Method = std::variant<LinearBlend, DualQuaternion, Fem>;
+struct MixedBlend {};
+using Method = std::variant<LinearBlend, DualQuaternion, MixedBlend, Fem>;
 
 struct ResampleSettings {
   bool nearest = false;                 // labels by the nearest rest voxel instead of the largest interpolated membership; no mending

@@ -44,7 +44,7 @@ struct Options {
   cmd::BodyOptions body;
   cmd::PoseOptions pose;
   cmd::RunOptions run;
-  std::string weights, output, size = "1280x720", slice, armature = "octahedron", method = "dqs";
+  std::string weights, output, size = "1280x720", slice, armature = "octahedron", method = "mix";
   StandardView view = StandardView::Front;
   Display display = Display::Solid;
   double turn = 0, tilt = 0, zoom = 1;
@@ -189,8 +189,8 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
   if (cmd::wants_pose(options.pose)) pose = cmd::read_pose_options(options.pose, *document.armature);
   if (pose == rest_pose(*document.armature)) return result;
   const SkinWeights weights = weights_of(options, document, progress);
-  const bool linear = options.method == "lbs";
-  const Blend blend = linear ? Blend::Linear : Blend::DualQuaternion;
+  const Blend blend = blend_named(options.method);
+  const Method method = blend == Blend::Linear ? Method(LinearBlend{}) : blend == Blend::Mixed ? Method(MixedBlend{}) : Method(DualQuaternion{});
   const TissueVoxels tissue(*document.volume);
   scene.posed_from_rest = posed_from_rest(*document.armature, pose);
   if (options.preview) {
@@ -200,8 +200,7 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
     return result;
   }
   const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress);
-  Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose,
-                         linear ? Method(LinearBlend{}) : Method(DualQuaternion{}), {.seams = seams_of(document, tissue, parts, progress)}, progress);
+  Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose, method, {.seams = seams_of(document, tissue, parts, progress)}, progress);
   scene.volume = std::make_shared<const LabelVolume>(std::move(posed.volume));
   result.tissue = box_of_posed(document.volume->grid, scene.volume->grid, tissue, weights, scene.posed_from_rest, blend);
   return result;
@@ -342,7 +341,7 @@ void add_render(CLI::App& app) {
   command->add_option("--armature", options->armature, "octahedron, stick, cylinder or none")->check(CLI::IsMember({"octahedron", "stick", "cylinder", "none"}));
   command->add_option("--weights", options->weights, "W.nrrd for the pose (default: heat diffusion)");
   cmd::add_pose_options(*command, options->pose);
-  command->add_option("--method", options->method, "of the pose: lbs (linear) or dqs (dual quaternions)")->check(CLI::IsMember({"lbs", "dqs"}))->capture_default_str();
+  command->add_option("--method", options->method, "of the pose: lbs (linear), dqs (dual quaternions) or mix (between the two)")->check(CLI::IsMember({"lbs", "dqs", "mix"}))->capture_default_str();
   command->add_flag("--preview", options->preview, "the pose as the editor shows it while a bone is dragged: coarser, at once");
   command->add_option("--slice", options->slice, "a slice instead")->check(CLI::IsMember({"axial", "coronal", "sagittal"}));
   command->add_option("--at", options->at, "where the slice lies on its axis, mm (default: the middle)");

@@ -33,12 +33,12 @@ void draw_resample(Editor& editor, Column& column) {
   if (column.begin_section("Resample")) {
     auto& settings = editor.resampling;
     const Rect method = column.property("Method");
-    const float third = std::floor(method.width() / 3);
+    const float quarter = std::floor(method.width() / 4);
     float x = method.low.x;
-    for (const char* id : {"resample.lbs", "resample.dqs", "resample.fem"}) {
+    for (const char* id : {"resample.mix", "resample.lbs", "resample.dqs", "resample.fem"}) {
       const Operator* op = find_operator(editor, id);
-      operator_button(editor, id, {{x, method.low.y}, {x + third - look.px(1), method.high.y}}, op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
-      x += third;
+      operator_button(editor, id, {{x, method.low.y}, {x + quarter - look.px(1), method.high.y}}, op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
+      x += quarter;
     }
     if (settings.method == "fem") draw_fem(editor, column);
     const Rect spacing = column.property("Output");

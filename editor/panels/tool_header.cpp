@@ -219,9 +219,9 @@ void put_options(Editor& editor, Header& header) {
     header.line();
   }
   if (editor.workspace == Workspace::Pose) {
-    if (header.fits(170, {"resample.lbs", "resample.dqs"})) {
+    if (header.fits(230, {"resample.mix", "resample.lbs", "resample.dqs"})) {
       header.label("Preview");
-      header.segments({"resample.lbs", "resample.dqs"});
+      header.segments({"resample.mix", "resample.lbs", "resample.dqs"});
     }
     if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"})) header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
     if (header.fits(90, {"pose.limits"})) header.toggle("pose.limits", "Limits");

@@ -126,6 +126,7 @@ std::vector<Proof> proofs_of_work() {
        [](Stage& s, const Seen&) { return s.is("edit", "Flex Fore") && s.document().pose && *s.document().pose != rest_pose(*s.document().armature); }, Shows::InBody, "key Ctrl+3\n move \"3D view/view\"\n key Alt+Z"},
       {"resample.lbs", "click Edit/Resample/LBS", [](Stage& s, const Seen&) { return s.editor().resampling.method == "lbs"; }},
       {"resample.run", "key Ctrl+Return\n wait-job", [](Stage& s, const Seen&) { return results(s) == 1 && s.document().results[0]->name == "Fore 30\u00b0, LBS"; }},
+      {"resample.mix", "click Edit/Resample/Mixed", [](Stage& s, const Seen&) { return s.editor().resampling.method == "mix"; }},
       {"resample.dqs", "click Edit/Resample/DQ", [](Stage& s, const Seen&) { return s.editor().resampling.method == "dqs"; }},
       {"resample.fem", "click Edit/Resample/FEM", [](Stage& s, const Seen&) { return s.editor().resampling.method == "fem"; }},
       // The worker takes its time, so that there is something to watch.

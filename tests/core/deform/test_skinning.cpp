@@ -17,7 +17,7 @@ using namespace limber;
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-const Blend kBlends[] = {Blend::Linear, Blend::DualQuaternion};
+const Blend kBlends[] = {Blend::Linear, Blend::DualQuaternion, Blend::Mixed};
 
 RigidTransform turn(double degrees, const glm::dvec3& axis, const glm::dvec3& about) {
   return rotation_about(about, glm::angleAxis(degrees * kPi / 180, glm::normalize(axis)));
@@ -67,6 +67,7 @@ TEST_CASE("skinning: twisting the forearm keeps its thickness with dual quaterni
   auto radius = [](const glm::dvec3& p) { return std::hypot(p.x, p.y); };
   CHECK(radius(blend_point(Blend::DualQuaternion, bones, half, {40, 0, 10})) == doctest::Approx(40).epsilon(1e-12));
   CHECK(radius(blend_point(Blend::Linear, bones, half, {40, 0, 10})) == doctest::Approx(20).epsilon(1e-12));
+  CHECK(radius(blend_point(Blend::Mixed, bones, half, {40, 0, 10})) > radius(blend_point(Blend::Linear, bones, half, {40, 0, 10})));
 }
 
 TEST_CASE("skinning: dual quaternions blend alike when a bone's quaternion has the other sign") {
@@ -135,4 +136,29 @@ TEST_CASE("skinning: points of Blender's reference cases agree within 1e-6 of th
       MESSAGE(name, " ", method, ": largest error ", largest / extent, " of the extent");
     }
   }
+}
+
+TEST_CASE("skinning: mixed blending goes a fixed share of the way from linear blending to dual quaternions, with stretches too") {
+  std::vector<SkinTransform> bones = {skin_transform(turn(20, {0, 0, 1}, {5, 0, 0})), skin_transform(turn(130, {1, 0, 0.2}, {0, 8, 30}))};
+  const std::vector<BoneWeight> influences = {{0, 0.35}, {1, 0.65}};
+  const auto expected = [&](const glm::dvec3& p) {
+    return glm::mix(blend_point(Blend::Linear, bones, influences, p), blend_point(Blend::DualQuaternion, bones, influences, p), kQuaternionShare);
+  };
+  for (const glm::dvec3& p : {glm::dvec3(10, -4, 55), glm::dvec3(-30, 2, 0)}) CHECK(glm::distance(blend_point(Blend::Mixed, bones, influences, p), expected(p)) < 1e-10);
+  const SkinTransform together = blended_transform(Blend::Mixed, bones, influences);
+  const BoneWeight whole{0, 1};
+  CHECK(glm::distance(blend_point(Blend::Mixed, {&together, 1}, {&whole, 1}, {10, -4, 55}), expected({10, -4, 55})) < 1e-10);
+  glm::dmat4 stretched(1);
+  stretched[1][1] = 1.5;
+  bones[1] = skin_transform(stretched, glm::dmat4(1));
+  CHECK(glm::distance(blend_point(Blend::Mixed, bones, influences, {3, 9, -2}), expected({3, 9, -2})) < 1e-10);
+  std::vector<glm::dvec3> points = {{10, -4, 55}};
+  blend_points(Blend::Mixed, bones, influences, std::vector<std::int64_t>{0, 2}, points, points);
+  CHECK(glm::distance(points[0], expected({10, -4, 55})) < 1e-10);
+}
+
+TEST_CASE("skinning: blends have the names that commands give them") {
+  CHECK(blend_named("lbs") == Blend::Linear);
+  CHECK(blend_named("dqs") == Blend::DualQuaternion);
+  CHECK(blend_named("mix") == Blend::Mixed);
 }
