@@ -3,7 +3,9 @@
 // options, so that a job can do what the command line can, and the same way.
 // It resamples, or makes what a resampling needs: "prepare", "weights", "phantom" (whose "subject" stands in the volume's place).
 //   {"command": "resample", "volume": "arm.mha", "rig": "rig.json", "flex": ["Forearm=90"], "method": "dqs", "output": "posed.nrrd"}
-// Lists repeat an option (bones, labels: joined by commas); true sets a flag. Paths are relative to the job's folder.
+//   {..., "pose_name": "sit", "joints": ["left elbow flexion=30"], ...}
+// Lists repeat an option (bones, labels: joined by commas); true sets a flag; "_" is as good as "-" in a key. Paths are relative to
+// the job's folder.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -35,17 +37,23 @@ std::string text_of(const Json& value, const std::string& key, const Path& job) 
 // What a command's first word is called in a job.
 const char* subject_of(const Json& job) { return job.at("command") == "phantom" ? "subject" : "volume"; }
 
+// The option that a key stands for: keys may be written as in reports, "pose_name" and "joints".
+std::string option_of(std::string key) {
+  std::replace(key.begin(), key.end(), '_', '-');
+  return key == "joints" ? "--joint" : "--" + key;
+}
+
 // The words of the command line that the job stands for.
 std::vector<std::string> words_of(const Json& job, const Path& path) {
   std::vector<std::string> words{job.at("command").get<std::string>()};
   for (const auto& [key, value] : job.items()) {
     if (key == "command" || key == subject_of(job)) continue;
     if (value.is_boolean()) {
-      if (value.get<bool>()) words.push_back("--" + key);
+      if (value.get<bool>()) words.push_back(option_of(key));
     } else if (value.is_array()) {
-      for (const Json& one : value) words.push_back("--" + key + "=" + text_of(one, key, path));
+      for (const Json& one : value) words.push_back(option_of(key) + "=" + text_of(one, key, path));
     } else {
-      words.push_back("--" + key + "=" + text_of(value, key, path));
+      words.push_back(option_of(key) + "=" + text_of(value, key, path));
     }
   }
   words.insert(words.begin() + 1, text_of(job.at(subject_of(job)), subject_of(job), path));

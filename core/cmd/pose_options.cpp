@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/cmd/command.h"
@@ -23,6 +24,14 @@ void apply_flex(Pose& pose, const Armature& armature, const std::string& request
   if (equals == 0 || error != std::errc() || stop != end || !std::isfinite(degrees))
     throw Error("this is no flex", "--flex " + request, "write BONE=DEG, as in --flex Forearm=45");
   flex(pose, armature, require_bone(armature, request.substr(0, equals)), degrees);
+}
+
+// Joints by their names, then hinges.
+void apply_requests(Pose& pose, const Armature& armature, const PoseOptions& options, std::set<std::string>& warnings) {
+  std::vector<std::string> lines;
+  pose = with_request(armature, pose, options.body, lines);
+  warnings.insert(lines.begin(), lines.end());
+  for (const std::string& request : options.flex) apply_flex(pose, armature, request);
 }
 
 // Of one frame, or of all.
@@ -66,10 +75,16 @@ void take_over(const RestWords& words, RetargetMap& map) {
 void add_pose_options(CLI::App& command, PoseOptions& options) {
   const std::string group = "Pose";
   auto* pose = command.add_option("--pose", options.pose, "pose file (JSON)")->type_name("P.json")->group(group);
+  std::string names;
+  for (const BodyPose& one : body_poses()) names += (names.empty() ? "" : ", ") + std::string(one.name);
+  auto* name = command.add_option("--pose-name", options.body.name, "pose of any body, by its joints: " + names)->type_name("NAME")->excludes(pose)->group(group);
+  command.add_option("--joint", options.body.joints,
+                     "angle of a joint from the anatomical position, over the pose (repeatable): \"left hip flexion=90\", \"knees flexion=60\"")
+      ->type_name("\"JOINT MOTION=DEG\"")->expected(1)->take_all()->group(group);
   command.add_option("--flex", options.flex, "turn a bone about its hinge by degrees, positive bends further (repeatable)")
       ->type_name("BONE=DEG")->expected(1)->take_all()->group(group);
   auto* motion = command.add_option("--motion", options.motion, "motion capture (BVH) to take the pose from")
-                     ->type_name("F.bvh")->excludes(pose)->group(group);
+                     ->type_name("F.bvh")->excludes(pose)->excludes(name)->group(group);
   command.add_option("--frame", options.frame, "its frame, from 0")->type_name("N")->check(CLI::NonNegativeNumber)->group(group);
   add_up_option(command, options.up, motion);
   command.add_option("--map", options.map, "which joint moves which bone (default: by names)")->type_name("M.json")->needs(motion)->group(group);
@@ -78,7 +93,7 @@ void add_pose_options(CLI::App& command, PoseOptions& options) {
 }
 
 bool wants_pose(const PoseOptions& options) {
-  return !options.pose.empty() || !options.flex.empty() || !options.motion.empty();
+  return !options.pose.empty() || !options.body.empty() || !options.flex.empty() || !options.motion.empty();
 }
 
 Pose read_pose_options(const PoseOptions& options, const Armature& armature) {
@@ -87,15 +102,18 @@ Pose read_pose_options(const PoseOptions& options, const Armature& armature) {
   Pose pose = rest_pose(armature);
   if (!options.pose.empty()) pose = read_pose(options.pose, armature);
   if (!options.motion.empty()) pose = poses_of_motion(options, armature, options.frame.value_or(0)).front();
-  for (const std::string& request : options.flex) apply_flex(pose, armature, request);
+  std::set<std::string> warnings;
+  apply_requests(pose, armature, options, warnings);
+  for (const std::string& line : warnings) warn(line);
   return pose;
 }
 
 std::vector<Pose> read_all_poses(const PoseOptions& options, const Armature& armature) {
   if (options.motion.empty()) throw Error("there is no motion to take frames from", "--all-frames", "add --motion F.bvh");
   std::vector<Pose> poses = poses_of_motion(options, armature, {});
-  for (const std::string& request : options.flex)
-    for (Pose& pose : poses) apply_flex(pose, armature, request);
+  std::set<std::string> warnings;
+  for (Pose& pose : poses) apply_requests(pose, armature, options, warnings);
+  for (const std::string& line : warnings) warn(line);
   return poses;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How a command is told a pose:
 //   --pose P.json | --motion F.bvh --frame N [--up y|z|auto] [--map M.json] [--motion-rest POSE] [--rig-rest POSE] [--root-motion]
-// then, on top of it, any number of
-//   --flex BONE=DEG
+// then, on top of it, joints by what clinicians call them, and any number of bones about their hinges
+//   [--pose-name NAME] [--joint "JOINT MOTION=DEG"]... [--flex BONE=DEG]...
 // Without any of them the pose is rest.
 #pragma once
 
@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/pose/body_poses.h"
 #include "core/pose/pose.h"
 #include "core/rig/retarget.h"
 
@@ -26,6 +27,7 @@ void take_over(const RestWords& words, RetargetMap& map);  // throws Error for w
 
 struct PoseOptions {
   std::string pose;               // file
+  PoseRequest body;               // --pose-name and --joint
   std::vector<std::string> flex;  // BONE=DEG
   std::string motion;             // file
   std::optional<int> frame;       // of the motion, from 0

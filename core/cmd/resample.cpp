@@ -233,6 +233,8 @@ void describe(Report& report, const Options& options, const Armature& rig, const
     if (!options.mesher.empty()) settings["mesher"] = options.mesher;
   }
   if (options.spacing) settings["spacing_mm"] = *options.spacing;
+  if (!options.pose.body.name.empty()) settings["pose_name"] = std::string(require_body_pose(options.pose.body.name, "--pose-name").name);
+  if (!options.pose.body.joints.empty()) settings["joints"] = options.pose.body.joints;
   if (!options.pose.flex.empty()) settings["flex"] = options.pose.flex;
   if (!options.pose.motion.empty()) settings["frame"] = std::int64_t{options.pose.frame.value_or(0)};
   if (options.pose.up != "y") settings["up"] = options.pose.up;

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/pose/anatomical_frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/pose/finger_frames.h"
+#include "core/rig/body_skeleton.h"
+#include "core/rig/joint_limits.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180;
+
+constexpr double kUprightLean = 10 * kDegree;    // from the world's axes
+constexpr double kStraightLeg = 20 * kDegree;    // of thigh to trunk and shank to thigh: then legs tell the vertical too
+constexpr double kKneeAside = 5 * kDegree;       // varus and valgus of healthy knees [Hsu 1990]
+constexpr double kElbowAside = 8 * kDegree;      // about half of the carrying angle
+constexpr double kHyperextension = 15 * kDegree;
+constexpr double kToeOut[] = {-5 * kDegree, 25 * kDegree};       // of a foot against its knee: tibial torsion [Staheli 1985]
+constexpr double kPronation[] = {-10 * kDegree, 175 * kDegree};  // of a palm against its elbow
+constexpr double kSoleSlope = 23 * kDegree;      // of the ankle above the toes' base or tips, sole on the ground
+constexpr double kToeSlope = 8 * kDegree;        // of the toes' base above their tips
+constexpr double kSteepFoot = 75 * kDegree;      // no heading is told by a foot that points so far down
+constexpr double kRaisedArm = 22.5 * kDegree;    // arms raised further rest with thumbs forward, others with palms forward
+
+const glm::dquat kNoTurn(1, 0, 0, 0);
+const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+
+glm::dquat about(const glm::dvec3& axis, double angle) { return glm::angleAxis(angle, axis); }
+
+glm::dvec3 unit(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 1e-12 ? v / length : glm::dvec3(0);
+}
+
+// The world seen from the body's axes; of a right limb in the mirror, so that every limb is a left one.
+struct LimbView {
+  glm::dmat3 body{1};
+  bool right = false;
+
+  glm::dvec3 seen(const glm::dvec3& world) const {
+    const glm::dvec3 v = glm::transpose(body) * world;
+    return {right ? -v.x : v.x, v.y, v.z};
+  }
+  // Of an axis of rotation, which a mirror leaves along x and turns round along y and z.
+  glm::dvec3 seen_axis(const glm::dvec3& world) const {
+    const glm::dvec3 v = glm::transpose(body) * world;
+    return right ? glm::dvec3(v.x, -v.y, -v.z) : v;
+  }
+  glm::dquat world(const glm::dquat& q) const {
+    const glm::dquat own = right ? glm::dquat(q.w, q.x, -q.y, -q.z) : q, axes = glm::quat_cast(body);
+    return glm::normalize(axes * own * glm::conjugate(axes));
+  }
+  glm::dvec3 world_axis(const glm::dvec3& axis) const { return body * (right ? glm::dvec3(axis.x, -axis.y, -axis.z) : axis); }
+};
+
+// From hanging to a direction by the shortest way; to straight up by the side.
+glm::dquat swing_from_hanging(const glm::dvec3& direction) {
+  if (direction.z > 1 - 1e-9) return about(kY, kPi);
+  return shortest_turn(-kZ, direction);
+}
+
+// How far a limb is turned about itself so that what hangs from it bends towards `bend_heading`, but for `aside` across.
+//   below   direction of the lower part, seen from the limb
+//   wanted  the turn without that
+double turn_about_itself(const glm::dvec3& below, double bend_heading, double aside, double wanted) {
+  const double across = std::hypot(below.x, below.y), bend = std::atan2(across, -below.z);
+  if (across <= std::sin(aside) && below.z < 0) return wanted;
+  const double plane = std::atan2(below.y, below.x) - bend_heading;
+  const double room = std::asin(std::min(1.0, std::sin(aside) / std::max(across, 1e-12)));
+  const double from_plane = std::remainder(wanted - plane, 2 * kPi);
+  if (bend < kHyperextension && std::abs(from_plane) > kPi / 2) {
+    const double from_back = std::remainder(wanted - plane - kPi, 2 * kPi);
+    return wanted - from_back + std::clamp(from_back, -room, room);
+  }
+  return wanted - from_plane + std::clamp(from_plane, -room, room);
+}
+
+class Measuring {
+ public:
+  Measuring(const Armature& armature, BodyFrames& result) : armature_(armature), skeleton_(skeleton_of(armature)), result_(result) {
+    result_.bone = skeleton_.joint;
+    result_.frames.resize(armature.bones.size());
+    done_.assign(armature.bones.size(), false);
+  }
+
+  void measure_side(BodySide side) {
+    view_ = {result_.body, is_right(side)};
+    result_.is_right[side] = view_.right;
+    leg(side);
+    arm(side);
+  }
+
+  // Bones that were not measured turn with their parents.
+  void fill() {
+    for (std::size_t b = 0; b < done_.size(); ++b) {
+      const int parent = armature_.bones[b].parent;
+      if (!done_[b] && parent >= 0) result_.frames[b].anatomical_from_rest = result_.frames[parent].anatomical_from_rest;
+    }
+  }
+
+ private:
+  std::optional<int> find(BodyPart part, BodySide side, int index = 0) const { return result_.find(part, side, index); }
+
+  glm::dvec3 direction(int bone) const { return unit(view_.seen(direction_of(skeleton_, bone))); }
+
+  const JointLimits* hinge_of(int bone) const {
+    const JointLimits& limits = armature_.bones[bone].limits;
+    return limits.type == JointLimits::Type::Hinge ? &limits : nullptr;
+  }
+
+  bool is_right(BodySide side) const {
+    if (side != BodySide::Middle) return side == BodySide::Right;
+    if (const auto hand = is_right_hand(skeleton_)) return *hand;
+    // A limb on its own leans outwards on its way down.
+    for (const auto& [above, below] : {std::pair{BodyPart::Thigh, BodyPart::Foot}, {BodyPart::UpperArm, BodyPart::Hand}, {BodyPart::UpperArm, BodyPart::Forearm}}) {
+      const auto from = skeleton_.place_of(above, side), to = skeleton_.place_of(below, side);
+      if (from && to) return glm::dot(*to - *from, result_.body[0]) < 0;
+    }
+    return false;
+  }
+
+  void set(int bone, const glm::dquat& frame_at_rest, const glm::dquat& axes = kNoTurn) {
+    result_.frames[bone].anatomical_from_rest = glm::conjugate(view_.world(frame_at_rest));
+    result_.frames[bone].joint_axes = view_.world(axes);
+    done_[bone] = true;
+  }
+
+  void set_hinge(int bone, const glm::dvec3& flexion_axis, double at_rest) {
+    const glm::dvec3 axis = hinge_of(bone)->axis;
+    const double sign = glm::dot(axis, view_.world_axis(flexion_axis)) < 0 ? -1 : 1;
+    result_.frames[bone].hinge = AnatomicalHinge{sign * axis, at_rest};
+  }
+
+  // A hinge's own turn about the limb above it, from the way that the limb was swung; nothing without a hinge.
+  std::optional<double> turn_of_hinge(int bone, const glm::dquat& swung, double sign) const {
+    if (!hinge_of(bone)) return std::nullopt;
+    glm::dvec3 axis = glm::conjugate(swung) * view_.seen_axis(hinge_of(bone)->axis) * sign;
+    if (std::hypot(axis.x, axis.y) < 0.3) return std::nullopt;
+    return std::atan2(axis.y, axis.x);
+  }
+
+  // The frame of a lower limb, by the bend of its joint. `sign`: of the turn about x that flexes.
+  glm::dquat bent_frame(int bone, const glm::dquat& above, double sign) {
+    const glm::dvec3 below = glm::conjugate(above) * direction(bone);
+    if (!hinge_of(bone)) {
+      const glm::dquat bend = about(kX, std::atan2(below.y, -below.z));
+      return above * bend * about(kY, -std::asin(std::clamp(below.x, -1.0, 1.0)));
+    }
+    set_hinge(bone, above * (sign * kX), 0);
+    AnatomicalHinge& hinge = *result_.frames[bone].hinge;
+    const glm::dvec3 axis = glm::conjugate(above) * view_.seen_axis(hinge.axis);
+    const glm::dvec3 straight = -kZ - axis * glm::dot(-kZ, axis), bent = below - axis * glm::dot(below, axis);
+    hinge.at_rest = std::atan2(glm::dot(glm::cross(straight, bent), axis), glm::dot(straight, bent));
+    return above * about(axis, hinge.at_rest);
+  }
+
+  void leg(BodySide side);
+  void foot(int bone, const glm::dquat& shank, double heading, const glm::dvec3& seen);
+  void arm(BodySide side);
+  double pronation_of_hand(BodySide side, const glm::dquat& forearm, double raised) const;
+  void hand(BodySide side, const glm::dquat& forearm, double pronation);
+
+  const Armature& armature_;
+  Skeleton skeleton_;
+  BodyFrames& result_;
+  LimbView view_;
+  std::vector<char> done_;
+};
+
+double excess(double angle, const double (&range)[2]) { return angle - std::clamp(angle, range[0], range[1]); }
+
+double heading_of(const glm::dvec3& foot) {
+  const double level = std::hypot(foot.x, foot.y);
+  return std::atan2(-foot.z, level) > kSteepFoot ? (kToeOut[0] + kToeOut[1]) / 2 : std::atan2(foot.x, -foot.y);
+}
+
+void Measuring::leg(BodySide side) {
+  const auto thigh = find(BodyPart::Thigh, side), shank = find(BodyPart::Shank, side), foot_bone = find(BodyPart::Foot, side);
+  const glm::dquat swung = thigh ? swing_from_hanging(direction(*thigh)) : kNoTurn;
+  double turn = 0;
+  if (thigh && shank) {
+    if (foot_bone) {
+      const glm::dquat straight = bent_frame(*shank, swung, 1);
+      turn = excess(heading_of(glm::conjugate(straight) * direction(*foot_bone)), kToeOut);
+    }
+    const auto hinge = turn_of_hinge(*shank, swung, 1);
+    turn = hinge ? *hinge : turn_about_itself(glm::conjugate(swung) * direction(*shank), kPi / 2, kKneeAside, turn);
+  }
+  const glm::dquat thigh_frame = swung * about(kZ, turn);
+  if (thigh) set(*thigh, thigh_frame);
+  if (!shank) return;
+  const glm::dquat shank_frame = thigh ? bent_frame(*shank, thigh_frame, 1) : swing_from_hanging(direction(*shank));
+  set(*shank, shank_frame);
+  if (!foot_bone) return;
+  const glm::dvec3 seen = glm::conjugate(shank_frame) * direction(*foot_bone);
+  foot(*foot_bone, shank_frame, heading_of(seen), seen);
+}
+
+// Its pitch is told by the toes where there are any: their slope on the ground is known, and the foot keeps its shape.
+void Measuring::foot(int bone, const glm::dquat& shank, double heading, const glm::dvec3& seen) {
+  const auto slope = [&](const glm::dvec3& v) { return std::atan2(-v.z, glm::dot(v, about(kZ, heading) * -kY)); };
+  double neutral = kSoleSlope;
+  const JointRole role = *skeleton_.role[bone];
+  const auto toes = find(BodyPart::Toes, role.side);
+  if (toes && direction(*toes) != glm::dvec3(0)) {
+    const double shape = slope(seen) - slope(glm::conjugate(shank) * direction(*toes));
+    if (shape > -10 * kDegree && shape < 55 * kDegree) neutral = kToeSlope + shape;
+  }
+  const double dorsiflexion = neutral - slope(seen);
+  const double kept = std::clamp(heading, kToeOut[0], kToeOut[1]);
+  const glm::dquat at_rest = about(kZ, heading) * about(kX, -dorsiflexion) * about(kZ, -kept);
+  set(bone, shank * at_rest, about(kZ, kept));
+  if (hinge_of(bone)) {
+    set_hinge(bone, shank * about(kZ, heading) * -kX, dorsiflexion);
+    const glm::dvec3 axis = glm::conjugate(shank) * view_.seen_axis(result_.frames[bone].hinge->axis);
+    set(bone, shank * about(axis, dorsiflexion), about(kZ, kept));
+  }
+  if (!toes) return;
+  // Toes keep their shape at rest.
+  set(*toes, shank * at_rest, about(kZ, kept));
+  if (hinge_of(*toes)) set_hinge(*toes, shank * about(kZ, heading) * -kX, 0);
+}
+
+void Measuring::arm(BodySide side) {
+  const auto upper = find(BodyPart::UpperArm, side), forearm = find(BodyPart::Forearm, side);
+  const glm::dquat swung = upper ? swing_from_hanging(direction(*upper)) : kNoTurn;
+  const double raised = upper ? angle_between(direction(*upper), -kZ) : 0;
+  double turn = 0;
+  if (upper && forearm) {
+    turn = -excess(pronation_of_hand(side, bent_frame(*forearm, swung, -1), raised), kPronation);
+    const auto hinge = turn_of_hinge(*forearm, swung, -1);
+    turn = hinge ? *hinge : turn_about_itself(glm::conjugate(swung) * direction(*forearm), -kPi / 2, kElbowAside, turn);
+  }
+  const glm::dquat upper_frame = swung * about(kZ, turn);
+  if (upper) set(*upper, upper_frame);
+  if (!forearm) return hand(side, kNoTurn, 0);
+
+  const glm::dquat bent = upper ? bent_frame(*forearm, upper_frame, -1) : swing_from_hanging(direction(*forearm));
+  auto& pronation = result_.pronation[side];
+  pronation.at_rest = pronation_of_hand(side, bent, raised);
+  // A hinge cannot turn about the limb; then the hand does all of it.
+  pronation.forearm_share = hinge_of(*forearm) ? 0 : find(BodyPart::Hand, side) ? 0.5 : 1;
+  set(*forearm, bent * about(kZ, -pronation.forearm_share * pronation.at_rest));
+  hand(side, bent, pronation.at_rest);
+}
+
+// Between -90 and 270 degrees: pronation from palms forward, by where the palm faces.
+double Measuring::pronation_of_hand(BodySide side, const glm::dquat& forearm, double raised) const {
+  const auto across = across_palm(skeleton_, side);
+  const auto along = along_hand(skeleton_, side);
+  const auto frame = across && along ? axes_of(-view_.seen(*along), -view_.seen(*across)) : std::nullopt;
+  if (!frame) return raised > kRaisedArm ? kPi / 2 : 0;
+  const double twist = swing_twist(glm::conjugate(forearm) * glm::quat_cast(*frame), kZ).twist;
+  const double pronation = std::remainder(-twist, 2 * kPi);
+  return pronation < -kPi / 2 ? pronation + 2 * kPi : pronation;
+}
+
+void Measuring::hand(BodySide side, const glm::dquat& forearm, double pronation) {
+  const auto bone = find(BodyPart::Hand, side);
+  const auto across = across_palm(skeleton_, side);
+  const auto along = along_hand(skeleton_, side);
+  if (bone) {
+    const glm::dvec3 seen = along ? unit(view_.seen(*along)) : direction(*bone);
+    const auto frame = across ? axes_of(-seen, -view_.seen(*across)) : std::nullopt;
+    const glm::dquat turned = forearm * about(kZ, -pronation);
+    set(*bone, frame ? glm::normalize(glm::quat_cast(*frame)) : shortest_turn(turned * -kZ, seen) * turned);
+  }
+  for (const auto& [finger, hinge] : finger_hinges(armature_, skeleton_, side, view_.right)) result_.frames[finger].hinge = hinge;
+}
+
+// Within a few degrees of the world's axes a body is taken to stand along them.
+glm::dmat3 nearest_world_axes(const glm::dmat3& axes) {
+  glm::dmat3 nearest(0);
+  for (int column = 0; column < 3; ++column) {
+    int most = 0;
+    for (int row = 1; row < 3; ++row)
+      if (std::abs(axes[column][row]) > std::abs(axes[column][most])) most = row;
+    nearest[column][most] = axes[column][most] < 0 ? -1 : 1;
+  }
+  return nearest;
+}
+
+// Up along legs that are straight and in line with the trunk; zero where they are not.
+glm::dvec3 up_of_legs(const Skeleton& skeleton, const glm::dvec3& trunk) {
+  glm::dvec3 up(0);
+  for (const BodySide side : {BodySide::Left, BodySide::Right}) {
+    const auto hip = skeleton.place_of(BodyPart::Thigh, side), knee = skeleton.place_of(BodyPart::Shank, side), ankle = skeleton.place_of(BodyPart::Foot, side);
+    if (!hip || !knee || !ankle) return glm::dvec3(0);
+    const bool straight = angle_between(*hip - *knee, *knee - *ankle) < kStraightLeg && angle_between(*hip - *knee, trunk) < kStraightLeg;
+    if (!straight) return glm::dvec3(0);
+    up += unit(*hip - *ankle);
+  }
+  return up;
+}
+
+}  // namespace
+
+std::optional<int> BodyFrames::find(BodyPart part, BodySide side, int index) const {
+  const auto found = bone.find({part, side, index});
+  return found == bone.end() ? std::nullopt : std::optional(found->second);
+}
+
+glm::dmat3 upright_axes(const Armature& armature) {
+  const Skeleton skeleton = skeleton_of(armature);
+  const auto trunk = trunk_line(skeleton);
+  if (!trunk) return glm::dmat3(1);
+  // Trunks of upright bodies lean back on their way up and legs on their way down; the mean of both stands upright.
+  const glm::dvec3 legs = up_of_legs(skeleton, *trunk), up = legs == glm::dvec3(0) ? *trunk : unit(*trunk) + unit(legs);
+  glm::dvec3 across(0);
+  for (const BodyPart part : {BodyPart::Thigh, BodyPart::UpperArm}) {
+    const auto left = skeleton.place_of(part, BodySide::Left), right = skeleton.place_of(part, BodySide::Right);
+    if (left && right) across += *left - *right;
+  }
+  const std::optional<glm::dmat3> axes = axes_of(up, across);
+  if (!axes) return glm::dmat3(1);
+  const glm::dmat3 world = nearest_world_axes(*axes);
+  if (std::abs(glm::determinant(world) - 1) > 0.5) return *axes;
+  const glm::dmat3 between = glm::transpose(world) * *axes;
+  const double angle = std::acos(std::clamp((between[0][0] + between[1][1] + between[2][2] - 1) / 2, -1.0, 1.0));
+  return angle <= kUprightLean ? world : *axes;
+}
+
+BodyFrames body_frames(const Armature& armature) {
+  BodyFrames result;
+  result.body = upright_axes(armature);
+  Measuring measuring(armature, result);
+  for (const BodySide side : {BodySide::Middle, BodySide::Left, BodySide::Right}) measuring.measure_side(side);
+  measuring.fill();
+  return result;
+}
+
+}  // namespace limber

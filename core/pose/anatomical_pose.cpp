@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/pose/anatomical_pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/rig/joint_limits.h"
+
+namespace limber {
+
+namespace {
+
+using enum BodyJoint;
+
+const glm::dquat kNoTurn(1, 0, 0, 0);
+const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);  // the body's left, back and up
+
+glm::dquat about(const glm::dvec3& axis, double angle) { return glm::angleAxis(angle, axis); }
+
+constexpr BodyJoint kJoints[] = {Spine, Neck, Girdle, Shoulder, Elbow, Forearm, Wrist, Hip, Knee, Ankle, Toes, Thumb, Index, Middle, Ring, Little};
+
+bool is_finger(BodyJoint joint) { return joint >= Thumb; }
+
+// Radians of a motion, zero where it is not said.
+double radians_of(const JointMotions& motions, std::size_t motion) { return motions[motion].value_or(0) * std::numbers::pi / 180; }
+
+// A left joint's turn from the anatomical position, in the body's axes.
+glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
+  const double a = radians_of(motions, 0), b = radians_of(motions, 1), c = radians_of(motions, 2);
+  switch (joint) {
+    case Spine: case Neck: return about(kX, a) * about(kY, -b) * about(kZ, c);
+    case Girdle: return about(kZ, -b) * about(kY, -a);
+    case Shoulder: case Hip: return about(kX, -a) * about(kY, -b) * about(kZ, -c);
+    case Elbow: case Toes: return about(kX, -a);
+    case Wrist: case Ankle: return about(kX, -a) * about(kY, b);
+    case Knee: return about(kX, a);
+    default: return kNoTurn;
+  }
+}
+
+// The bones that a joint turns, from the body outwards.
+std::vector<int> bones_of(const BodyFrames& frames, const SidedJoint& joint) {
+  std::vector<int> bones;
+  const auto add = [&](BodyPart part, int index) {
+    if (const auto bone = frames.find(part, joint.side, index)) bones.push_back(*bone);
+  };
+  const BodyPart part = part_of(joint.joint);
+  if (joint.joint == Spine || joint.joint == Neck) {
+    for (int index = 0; frames.find(part, BodySide::Middle, index); ++index) add(part, index);
+    if (joint.joint == Neck) add(BodyPart::Head, 0);
+  } else if (is_finger(joint.joint)) {
+    for (int segment = 1; segment <= 3; ++segment) add(part, segment);
+    // A hand whose fingers are one bone bends it as its middle finger.
+    if (bones.empty() && joint.joint == Middle) add(BodyPart::Fingers, 0);
+  } else {
+    add(part, 0);
+  }
+  return bones;
+}
+
+bool has(const BodyFrames& frames, const SidedJoint& joint) {
+  if (joint.joint == Forearm && frames.find(BodyPart::Hand, joint.side)) return true;
+  return !bones_of(frames, joint).empty();
+}
+
+bool has_on_a_side(const BodyFrames& frames, BodyJoint joint) {
+  return has(frames, {joint, BodySide::Left}) || has(frames, {joint, BodySide::Right});
+}
+
+// The joint on the side that the rig has it on, where none is said.
+SidedJoint sided(const BodyFrames& frames, const SidedJoint& joint, const std::string& where) {
+  if (has(frames, joint)) return joint;
+  const std::string known = joints_of_rig(frames);
+  if (known.empty()) throw Error("no bone of the rig is known by its name", where, "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");
+  if (is_paired(joint.joint) && joint.side == BodySide::Middle) {
+    const SidedJoint left{joint.joint, BodySide::Left}, right{joint.joint, BodySide::Right};
+    if (has(frames, left) && has(frames, right))
+      throw Error("the rig has two of \"" + name_of(joint) + "\"", where, "write left, right or both before it");
+    if (has(frames, left)) return left;
+    if (has(frames, right)) return right;
+  }
+  throw Error("the rig has no " + name_of(joint) + " that is known by the names of its bones", where, "use what it has: " + known);
+}
+
+// Turns of all bones in the world, joint by joint. Bones are asked for in any order.
+class Posing {
+ public:
+  Posing(const Armature& armature, const BodyFrames& frames, const Pose& base, const JointAngles& angles)
+      : armature_(armature), frames_(frames), base_(base), turned_(armature.bones.size()), changed_(armature.bones.size(), false) {
+    for (const RigidTransform& transform : posed_from_rest(armature, base)) base_turned_.push_back(transform.rotation);
+    wanted_.resize(armature.bones.size());
+    for (const auto& [joint, motions] : angles) want(joint, motions);
+    follow_hands();
+  }
+
+  Pose pose() {
+    Pose result = base_;
+    for (std::size_t b = 0; b < armature_.bones.size(); ++b) {
+      const int bone = static_cast<int>(b);
+      turned(bone);
+      if (changed_[b]) result.rotation[b] = glm::normalize(glm::conjugate(turned_parent(bone)) * turned(bone));
+    }
+    return result;
+  }
+
+ private:
+  // What is asked of a bone, by its joints' motions.
+  struct Wanted {
+    std::vector<std::pair<SidedJoint, JointMotions>> joints;
+    double share = 1;        // of a spine's turn
+    std::size_t motion = 0;  // of a finger's
+  };
+
+  void want(const SidedJoint& joint, const JointMotions& motions) {
+    const std::vector<int> bones = bones_of(frames_, joint);
+    for (std::size_t i = 0; i < bones.size(); ++i) {
+      Wanted& wanted = wanted_[static_cast<std::size_t>(bones[i])];
+      wanted.joints.emplace_back(joint, motions);
+      wanted.share = 1.0 / static_cast<double>(bones.size());
+      const auto role = std::find_if(frames_.bone.begin(), frames_.bone.end(), [&](const auto& one) { return one.second == bones[i]; });
+      if (is_finger(joint.joint)) wanted.motion = role->first.part == BodyPart::Fingers ? 0 : static_cast<std::size_t>(role->first.index - 1);
+    }
+    // The hand does the forearm's part of a pronation that the forearm cannot do.
+    const auto hand = joint.joint == Forearm ? frames_.find(BodyPart::Hand, joint.side) : std::nullopt;
+    if (hand) wanted_[static_cast<std::size_t>(*hand)].joints.emplace_back(joint, motions);
+  }
+
+  // Fingers that hang from the forearm go with the hand.
+  void follow_hands() {
+    followed_.assign(armature_.bones.size(), -1);
+    for (const auto& [role, bone] : frames_.bone) {
+      const auto hand = frames_.find(BodyPart::Hand, role.side), forearm = frames_.find(BodyPart::Forearm, role.side);
+      const bool of_hand = role.part == BodyPart::Palm || role.part == BodyPart::Fingers || role.part >= BodyPart::Thumb;
+      if (of_hand && hand && forearm && armature_.bones[static_cast<std::size_t>(bone)].parent == *forearm) followed_[static_cast<std::size_t>(bone)] = *hand;
+    }
+  }
+
+  glm::dquat turned_parent(int bone) {
+    const int parent = armature_.bones[static_cast<std::size_t>(bone)].parent;
+    return parent < 0 ? kNoTurn : turned(parent);
+  }
+
+  const glm::dquat& turned(int bone) {
+    auto& known = turned_[static_cast<std::size_t>(bone)];
+    if (!known) known = find_turned(bone);
+    return *known;
+  }
+
+  glm::dquat find_turned(int bone) {
+    const auto b = static_cast<std::size_t>(bone);
+    const int hand = followed_[b];
+    glm::dquat now = turned_parent(bone) * base_.rotation[b];
+    if (hand >= 0 && (turned(hand), changed_[static_cast<std::size_t>(hand)])) {
+      now = turned(hand) * glm::conjugate(base_turned_[static_cast<std::size_t>(hand)]) * base_turned_[b];
+      changed_[b] = true;
+    }
+    const Wanted& wanted = wanted_[b];
+    if (!wanted.joints.empty()) changed_[b] = true;
+    for (const auto& [joint, motions] : wanted.joints) now = with_joint(bone, now, joint, motions, wanted);
+    return glm::normalize(now);
+  }
+
+  // The bone that a joint's angles count from: the trunk for an arm, else what the bone hangs from.
+  int reference_of(int bone, BodyJoint joint) const {
+    int above = armature_.bones[static_cast<std::size_t>(bone)].parent;
+    if (joint != Shoulder) return above;
+    for (int b = above; b >= 0; b = armature_.bones[static_cast<std::size_t>(b)].parent)
+      for (const auto& [role, named] : frames_.bone)
+        if (named == b && role.part == BodyPart::Clavicle) above = armature_.bones[static_cast<std::size_t>(b)].parent;
+    return above;
+  }
+
+  // How the bone has turned from its place in the anatomical position.
+  glm::dquat from_anatomical(int bone, const glm::dquat& turned) const {
+    return bone < 0 ? kNoTurn : turned * glm::conjugate(frames_.frames[static_cast<std::size_t>(bone)].anatomical_from_rest);
+  }
+
+  bool mirrored(BodySide side) const {
+    const auto found = frames_.is_right.find(side);
+    return found != frames_.is_right.end() && found->second;
+  }
+  glm::dquat in_world(BodySide side, const glm::dquat& q) const {
+    const glm::dquat own = mirrored(side) ? glm::dquat(q.w, q.x, -q.y, -q.z) : q, axes = glm::quat_cast(frames_.body);
+    return axes * own * glm::conjugate(axes);
+  }
+  glm::dquat in_body(BodySide side, const glm::dquat& world) const {
+    const glm::dquat axes = glm::quat_cast(frames_.body), q = glm::conjugate(axes) * world * axes;
+    return mirrored(side) ? glm::dquat(q.w, q.x, -q.y, -q.z) : q;
+  }
+
+  glm::dquat with_joint(int bone, const glm::dquat& now, const SidedJoint& joint, const JointMotions& motions, const Wanted& wanted) {
+    const BoneFrame& frame = frames_.frames[static_cast<std::size_t>(bone)];
+    const bool across = motions[1].value_or(0) != 0 || motions[2].value_or(0) != 0;
+    if (is_finger(joint.joint)) return motions[wanted.motion] && frame.hinge ? hinged(bone, now, radians_of(motions, wanted.motion), *frame.hinge) : now;
+    if (frame.hinge && joint.joint != Forearm && !across) return hinged(bone, now, radians_of(motions, 0), *frame.hinge);
+
+    const int reference = reference_of(bone, joint.joint);
+    const glm::dquat above = reference < 0 ? kNoTurn : from_anatomical(reference, turned(reference));
+    const glm::dquat before = glm::conjugate(above) * from_anatomical(bone, now);
+    glm::dquat turn = turn_of(joint.joint, motions);
+    if (joint.joint == Spine || joint.joint == Neck) turn = exponential(wanted.share * rotation_vector(turn));
+    if (joint.joint == Elbow || joint.joint == Forearm || joint.joint == Wrist) turn = arm_turn(bone, in_body(joint.side, before), joint, motions);
+    const glm::dquat world = frame.joint_axes * in_world(joint.side, turn) * glm::conjugate(frame.joint_axes);
+    return above * world * frame.anatomical_from_rest;
+  }
+
+  // A hinge in place of what the pose has.
+  glm::dquat hinged(int bone, const glm::dquat& now, double flexion, const AnatomicalHinge& hinge) const {
+    return now * glm::conjugate(base_.rotation[static_cast<std::size_t>(bone)]) * about(hinge.axis, flexion - hinge.at_rest);
+  }
+
+  static glm::dvec3 rotation_vector(const glm::dquat& q) {
+    const glm::dvec3 v(q.x, q.y, q.z);
+    const double sine = glm::length(v);
+    return sine > 0 ? v * (2 * std::atan2(sine, q.w) / sine) : glm::dvec3(0);
+  }
+
+  // Forearm and hand have joints of two names: the one that is not named keeps its turn.
+  glm::dquat arm_turn(int bone, const glm::dquat& before, const SidedJoint& joint, const JointMotions& motions) const {
+    const auto found = frames_.pronation.find(joint.side);
+    const BodyFrames::Pronation pronation = found == frames_.pronation.end() ? BodyFrames::Pronation{} : found->second;
+    const bool is_hand = frames_.find(BodyPart::Hand, joint.side) == bone;
+    const double share = is_hand ? 1 - pronation.forearm_share : pronation.forearm_share;
+    if (joint.joint == Forearm && share == 0) return before;
+    // The pronation is about the limb: the first turn of a hand, the last of a forearm.
+    const glm::dmat3 m = glm::mat3_cast(before);
+    const glm::dquat kept = about(kZ, is_hand ? std::atan2(-m[1].x, m[1].y) : std::atan2(-m[1].x, m[0].x));
+    if (joint.joint == Elbow) return turn_of(Elbow, motions) * kept;
+    if (joint.joint == Wrist) return kept * turn_of(Wrist, motions);
+    const glm::dquat pronated = about(kZ, -share * radians_of(motions, 0));
+    return is_hand ? pronated * glm::conjugate(kept) * before : before * glm::conjugate(kept) * pronated;
+  }
+
+  const Armature& armature_;
+  const BodyFrames& frames_;
+  const Pose& base_;
+  std::vector<std::optional<glm::dquat>> turned_;
+  std::vector<char> changed_;
+  std::vector<glm::dquat> base_turned_;
+  std::vector<Wanted> wanted_;
+  std::vector<int> followed_;
+};
+
+}  // namespace
+
+Pose with_joint_angles(const Armature& armature, const BodyFrames& frames, const Pose& pose, const JointAngles& angles) {
+  return angles.empty() ? pose : Posing(armature, frames, pose, angles).pose();
+}
+
+JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, const std::string& where) {
+  // Of what is said for both sides or for a whole hand, the rig need not have all.
+  JointAngles found;
+  for (const auto& [joint, motions] : angles)
+    if (angles.size() == 1 || has(frames, joint) || (joint.side == BodySide::Middle && has_on_a_side(frames, joint.joint))) found[sided(frames, joint, where)] = motions;
+  if (!found.empty() || angles.empty()) return found;
+  // A limb whose names say no side is both sides that there are.
+  for (const auto& [joint, motions] : angles)
+    if (has(frames, {joint.joint, BodySide::Middle})) found[{joint.joint, BodySide::Middle}] = motions;
+  if (found.empty()) sided(frames, angles.begin()->first, where);
+  return found;
+}
+
+JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles) {
+  JointAngles known;
+  for (const auto& [joint, motions] : angles) {
+    if (has(frames, joint)) known[joint] = motions;
+    // A limb whose names say no side is posed as the one that its shape says it is.
+    const bool right = joint.side == BodySide::Right;
+    const SidedJoint sideless{joint.joint, BodySide::Middle};
+    const auto shape = frames.is_right.find(BodySide::Middle);
+    if (is_paired(joint.joint) && joint.side != BodySide::Middle && has(frames, sideless) && shape != frames.is_right.end() && shape->second == right) known[sideless] = motions;
+  }
+  return known;
+}
+
+std::string joints_of_rig(const BodyFrames& frames) {
+  std::string names;
+  for (const BodyJoint joint : kJoints)
+    for (const BodySide side : {BodySide::Left, BodySide::Right, BodySide::Middle}) {
+      if ((side == BodySide::Middle || is_paired(joint)) && has(frames, {joint, side})) names += (names.empty() ? "" : ", ") + name_of({joint, side});
+    }
+  return names;
+}
+
+std::string beyond_limits(const Armature& armature, const Pose& pose) {
+  constexpr double kShown = 0.05;  // degrees
+  constexpr int kNamed = 8;
+  std::string names;
+  int count = 0;
+  for (std::size_t b = 0; b < armature.bones.size(); ++b) {
+    const double beyond = limit_excess(armature.bones[b], pose.rotation[b]) * 180 / std::numbers::pi;
+    if (beyond <= kShown || ++count > kNamed) continue;
+    char degrees[32];
+    std::snprintf(degrees, sizeof degrees, " by %.1f", beyond);
+    names += (names.empty() ? "" : ", ") + armature.bones[b].name + degrees;
+  }
+  if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
+  return names.empty() ? "" : "the pose turns bones beyond the rig's limits, degrees: " + names;
+}
+
+}  // namespace limber

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/pose/finger_frames.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace limber {
+
+namespace {
+
+constexpr BodyPart kFingers[] = {BodyPart::Index, BodyPart::Middle, BodyPart::Ring, BodyPart::Little};
+constexpr double kCurled = 0.26;  // sine of 15 degrees, summed along the finger: what tells the plane of its curl
+constexpr double kAskew = 0.7;    // cosine of 45 degrees: a finger curled further aside is crooked, not curled
+
+glm::dvec3 unit(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 1e-12 ? v / length : glm::dvec3(0);
+}
+
+std::optional<int> bone_of(const Skeleton& skeleton, BodyPart part, BodySide side, int index) {
+  const auto found = skeleton.joint.find({part, side, index});
+  return found == skeleton.joint.end() ? std::nullopt : std::optional(found->second);
+}
+
+// The joint between palm and finger.
+std::optional<glm::dvec3> knuckle(const Skeleton& skeleton, BodyPart finger, BodySide side) {
+  if (const auto place = skeleton.place_of(finger, side, 1)) return place;
+  const auto metacarpal = bone_of(skeleton, finger, side, 0);
+  return metacarpal ? std::optional(skeleton.tip[*metacarpal]) : std::nullopt;
+}
+
+std::optional<glm::dvec3> wrist(const Skeleton& skeleton, BodySide side) {
+  if (const auto hand = skeleton.place_of(BodyPart::Hand, side)) return hand;
+  const auto forearm = bone_of(skeleton, BodyPart::Forearm, side, 0);
+  return forearm ? std::optional(skeleton.tip[*forearm]) : std::nullopt;
+}
+
+// The last segment that a finger has.
+std::optional<int> last_segment(const Skeleton& skeleton, BodyPart finger, BodySide side) {
+  for (int segment = 3; segment >= 1; --segment)
+    if (const auto bone = bone_of(skeleton, finger, side, segment)) return bone;
+  return std::nullopt;
+}
+
+struct Finger {
+  std::vector<int> bones;               // from the knuckle outwards
+  std::vector<glm::dvec3> directions;   // of what comes before the first bone, then of each
+};
+
+Finger finger_of(const Skeleton& skeleton, BodyPart part, BodySide side) {
+  Finger finger;
+  for (int segment = 1; segment <= 3; ++segment)
+    if (const auto bone = bone_of(skeleton, part, side, segment)) finger.bones.push_back(*bone);
+  if (finger.bones.empty()) return finger;
+  const auto metacarpal = bone_of(skeleton, part, side, 0);
+  const auto from = wrist(skeleton, side);
+  const glm::dvec3 first = skeleton.place[finger.bones.front()];
+  glm::dvec3 before = metacarpal ? first - skeleton.place[*metacarpal] : from ? first - *from : glm::dvec3(0);
+  if (glm::length(before) < 1e-9) before = direction_of(skeleton, finger.bones.front());
+  finger.directions.push_back(unit(before));
+  for (const int bone : finger.bones) finger.directions.push_back(unit(direction_of(skeleton, bone)));
+  return finger;
+}
+
+// The axis about which it is curled, as long as the sine of the curl.
+glm::dvec3 curl(const Finger& finger) {
+  glm::dvec3 axis(0);
+  for (std::size_t i = 1; i < finger.directions.size(); ++i) axis += glm::cross(finger.directions[i - 1], finger.directions[i]);
+  return axis;
+}
+
+double bend(const glm::dvec3& before, const glm::dvec3& after, const glm::dvec3& axis) {
+  const glm::dvec3 a = before - glm::dot(before, axis) * axis, b = after - glm::dot(after, axis) * axis;
+  return glm::length(a) < 0.3 || glm::length(b) < 0.3 ? 0 : std::atan2(glm::dot(glm::cross(a, b), axis), glm::dot(a, b));
+}
+
+using Hinges = std::vector<std::pair<int, AnatomicalHinge>>;
+
+void add_hinges(Hinges& hinges, const Armature& armature, const Finger& finger, const glm::dvec3& across) {
+  if (finger.bones.empty()) return;
+  const glm::dvec3 turning = curl(finger), straight = unit(across - finger.directions[1] * glm::dot(across, finger.directions[1]));
+  const bool curled = glm::length(turning) > kCurled && (straight == glm::dvec3(0) || glm::dot(unit(turning), straight) > kAskew);
+  const glm::dvec3 axis = curled ? unit(turning) : straight;
+  if (axis == glm::dvec3(0)) return;
+  for (std::size_t i = 0; i < finger.bones.size(); ++i) {
+    const JointLimits& limits = armature.bones[static_cast<std::size_t>(finger.bones[i])].limits;
+    AnatomicalHinge hinge{axis, 0};
+    if (limits.type == JointLimits::Type::Hinge) hinge.axis = glm::dot(limits.axis, axis) < 0 ? -limits.axis : limits.axis;
+    hinge.at_rest = bend(finger.directions[i], finger.directions[i + 1], hinge.axis);
+    hinges.emplace_back(finger.bones[i], hinge);
+  }
+}
+
+}  // namespace
+
+std::optional<glm::dvec3> along_hand(const Skeleton& skeleton, BodySide side) {
+  const auto from = wrist(skeleton, side);
+  if (!from) return std::nullopt;
+  glm::dvec3 sum(0);
+  int count = 0;
+  for (const BodyPart finger : {BodyPart::Middle, BodyPart::Index, BodyPart::Ring, BodyPart::Little}) {
+    const auto place = knuckle(skeleton, finger, side);
+    if (!place) continue;
+    if (finger == BodyPart::Middle) return *place - *from;
+    sum += *place, ++count;
+  }
+  for (const BodyPart part : {BodyPart::Palm, BodyPart::Fingers})
+    if (const auto place = skeleton.place_of(part, side); place && !count && glm::distance(*place, *from) > 1e-6) return *place - *from;
+  return count ? std::optional(sum / double(count) - *from) : std::nullopt;
+}
+
+std::optional<glm::dvec3> across_palm(const Skeleton& skeleton, BodySide side) {
+  std::vector<glm::dvec3> knuckles;
+  for (const BodyPart finger : kFingers)
+    if (const auto place = knuckle(skeleton, finger, side)) knuckles.push_back(*place);
+  if (knuckles.size() >= 2 && glm::distance(knuckles.front(), knuckles.back()) > 1e-9) return knuckles.back() - knuckles.front();
+  const auto thumb = last_segment(skeleton, BodyPart::Thumb, side);
+  const auto from = wrist(skeleton, side);
+  const auto hand = bone_of(skeleton, BodyPart::Hand, side, 0);
+  if (!thumb || !from) return std::nullopt;
+  const auto along = along_hand(skeleton, side);
+  const glm::dvec3 axis = along ? unit(*along) : hand ? unit(skeleton.tip[*hand] - *from) : glm::dvec3(0);
+  const glm::dvec3 thumb_side = skeleton.tip[*thumb] - *from, aside = thumb_side - axis * glm::dot(thumb_side, axis);
+  return glm::length(aside) > 0.2 * glm::length(thumb_side) ? std::optional(-aside) : std::nullopt;
+}
+
+std::optional<bool> is_right_hand(const Skeleton& skeleton) {
+  const auto across = across_palm(skeleton, BodySide::Middle);
+  if (!across) return std::nullopt;
+  glm::dvec3 turning(0);
+  for (const BodyPart finger : kFingers) turning += curl(finger_of(skeleton, finger, BodySide::Middle));
+  const double along_axis = glm::dot(turning, unit(*across));
+  return std::abs(along_axis) > kCurled ? std::optional(along_axis < 0) : std::nullopt;
+}
+
+Hinges finger_hinges(const Armature& armature, const Skeleton& skeleton, BodySide side, bool right) {
+  Hinges hinges;
+  const glm::dvec3 to_little = unit(across_palm(skeleton, side).value_or(glm::dvec3(0)));
+  // A left hand's fingers bend about the line from index to little finger, a right hand's the other way about.
+  const glm::dvec3 across = right ? -to_little : to_little;
+  for (const BodyPart finger : kFingers) add_hinges(hinges, armature, finger_of(skeleton, finger, side), across);
+  // A thumb bends across the palm.
+  const Finger thumb = finger_of(skeleton, BodyPart::Thumb, side);
+  if (!thumb.bones.empty()) add_hinges(hinges, armature, thumb, unit(glm::cross(thumb.directions[1], to_little)));
+  if (const auto fingers = bone_of(skeleton, BodyPart::Fingers, side, 0)) {
+    const glm::dvec3 along = along_hand(skeleton, side).value_or(skeleton.tip[*fingers] - skeleton.place[*fingers]);
+    add_hinges(hinges, armature, {{*fingers}, {unit(along), unit(direction_of(skeleton, *fingers))}}, across);
+  }
+  return hinges;
+}
+
+}  // namespace limber
