@@ -8,7 +8,7 @@
 
 #include <glm/glm.hpp>
 
-#include "core/pose/pose.h"
+#include "core/pose/pose_library.h"
 #include "editor/rig_check.h"
 #include "editor/seen_from.h"
 
@@ -45,7 +45,11 @@ struct Handling {
     bool moved = false;
   } row_drag;
 
-  std::string library_pose;  // the chosen pose of the library
+  std::string library_pose;  // the chosen pose of the library; a body's own by library_name() of body_pose_cards.h
+  struct {                   // the poses that any body can take, on the rig
+    std::shared_ptr<const Armature> armature;
+    PoseLibrary poses;       // with pictures once they were shown
+  } body_poses;
   struct {                   // the one whose card is pressed, and where that began
     std::string pose;
     float begin = 0;

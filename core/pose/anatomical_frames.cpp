@@ -17,7 +17,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
 
 constexpr double kUprightLean = 10 * kDegree;    // from the world's axes
-constexpr double kStraightLeg = 20 * kDegree;    // of thigh to trunk and shank to thigh: then legs tell the vertical too
+constexpr double kStraightKnee = 20 * kDegree;   // then legs tell the vertical too,
+constexpr double kLegsInLine = 25 * kDegree;     // if both together are so far in line with the trunk
 constexpr double kKneeAside = 5 * kDegree;       // varus and valgus of healthy knees [Hsu 1990]
 constexpr double kElbowAside = 8 * kDegree;      // about half of the carrying angle
 constexpr double kHyperextension = 15 * kDegree;
@@ -245,7 +246,7 @@ void Measuring::arm(BodySide side) {
   auto& pronation = result_.pronation[side];
   pronation.at_rest = pronation_of_hand(side, bent, raised);
   // A hinge cannot turn about the limb; then the hand does all of it.
-  pronation.forearm_share = hinge_of(*forearm) ? 0 : find(BodyPart::Hand, side) ? 0.5 : 1;
+  pronation.forearm_share = hinge_of(*forearm) || *forearm == result_.only_root ? 0 : find(BodyPart::Hand, side) ? 0.5 : 1;
   set(*forearm, bent * about(kZ, -pronation.forearm_share * pronation.at_rest));
   hand(side, bent, pronation.at_rest);
 }
@@ -292,11 +293,11 @@ glm::dvec3 up_of_legs(const Skeleton& skeleton, const glm::dvec3& trunk) {
   for (const BodySide side : {BodySide::Left, BodySide::Right}) {
     const auto hip = skeleton.place_of(BodyPart::Thigh, side), knee = skeleton.place_of(BodyPart::Shank, side), ankle = skeleton.place_of(BodyPart::Foot, side);
     if (!hip || !knee || !ankle) return glm::dvec3(0);
-    const bool straight = angle_between(*hip - *knee, *knee - *ankle) < kStraightLeg && angle_between(*hip - *knee, trunk) < kStraightLeg;
-    if (!straight) return glm::dvec3(0);
+    if (angle_between(*hip - *knee, *knee - *ankle) > kStraightKnee) return glm::dvec3(0);
     up += unit(*hip - *ankle);
   }
-  return up;
+  // Legs apart lean to both sides alike.
+  return angle_between(up, trunk) < kLegsInLine ? up : glm::dvec3(0);
 }
 
 }  // namespace
@@ -329,6 +330,9 @@ glm::dmat3 upright_axes(const Armature& armature) {
 BodyFrames body_frames(const Armature& armature) {
   BodyFrames result;
   result.body = upright_axes(armature);
+  const auto is_root = [](const Bone& bone) { return bone.parent < 0; };
+  const auto root = std::find_if(armature.bones.begin(), armature.bones.end(), is_root);
+  if (std::count_if(armature.bones.begin(), armature.bones.end(), is_root) == 1) result.only_root = static_cast<int>(root - armature.bones.begin());
   Measuring measuring(armature, result);
   for (const BodySide side : {BodySide::Middle, BodySide::Left, BodySide::Right}) measuring.measure_side(side);
   measuring.fill();

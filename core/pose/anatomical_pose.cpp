@@ -45,7 +45,7 @@ glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
 std::vector<int> bones_of(const BodyFrames& frames, const SidedJoint& joint) {
   std::vector<int> bones;
   const auto add = [&](BodyPart part, int index) {
-    if (const auto bone = frames.find(part, joint.side, index)) bones.push_back(*bone);
+    if (const auto bone = frames.find(part, joint.side, index); bone && *bone != frames.only_root) bones.push_back(*bone);
   };
   const BodyPart part = part_of(joint.joint);
   if (joint.joint == Spine || joint.joint == Neck) {
@@ -61,8 +61,14 @@ std::vector<int> bones_of(const BodyFrames& frames, const SidedJoint& joint) {
   return bones;
 }
 
+// The hand that does its part of a pronation.
+std::optional<int> hand_of_forearm(const BodyFrames& frames, BodySide side) {
+  const auto hand = frames.find(BodyPart::Hand, side);
+  return hand && *hand != frames.only_root ? hand : std::nullopt;
+}
+
 bool has(const BodyFrames& frames, const SidedJoint& joint) {
-  if (joint.joint == Forearm && frames.find(BodyPart::Hand, joint.side)) return true;
+  if (joint.joint == Forearm && hand_of_forearm(frames, joint.side)) return true;
   return !bones_of(frames, joint).empty();
 }
 
@@ -82,7 +88,7 @@ SidedJoint sided(const BodyFrames& frames, const SidedJoint& joint, const std::s
     if (has(frames, left)) return left;
     if (has(frames, right)) return right;
   }
-  throw Error("the rig has no " + name_of(joint) + " that is known by the names of its bones", where, "use what it has: " + known);
+  throw Error("the rig has no " + name_of(joint) + " between bones that are known by their names", where, "use what it has: " + known);
 }
 
 // Turns of all bones in the world, joint by joint. Bones are asked for in any order.
@@ -124,7 +130,7 @@ class Posing {
       if (is_finger(joint.joint)) wanted.motion = role->first.part == BodyPart::Fingers ? 0 : static_cast<std::size_t>(role->first.index - 1);
     }
     // The hand does the forearm's part of a pronation that the forearm cannot do.
-    const auto hand = joint.joint == Forearm ? frames_.find(BodyPart::Hand, joint.side) : std::nullopt;
+    const auto hand = joint.joint == Forearm ? hand_of_forearm(frames_, joint.side) : std::nullopt;
     if (hand) wanted_[static_cast<std::size_t>(*hand)].joints.emplace_back(joint, motions);
   }
 
@@ -274,6 +280,15 @@ JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles) {
     if (is_paired(joint.joint) && joint.side != BodySide::Middle && has(frames, sideless) && shape != frames.is_right.end() && shape->second == right) known[sideless] = motions;
   }
   return known;
+}
+
+std::vector<int> bones_of_joints(const BodyFrames& frames, const JointAngles& angles) {
+  std::vector<int> all;
+  for (const auto& [joint, motions] : angles) {
+    const std::vector<int> bones = bones_of(frames, joint);
+    all.insert(all.end(), bones.begin(), bones.end());
+  }
+  return all;
 }
 
 std::string joints_of_rig(const BodyFrames& frames) {

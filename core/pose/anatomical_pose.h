@@ -28,6 +28,9 @@ JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, cons
 // The joints of `angles` that the rig has, with their sides: what a pose for any body is on this one.
 JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles);
 
+// The bones that the joints of `angles` turn.
+std::vector<int> bones_of_joints(const BodyFrames& frames, const JointAngles& angles);
+
 // The names of the joints that a rig has: "left hip, right hip, neck"; empty where no bone is recognised.
 std::string joints_of_rig(const BodyFrames& frames);
 

@@ -18,7 +18,7 @@ constexpr BodyPose kPoses[] = {
      "right hip flexion=25; right knee flexion=5; left hip extension=12; left knee flexion=15; left ankle dorsiflexion=8; left toes extension=15;"
      "left shoulder flexion=25; left elbow flexion=30; right shoulder extension=20; right elbow flexion=15; shoulders abduction=8; forearms pronation=90"},
     {"phone", "Standing with a telephone: the right hand is at the ear.",
-     "right shoulder flexion=45; right shoulder abduction=30; right shoulder internal rotation=20; right elbow flexion=140; right forearm pronation=60;"
+     "right shoulder flexion=85; right shoulder internal rotation=20; right elbow flexion=145; right forearm pronation=108;"
      "left shoulder abduction=8; left elbow flexion=5; left forearm pronation=90"},
     {"arms-up", "Standing with both arms raised beside the head.", "shoulders abduction=165; elbows flexion=10; forearms pronation=20"},
     {"squat", "Squatting deeply, arms forward for balance.",
@@ -77,7 +77,7 @@ Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest&
   if (!request.name.empty()) {
     const std::string where = "--pose-name " + request.name.substr(0, 60);
     angles = known_to_rig(frames, angles_of(require_body_pose(request.name, "--pose-name")));
-    if (angles.empty()) throw Error("no limb of the rig is known by the names of its bones", where, "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");
+    if (angles.empty()) throw Error("the rig has no limb's joint between bones that are known by their names", where, "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");
   }
   for (const std::string& one : request.joints) {
     JointAngles asked;
@@ -92,6 +92,24 @@ Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest&
   const Pose posed = with_joint_angles(armature, frames, pose, angles);
   if (const std::string beyond = beyond_limits(armature, posed); !beyond.empty()) warnings.push_back(beyond);
   return posed;
+}
+
+PoseLibrary body_pose_library(const Armature& armature) {
+  const BodyFrames frames = body_frames(armature);
+  const Pose rest = rest_pose(armature);
+  PoseLibrary library;
+  for (const BodyPose& named : kPoses) {
+    const JointAngles angles = known_to_rig(frames, angles_of(named));
+    if (angles.empty()) continue;
+    const Pose pose = with_joint_angles(armature, frames, rest, angles);
+    std::vector<int> bones = bones_of_joints(frames, angles);
+    for (std::size_t b = 0; b < armature.bones.size(); ++b)
+      if (pose.rotation[b] != rest.rotation[b]) bones.push_back(static_cast<int>(b));
+    NamedPose entry = named_pose({}, std::string(named.name), armature, pose, bones);
+    entry.root_translation.reset();
+    library.push_back(std::make_shared<const NamedPose>(std::move(entry)));
+  }
+  return library;
 }
 
 }  // namespace limber

@@ -9,6 +9,7 @@
 
 #include "core/pose/joint_angles.h"
 #include "core/pose/pose.h"
+#include "core/pose/pose_library.h"
 
 namespace limber {
 
@@ -39,5 +40,9 @@ struct PoseRequest {
 // asked angle that adults do not reach, and one that lists bones beyond the rig's own limits.
 // throws Error for a name or a joint that is not known or that the rig lacks
 Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest& request, std::vector<std::string>& warnings);
+
+// The named poses that this rig can take, as entries of a library (pose_library.h): with all bones of the joints that they set, and
+// without pictures. None where no limb's joint is known.
+PoseLibrary body_pose_library(const Armature& armature);
 
 }  // namespace limber

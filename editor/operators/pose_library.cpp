@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "editor/body_pose_cards.h"
 #include "editor/form.h"
 #include "editor/handling.h"
 #include "editor/icons.h"
@@ -22,6 +23,11 @@ std::string needs_rig(const Editor& editor) { return editor.document().armature 
 std::string needs_chosen(const Editor& editor) {
   if (const std::string why = needs_rig(editor); !why.empty()) return why;
   return chosen_pose(editor) ? "" : editor.document().poses.empty() ? "Add a pose to the library first" : "Choose a pose of the library first";
+}
+// What is renamed or deleted is the user's own.
+std::string needs_own(const Editor& editor) {
+  if (const std::string why = needs_chosen(editor); !why.empty()) return why;
+  return is_body_pose(editor.handling->library_pose) ? "This pose comes with the program" : "";
 }
 
 std::size_t place_of(const PoseLibrary& library, const std::string& name) {
@@ -90,6 +96,11 @@ void delete_pose(Editor& editor) {
 }  // namespace
 
 const NamedPose* chosen_pose(const Editor& editor) {
+  if (is_body_pose(editor.handling->library_pose)) {
+    const PoseLibrary& cards = body_pose_cards(editor);
+    const auto found = std::find_if(cards.begin(), cards.end(), [&](const auto& pose) { return library_name(*pose) == editor.handling->library_pose; });
+    return found == cards.end() ? nullptr : found->get();
+  }
   const PoseLibrary& library = editor.document().poses;
   const std::size_t place = place_of(library, editor.handling->library_pose);
   return place < library.size() ? library[place].get() : nullptr;
@@ -121,8 +132,8 @@ std::vector<Operator> pose_library_operators() {
        },
        needs_chosen},
       {"pose.library_blend", "Blend to pose of library", "", "Pose", "The chosen bones go a part of the way: with the pointer, or by per cent.", blend_to_chosen, needs_chosen},
-      {"pose.library_rename", "Rename pose...", icon::kRename, "Pose", "Gives the chosen pose of the library another name.", ask_pose_name, needs_chosen},
-      {"pose.library_delete", "Delete pose", icon::kTrash, "Pose", "Takes the chosen pose out of the library.", delete_pose, needs_chosen},
+      {"pose.library_rename", "Rename pose...", icon::kRename, "Pose", "Gives the chosen pose of the library another name.", ask_pose_name, needs_own},
+      {"pose.library_delete", "Delete pose", icon::kTrash, "Pose", "Takes the chosen pose out of the library.", delete_pose, needs_own},
   };
 }
 

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/pose_library.h"
 
+#include "core/pose/body_poses.h"
 #include "core/project/project_io.h"
+#include "editor/body_picture.h"
+#include "editor/body_pose_cards.h"
+#include "editor/handling.h"
 #include "editor/posing.h"
 #include "tests/editor/operator_proofs.h"
+#include "tests/support/body_rig.h"
 
 namespace limber::test {
 
@@ -47,6 +52,63 @@ TEST_CASE("pose library: a card applies its pose by a click and a part of it by 
   s.editor().selection.bones = {0};
   s.play("click \"Pose library/Pose\"\n wait-idle");
   CHECK(bend_of_fore(pose_of(s.document())) < 1e-9);
+}
+
+TEST_CASE("pose library: a rig whose bones are known has the poses of any body, with pictures; a click seats it, and they are nobody's to delete") {
+  Stage s;
+  CHECK(body_pose_cards(s.editor()).empty());
+  Document next = s.document();
+  next.armature = std::make_shared<const Armature>(body_rig());
+  next.weights.reset();
+  next.pose.reset();
+  commit(s.editor(), "Import rig", std::move(next));
+  s.editor().selection.bones.clear();
+  s.editor().open_sections["Pose library"] = true;
+  s.play("key Ctrl+3\n wait-idle");
+  const PoseLibrary& cards = body_pose_cards(s.editor());
+  REQUIRE(cards.size() == body_poses().size());
+  for (const auto& card : cards) CHECK(card->picture.size() > 500);
+  CHECK(cards[0]->picture != cards[1]->picture);
+  CHECK(s.document().poses.empty());
+
+  const auto edits = s.editor().history.position();
+  s.play("click \"Pose library/Body pose sit\"\n wait-idle");
+  CHECK(s.editor().history.position() == edits + 1);
+  std::vector<std::string> warnings;
+  const Armature& rig = *s.document().armature;
+  CHECK(pose_of(s.document()) == with_request(rig, rest_pose(rig), {"sit", {}}, warnings));
+  CHECK(find_operator(s.editor(), "pose.library_delete")->why_not(s.editor()) == "This pose comes with the program");
+  CHECK(find_operator(s.editor(), "pose.library_apply")->why_not(s.editor()).empty());
+
+  // A pose of the user's of the same name is another one.
+  run(s.editor(), "pose.library_add");
+  Document named = s.document();
+  NamedPose own = *named.poses[0];
+  own.name = "sit";
+  own.rotation.clear();
+  named.poses[0] = std::make_shared<const NamedPose>(own);
+  commit(s.editor(), "Rename", std::move(named));
+  s.editor().handling->library_pose = "sit";
+  CHECK(chosen_pose(s.editor())->rotation.empty());
+}
+
+TEST_CASE("pose library: the picture of a pose shows the body where it is, and nothing around it") {
+  const Armature rig = body_rig();
+  std::vector<std::string> warnings;
+  const glm::ivec2 size(120, 80);
+  const auto columns = [&](const std::string& pose) {
+    const render::Image image = body_picture(rig, with_request(rig, rest_pose(rig), {pose, {}}, warnings), size);
+    int columns = 0;
+    for (int x = 0; x < size.x; ++x) {
+      bool covered = false;
+      for (int y = 0; y < size.y; ++y) covered = covered || image.rgba[4 * static_cast<std::size_t>(y * size.x + x) + 3] > 0;
+      columns += covered;
+    }
+    return columns;
+  };
+  CHECK(columns("stand") > 8);
+  CHECK(columns("stand") < 40);
+  CHECK(columns("T") > 2 * columns("stand"));
 }
 
 TEST_CASE("pose library: it goes into the project with its pictures and comes back the same") {
