@@ -72,15 +72,21 @@ void take_over(const RestWords& words, RetargetMap& map) {
   if (!words.rig.empty()) map.stances.rig = stance_of_word(words.rig, "--rig-rest");
 }
 
+CLI::Option* add_body_pose_options(CLI::App& command, PoseRequest& request, CLI::Option* pose) {
+  std::string names;
+  for (const BodyPose& one : body_poses()) names += (names.empty() ? "" : ", ") + std::string(one.name);
+  auto* name = command.add_option("--pose-name", request.name, "pose of any body, by its joints: " + names)
+                   ->type_name("NAME")->excludes(pose)->group(pose->get_group());
+  command.add_option("--joint", request.joints, "angle of a joint from the anatomical position, over the pose (repeatable): "
+                                                "\"left hip flexion=90\", \"knees flexion=60\"")
+      ->type_name("\"JOINT MOTION=DEG\"")->expected(1)->take_all()->group(pose->get_group());
+  return name;
+}
+
 void add_pose_options(CLI::App& command, PoseOptions& options) {
   const std::string group = "Pose";
   auto* pose = command.add_option("--pose", options.pose, "pose file (JSON)")->type_name("P.json")->group(group);
-  std::string names;
-  for (const BodyPose& one : body_poses()) names += (names.empty() ? "" : ", ") + std::string(one.name);
-  auto* name = command.add_option("--pose-name", options.body.name, "pose of any body, by its joints: " + names)->type_name("NAME")->excludes(pose)->group(group);
-  command.add_option("--joint", options.body.joints,
-                     "angle of a joint from the anatomical position, over the pose (repeatable): \"left hip flexion=90\", \"knees flexion=60\"")
-      ->type_name("\"JOINT MOTION=DEG\"")->expected(1)->take_all()->group(group);
+  auto* name = add_body_pose_options(command, options.body, pose);
   command.add_option("--flex", options.flex, "turn a bone about its hinge by degrees, positive bends further (repeatable)")
       ->type_name("BONE=DEG")->expected(1)->take_all()->group(group);
   auto* motion = command.add_option("--motion", options.motion, "motion capture (BVH) to take the pose from")

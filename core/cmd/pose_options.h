@@ -42,6 +42,9 @@ void add_up_option(CLI::App& command, std::string& up, CLI::Option* motion);
 // The motion with y up. Its warnings go to stderr, with one where it is read with y up but clearly stands along z.
 Motion read_motion(const std::string& file, const std::string& up);
 
+// --pose-name and --joint, beside the option of a pose's file; returns the first.
+CLI::Option* add_body_pose_options(CLI::App& command, PoseRequest& request, CLI::Option* pose);
+
 // True when any of them was given; --frame alone is not.
 bool wants_pose(const PoseOptions& options);
 

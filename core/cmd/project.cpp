@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber project NAME.limber [inspect] [--json]           what is in it
-// limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P] [--motion F.bvh [--up y|z|auto]]
+// limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P | --pose-name NAME] [--joint "J M=DEG"] [--motion F.bvh [--up y|z|auto]]
 // limber project NAME.limber verify                        checks every byte; exit code 1 when something is wrong
 // limber project NAME.limber recover -o OUT.limber         with the edits that a crash left; of a damaged one, what is whole
 // limber project NAME.limber export PART -o OUT            volume, tissues, rig, weights, pose, motion, gltf, or a result by its name
@@ -26,6 +26,7 @@ namespace {
 struct Options {
   std::string file, action = "inspect", part;
   std::string tissues, rig, weights, pose, motion, output, progress, up = "y";
+  PoseRequest body;  // of the pose
   bool json = false, replace = false;
 };
 
@@ -59,14 +60,17 @@ Document read_parts(const Options& options, Progress& progress) {
   Document document;
   require(options.part.empty() ? options.tissues.empty() && options.weights.empty() : true, "tissues and weights belong to a volume",
           options.file, "name it behind create");
-  require(options.rig.empty() ? options.weights.empty() && options.pose.empty() : true, "weights and poses belong to a rig", options.file,
+  require(options.rig.empty() ? options.weights.empty() && options.pose.empty() && options.body.empty() : true, "weights and poses belong to a rig", options.file,
           "name it with --rig");
   if (!options.part.empty()) read_body_parts(options, document, progress);
   if (!options.rig.empty()) {
     ArmatureFile rig = read_armature_file(options.rig);
     warn(rig.warnings);
     document.armature = shared(std::move(rig.armature));
-    document.pose = shared(options.pose.empty() ? rest_pose(*document.armature) : read_pose(options.pose, *document.armature));
+    const Pose pose = options.pose.empty() ? rest_pose(*document.armature) : read_pose(options.pose, *document.armature);
+    std::vector<std::string> warnings;
+    document.pose = shared(with_request(*document.armature, pose, options.body, warnings));
+    warn(warnings);
   }
   if (!options.weights.empty()) {
     WeightsFile weights = read_weights(options.weights, *document.volume, TissueVoxels(*document.volume), *document.armature);
@@ -185,7 +189,7 @@ void add_project(CLI::App& app) {
   command->add_option("--tissues", options->tissues, "of create: tissue table");
   command->add_option("--rig", options->rig, "of create: rig");
   command->add_option("--weights", options->weights, "of create: W.nrrd, or a folder with Bender's weights");
-  command->add_option("--pose", options->pose, "of create: pose (default: at rest)");
+  add_body_pose_options(*command, options->body, command->add_option("--pose", options->pose, "of create: pose (default: at rest)"));
   add_up_option(*command, options->up, command->add_option("--motion", options->motion, "of create: BVH"));
   command->add_option("-o,--output", options->output, "of recover and export: the file to write");
   command->add_flag("--replace", options->replace, "of create and recover: write over a file of that name");

@@ -26,6 +26,7 @@ constexpr double kToeOut[] = {-5 * kDegree, 25 * kDegree};       // of a foot ag
 constexpr double kPronation[] = {-10 * kDegree, 175 * kDegree};  // of a palm against its elbow
 constexpr double kSoleSlope = 23 * kDegree;      // of the ankle above the toes' base or tips, sole on the ground
 constexpr double kToeSlope = 8 * kDegree;        // of the toes' base above their tips
+constexpr double kBackwards = 110 * kDegree;     // of a foot's heading: no leg is turned so far
 constexpr double kSteepFoot = 75 * kDegree;      // no heading is told by a foot that points so far down
 constexpr double kRaisedArm = 22.5 * kDegree;    // arms raised further rest with thumbs forward, others with palms forward
 
@@ -62,6 +63,7 @@ struct LimbView {
 
 // From hanging to a direction by the shortest way; to straight up by the side.
 glm::dquat swing_from_hanging(const glm::dvec3& direction) {
+  if (direction == glm::dvec3(0)) return kNoTurn;
   if (direction.z > 1 - 1e-9) return about(kY, kPi);
   return shortest_turn(-kZ, direction);
 }
@@ -71,7 +73,7 @@ glm::dquat swing_from_hanging(const glm::dvec3& direction) {
 //   wanted  the turn without that
 double turn_about_itself(const glm::dvec3& below, double bend_heading, double aside, double wanted) {
   const double across = std::hypot(below.x, below.y), bend = std::atan2(across, -below.z);
-  if (across <= std::sin(aside) && below.z < 0) return wanted;
+  if (across <= std::sin(aside) && below.z <= 0) return wanted;
   const double plane = std::atan2(below.y, below.x) - bend_heading;
   const double room = std::asin(std::min(1.0, std::sin(aside) / std::max(across, 1e-12)));
   const double from_plane = std::remainder(wanted - plane, 2 * kPi);
@@ -148,7 +150,7 @@ class Measuring {
 
   // The frame of a lower limb, by the bend of its joint. `sign`: of the turn about x that flexes.
   glm::dquat bent_frame(int bone, const glm::dquat& above, double sign) {
-    const glm::dvec3 below = glm::conjugate(above) * direction(bone);
+    const glm::dvec3 below = direction(bone) == glm::dvec3(0) ? -kZ : glm::conjugate(above) * direction(bone);
     if (!hinge_of(bone)) {
       const glm::dquat bend = about(kX, std::atan2(below.y, -below.z));
       return above * bend * about(kY, -std::asin(std::clamp(below.x, -1.0, 1.0)));
@@ -178,7 +180,7 @@ double excess(double angle, const double (&range)[2]) { return angle - std::clam
 
 double heading_of(const glm::dvec3& foot) {
   const double level = std::hypot(foot.x, foot.y);
-  return std::atan2(-foot.z, level) > kSteepFoot ? (kToeOut[0] + kToeOut[1]) / 2 : std::atan2(foot.x, -foot.y);
+  return level == 0 || std::atan2(-foot.z, level) > kSteepFoot ? (kToeOut[0] + kToeOut[1]) / 2 : std::atan2(foot.x, -foot.y);
 }
 
 void Measuring::leg(BodySide side) {
@@ -187,8 +189,9 @@ void Measuring::leg(BodySide side) {
   double turn = 0;
   if (thigh && shank) {
     if (foot_bone) {
-      const glm::dquat straight = bent_frame(*shank, swung, 1);
-      turn = excess(heading_of(glm::conjugate(straight) * direction(*foot_bone)), kToeOut);
+      const double heading = heading_of(glm::conjugate(bent_frame(*shank, swung, 1)) * direction(*foot_bone));
+      if (std::abs(heading) < kBackwards) turn = excess(heading, kToeOut);
+      else result_.feet_point_back = true;
     }
     const auto hinge = turn_of_hinge(*shank, swung, 1);
     turn = hinge ? *hinge : turn_about_itself(glm::conjugate(swung) * direction(*shank), kPi / 2, kKneeAside, turn);
@@ -200,7 +203,8 @@ void Measuring::leg(BodySide side) {
   set(*shank, shank_frame);
   if (!foot_bone) return;
   const glm::dvec3 seen = glm::conjugate(shank_frame) * direction(*foot_bone);
-  foot(*foot_bone, shank_frame, heading_of(seen), seen);
+  // A foot that runs to the heel, or of a side that is called by the other's name, keeps its place under the shank.
+  if (std::abs(heading_of(seen)) < kBackwards) foot(*foot_bone, shank_frame, heading_of(seen), seen);
 }
 
 // Its pitch is told by the toes where there are any: their slope on the ground is known, and the foot keeps its shape.
@@ -270,7 +274,8 @@ void Measuring::hand(BodySide side, const glm::dquat& forearm, double pronation)
     const glm::dvec3 seen = along ? unit(view_.seen(*along)) : direction(*bone);
     const auto frame = across ? axes_of(-seen, -view_.seen(*across)) : std::nullopt;
     const glm::dquat turned = forearm * about(kZ, -pronation);
-    set(*bone, frame ? glm::normalize(glm::quat_cast(*frame)) : shortest_turn(turned * -kZ, seen) * turned);
+    const glm::dquat swung = seen == glm::dvec3(0) ? turned : shortest_turn(turned * -kZ, seen) * turned;
+    set(*bone, frame ? glm::normalize(glm::quat_cast(*frame)) : swung);
   }
   for (const auto& [finger, hinge] : finger_hinges(armature_, skeleton_, side, view_.right)) result_.frames[finger].hinge = hinge;
 }

@@ -40,6 +40,7 @@ struct BodyFrames {
   glm::dmat3 body{1};  // columns: the body's left, back and up in the world
   std::map<JointRole, int> bone;
   std::vector<BoneFrame> frames;  // #bones
+  bool feet_point_back = false;   // so that left and right may be exchanged
   int only_root = -1;             // the bone that carries all others, where it is one: its joint would turn the whole rig
   // By side, as in BodySide: the angle from palms forward at rest, and the part of it that the forearm's bone takes.
   struct Pronation {

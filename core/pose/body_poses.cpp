@@ -73,6 +73,8 @@ JointAngles angles_of(const BodyPose& pose) {
 Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest& request, std::vector<std::string>& warnings) {
   if (request.empty()) return pose;
   const BodyFrames frames = body_frames(armature);
+  if (frames.feet_point_back)
+    warnings.emplace_back("the rig's feet point to its back: if left and right are exchanged in its bones' names, the pose is wrong: exchange them, or mirror volume and rig");
   JointAngles angles;
   if (!request.name.empty()) {
     const std::string where = "--pose-name " + request.name.substr(0, 60);

@@ -234,6 +234,8 @@ class Runner {
     add_body_words(job, folder);
     job["weights"] = (folder / "weights.nrrd").string();
     if (!pose.flex.empty()) job["flex"] = pose.flex;
+    if (!pose.body.name.empty()) job["pose_name"] = pose.body.name;
+    if (!pose.body.joints.empty()) job["joints"] = pose.body.joints;
     if (!pose_file.path.empty()) job["pose"] = pose_file.path.string();
     if (!motion.path.empty()) job["motion"] = motion.path.string();
     if (!map.path.empty()) job["map"] = map.path.string();
@@ -261,7 +263,7 @@ class Runner {
     const Json json = Json::parse(read_file(folder / "cell.json"), nullptr, false);
     return json.is_object() && json.value("key", "") == key && fs::exists(folder / "report.json") && fs::exists(folder / "posed.nrrd");
   }
-  static bool is_rest(const StudyPose& pose) { return pose.flex.empty() && pose.pose.empty() && pose.motion.empty(); }
+  static bool is_rest(const StudyPose& pose) { return pose.flex.empty() && pose.body.empty() && pose.pose.empty() && pose.motion.empty(); }
   // At rest every technique takes as long as a blend.
   int kind_of(const StudyCell& cell) const { return is_rest(study_.poses[cell.pose]) ? 0 : static_cast<int>(study_.techniques[cell.technique]); }
   static double wall_seconds_of(const Path& folder) {

@@ -83,22 +83,39 @@ class Reader {
     return value;
   }
 
+  // One text or a list of them; none where the key is absent.
+  std::vector<std::string> texts(const Json& value, const char* key, const std::string& where) const {
+    if (!value.contains(key)) return {};
+    if (value[key].is_string()) return {text(value[key], key)};
+    std::vector<std::string> all;
+    for (const Json& one : list(value[key], where + ", " + key)) all.push_back(text(one, key));
+    return all;
+  }
+
+  // Words that mean nothing are refused here, before hours of work; what the rig lacks is refused by its cell.
+  PoseRequest body_request(const Json& value, const std::string& where) const {
+    PoseRequest request{text(value, "pose_name", ""), texts(value, "joints", where)};
+    if (!request.name.empty()) require_body_pose(request.name, path_.string() + ", " + where + ", pose_name");
+    JointAngles angles;
+    for (const std::string& joint : request.joints) add_joint_request(angles, joint, path_.string() + ", " + where + ", joints");
+    return request;
+  }
+
   StudyPose pose(const Json& value, size_t number) const {
     const std::string where = "poses, number " + std::to_string(number + 1);
     if (!value.is_object()) refuse("a pose is an object", where, R"(write {"name": "+45", "flex": ["Forearm=45"]})");
-    check_keys(value, where, {"name", "flex", "pose", "motion", "map", "frame", "up"});
+    check_keys(value, where, {"name", "flex", "pose_name", "joints", "pose", "motion", "map", "frame", "up"});
     if (!value.contains("name")) refuse("a pose needs a name", where, R"(write {"name": "+45", "flex": ["Forearm=45"]})");
     StudyPose pose{.name = text(value["name"], "name")};
     if (pose.name.size() > kLongestName) refuse("the name is too long", where + ", name", "write " + std::to_string(kLongestName) + " letters at most");
-    if (value.contains("flex")) {
-      if (value["flex"].is_string()) pose.flex = {text(value["flex"], "flex")};
-      else for (const Json& one : list(value["flex"], where + ", flex")) pose.flex.push_back(text(one, "flex"));
-    }
+    pose.flex = texts(value, "flex", where);
+    pose.body = body_request(value, where);
     pose.pose = file(value, "pose");
     pose.motion = file(value, "motion");
     pose.map = file(value, "map");
     pose.up = text(value, "up", "", {"y", "z", "auto"});
     if (value.contains("frame")) pose.frame = static_cast<int>(number_of_frame(value["frame"], where));
+    if (!pose.body.name.empty() && !(pose.pose.empty() && pose.motion.empty())) refuse("a pose comes by its name or from a file", where, "leave \"pose_name\" or the file out");
     if (!pose.pose.empty() && !pose.motion.empty()) refuse("a pose comes from a file or from a motion", where, "leave \"pose\" or \"motion\" out");
     if (pose.motion.empty() && (pose.frame || !pose.map.empty() || !pose.up.empty())) refuse("frame, map and up are of a motion", where, "add \"motion\": FILE");
     return pose;
@@ -265,6 +282,8 @@ std::string to_json(const Study& study) {
   for (const StudyPose& pose : study.poses) {
     Json row{{"name", pose.name}};
     if (!pose.flex.empty()) row["flex"] = pose.flex;
+    if (!pose.body.name.empty()) row["pose_name"] = pose.body.name;
+    if (!pose.body.joints.empty()) row["joints"] = pose.body.joints;
     for (const auto& [key, file] : {std::pair{"pose", &pose.pose}, {"motion", &pose.motion}, {"map", &pose.map}})
       if (!file->empty()) row[key] = file->filename().string();
     if (pose.frame) row["frame"] = *pose.frame;

@@ -3,7 +3,8 @@
 // `limber resample`. Described in JSON; paths are relative to the description:
 //   {"name"?: "Elbow", "volume": "arm.nrrd" | "phantom": "arm"|"body", "rig"?: "rig.json", "tissues"?: "t.json", "bones"?: [111, 209],
 //    "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4], "methods"?: ["lbs", "dqs", "fem", "fem-contact", "fem-mass-exact"...],
-//    "poses": [{"name": "+45", "flex": ["Forearm=45"]}, {"name": "curl", "motion": "curl.bvh", "frame": 12, "map"?, "up"?}, {"name": "mine", "pose": "p.json"}],
+//    "poses": [{"name": "+45", "flex": ["Forearm=45"]}, {"name": "curl", "motion": "curl.bvh", "frame": 12, "map"?, "up"?}, {"name": "mine", "pose": "p.json"},
+//              {"name": "seated", "pose_name": "sit", "joints": ["left elbow flexion=30"]}],
 //    "quality"?: "draft"|"normal"|"fine", "fit_joints"?: true, "nearest"?: true, "gates"?: {"tissue_percent": 1, ...}}
 // Without spacings the volume is taken as it is, without methods the four plain ones are; a phantom brings its own rig and tissues.
 #pragma once
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "core/pose/body_poses.h"
 #include "core/report/quality_gates.h"
 
 namespace limber {
@@ -32,6 +34,7 @@ std::vector<Technique> techniques_of(const std::vector<std::string>& words, cons
 struct StudyPose {
   std::string name;
   std::vector<std::string> flex;  // BONE=DEG; neither this nor a file: rest
+  PoseRequest body;               // "pose_name" and "joints"
   Path pose, motion, map;         // files, or empty
   std::optional<int> frame;
   std::string up;

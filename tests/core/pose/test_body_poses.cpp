@@ -293,6 +293,23 @@ TEST_CASE("body poses: hinges turn about their own axes only, and what goes beyo
   CHECK(warnings[0].find("LeftShank by 12") != std::string::npos);
 }
 
+TEST_CASE("body poses: bones without length, a limb without joints below and exchanged sides give a pose of finite turns") {
+  Armature rig = body_rig();
+  for (Bone& bone : rig.bones)
+    if (bone.name == "LeftHand" || bone.name == "LeftToes" || bone.name == "RightFoot" || bone.name == "RightShank") bone.tail = bone.head;
+  rig.bones[static_cast<std::size_t>(require_bone(rig, "RightFoot"))].head = rig.bones[static_cast<std::size_t>(require_bone(rig, "RightShank"))].head;
+  std::vector<std::string> warnings;
+  for (const BodyPose& named : body_poses())
+    for (const glm::dquat& q : with_request(rig, rest_pose(rig), {std::string(named.name), {}}, warnings).rotation) CHECK(glm::length(q) == doctest::Approx(1));
+  CHECK(warnings.empty());
+
+  Armature exchanged = body_rig();
+  for (Bone& bone : exchanged.bones) bone.head.x *= -1, bone.tail.x *= -1;
+  with_request(exchanged, rest_pose(exchanged), {"sit", {}}, warnings);
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0].find("exchanged") != std::string::npos);
+}
+
 TEST_CASE("body poses: real rigs of CT bodies, modellers and scanners take the poses to a hundredth of a degree") {
   NEEDS_SHARED("data/bp3d/body.armature.json");
   NEEDS_SHARED("data/makehuman/body.armature.json");

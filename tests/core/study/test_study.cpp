@@ -53,7 +53,8 @@ TEST_CASE("study: a description says body, poses, techniques and spacings, and w
   std::ofstream(folder / "body.nrrd") << "x";
   std::ofstream(folder / "rig.json") << "x";
   std::ofstream(folder / "study.json") << R"({"name": "Knee", "volume": "body.nrrd", "rig": "rig.json", "bones": [3, 4], "spacings_mm": [1.5, null], "methods": ["dqs", "fem-contact"],
-    "poses": [{"name": "rest"}, {"name": "bent", "flex": ["Shin=60", "Foot=-10"]}], "quality": "draft", "weights": "geodesic", "fit_joints": true, "gates": {"tissue_percent": 0.5}})";
+    "poses": [{"name": "rest"}, {"name": "bent", "flex": ["Shin=60", "Foot=-10"]},
+      {"name": "seated", "pose_name": "sit", "joints": "left elbow flexion=30"}], "quality": "draft", "weights": "geodesic", "fit_joints": true, "gates": {"tissue_percent": 0.5}})";
   const Study study = read_study(folder / "study.json");
   CHECK(study.name == "Knee");
   CHECK(study.volume == folder / "body.nrrd");
@@ -63,9 +64,11 @@ TEST_CASE("study: a description says body, poses, techniques and spacings, and w
   CHECK_FALSE(study.spacings[1].has_value());
   CHECK(study.techniques == std::vector<Technique>{Technique::DualQuaternion, Technique::FemContact});
   CHECK(study.poses[1].flex == std::vector<std::string>{"Shin=60", "Foot=-10"});
+  CHECK(study.poses[2].body.name == "sit");
+  CHECK(study.poses[2].body.joints == std::vector<std::string>{"left elbow flexion=30"});
   CHECK(study.gates.tissue_percent == 0.5);
   CHECK(study.gates.least_voxels == 5000);
-  CHECK(cells_of(study).size() == 8);
+  CHECK(cells_of(study).size() == 12);
 
   std::ofstream(folder / "short.json") << R"({"phantom": "arm", "poses": [{"name": "rest"}]})";
   const Study few = read_study(folder / "short.json");
@@ -129,6 +132,9 @@ TEST_CASE("study: a description that is wrong is refused in one line that names 
            {"{" + body + R"(, "poses": [{"name": "a", "bend": 3}]})", "bend"},
            {"{" + body + R"(, "poses": [{"name": "a", "frame": 3}]})", "motion"},
            {"{" + body + R"(, "poses": [{"name": "a", "flex": [3]}]})", "flex"},
+           {"{" + body + R"(, "poses": [{"name": "a", "pose_name": "lie"}]})", "arms-up"},
+           {"{" + body + R"(, "poses": [{"name": "a", "joints": ["left hip curl=3"]}]})", "abduction"},
+           {"{" + body + R"(, "poses": [{"name": "a", "pose_name": "sit", "pose": "v.nrrd"}]})", "pose_name"},
            {"{" + body + ", " + pose + R"(, "methods": ["spline"]})", "spline"},
            {"{" + body + ", " + pose + R"(, "methods": ["fem-mass"]})", "fem-mass"},
            {"{" + body + ", " + pose + R"(, "methods": ["fem", "dqs", "fem"]})", "twice"},
