@@ -13,11 +13,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kTurn = 0.7;    // radians from the front, so that what is in front of the body is seen
-constexpr double kTilt = 0.12;   // radians from above
-constexpr double kMargin = 0.06; // of the picture
-constexpr int kSamples = 2;      // each way in a pixel
-constexpr double kShadow = 0.3;  // the light that falls everywhere
+constexpr double kTurn = 0.7;     // radians from the front, so that what is in front of the body is seen
+constexpr double kTilt = 0.12;    // radians from above
+constexpr double kMargin = 0.06;  // of the picture
+constexpr int kSamples = 2;       // each way in a pixel
+constexpr double kShadow = 0.3;   // the light that falls everywhere
 const glm::dvec3 kColour(0.86, 0.68, 0.55), kLight = glm::normalize(glm::dvec3(-0.4, 0.5, 0.8));
 
 // A rounded cylinder. In the picture's axes: x right, y up, z towards the eye.
@@ -30,14 +30,20 @@ struct Solid {
 double radius_of(const std::optional<JointRole>& role) {
   if (!role) return 0;
   switch (role->part) {
-    case BodyPart::Pelvis: case BodyPart::Spine: return 0.06;
+    case BodyPart::Pelvis:
+    case BodyPart::Spine: return 0.06;
     case BodyPart::Head: return 0.055;
-    case BodyPart::HipLink: case BodyPart::Thigh: return 0.042;
-    case BodyPart::Neck: case BodyPart::Clavicle: case BodyPart::Shank: return 0.03;
+    case BodyPart::HipLink:
+    case BodyPart::Thigh: return 0.042;
+    case BodyPart::Neck:
+    case BodyPart::Clavicle:
+    case BodyPart::Shank: return 0.03;
     case BodyPart::UpperArm: return 0.026;
     case BodyPart::Forearm: return 0.021;
     case BodyPart::Foot: return 0.02;
-    case BodyPart::Hand: case BodyPart::Palm: case BodyPart::Toes: return 0.016;
+    case BodyPart::Hand:
+    case BodyPart::Palm:
+    case BodyPart::Toes: return 0.016;
     default: return 0.008;
   }
 }
@@ -64,7 +70,8 @@ std::vector<Solid> solids_of(const Armature& armature, const Pose& pose) {
   std::vector<Solid> solids;
   for (std::size_t b = 0; b < armature.bones.size(); ++b) {
     const double radius = radius_of(roles[b]) * height;
-    if (radius > 0) solids.push_back({seen(world[b] * armature.bones[b].head), seen(world[b] * armature.bones[b].tail), radius});
+    if (radius > 0)
+      solids.push_back({seen(world[b] * armature.bones[b].head), seen(world[b] * armature.bones[b].tail), radius});
   }
   return solids;
 }
@@ -106,14 +113,15 @@ std::optional<Seen> seen_at(const Solid& solid, const glm::dvec2& at) {
 }
 
 struct Frame {
-  glm::dvec2 low;     // of the picture, mm
-  double millimetres; // of a pixel
+  glm::dvec2 low;      // of the picture, mm
+  double millimetres;  // of a pixel
 };
 
 Frame frame_of(const std::vector<Solid>& solids, const glm::ivec2& size) {
   glm::dvec2 low(1e300), high(-1e300);
   for (const Solid& solid : solids)
-    for (const glm::dvec3& end : {solid.a, solid.b}) low = glm::min(low, glm::dvec2(end) - solid.radius), high = glm::max(high, glm::dvec2(end) + solid.radius);
+    for (const glm::dvec3& end : {solid.a, solid.b})
+      low = glm::min(low, glm::dvec2(end) - solid.radius), high = glm::max(high, glm::dvec2(end) + solid.radius);
   const glm::dvec2 extent = (high - low) * (1 + 2 * kMargin);
   const double millimetres = std::max({extent.x / size.x, extent.y / size.y, 1e-9});
   return {(low + high) / 2.0 - glm::dvec2(size) * millimetres / 2.0, millimetres};
@@ -123,10 +131,15 @@ Frame frame_of(const std::vector<Solid>& solids, const glm::ivec2& size) {
 class Samples {
  public:
   Samples(const Frame& frame, const glm::ivec2& size)
-      : frame_{frame.low, frame.millimetres / kSamples}, size_(size * kSamples), depth_(count(), -1e300), light_(count(), -1.0f) {}
+      : frame_{frame.low, frame.millimetres / kSamples},
+        size_(size * kSamples),
+        depth_(count(), -1e300),
+        light_(count(), -1.0f) {}
 
   void add(const Solid& solid) {
-    const auto row_and_column = [&](const glm::dvec2& at) { return glm::ivec2(glm::floor((at - frame_.low) / frame_.millimetres)); };
+    const auto row_and_column = [&](const glm::dvec2& at) {
+      return glm::ivec2(glm::floor((at - frame_.low) / frame_.millimetres));
+    };
     const glm::dvec2 a(solid.a), b(solid.b);
     const glm::ivec2 low = glm::max(row_and_column(glm::min(a, b) - solid.radius), glm::ivec2(0));
     const glm::ivec2 high = glm::min(row_and_column(glm::max(a, b) + solid.radius), size_ - 1);
@@ -140,7 +153,9 @@ class Samples {
       }
   }
 
-  float light(const glm::ivec2& sample) const { return light_[std::size_t(sample.y) * std::size_t(size_.x) + std::size_t(sample.x)]; }
+  float light(const glm::ivec2& sample) const {
+    return light_[std::size_t(sample.y) * std::size_t(size_.x) + std::size_t(sample.x)];
+  }
 
  private:
   std::size_t count() const { return std::size_t(size_.x) * std::size_t(size_.y); }
@@ -169,7 +184,8 @@ render::Image body_picture(const Armature& armature, const Pose& pose, const glm
       }
       if (!covered) continue;
       std::uint8_t* pixel = image.rgba.data() + 4 * (std::size_t(y) * std::size_t(size.x) + std::size_t(x));
-      for (int channel = 0; channel < 3; ++channel) pixel[channel] = static_cast<std::uint8_t>(std::lround(255 * kColour[channel] * light / covered));
+      for (int channel = 0; channel < 3; ++channel)
+        pixel[channel] = static_cast<std::uint8_t>(std::lround(255 * kColour[channel] * light / covered));
       pixel[3] = static_cast<std::uint8_t>(255 * covered / (kSamples * kSamples));
     }
   return image;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A small picture of a rig in a pose as a jointed doll: a rounded solid along each bone, as thick as that part of a body is.
-// It needs neither a body nor a graphics card.
+// A small picture of a rig in a pose as a jointed doll: a rounded solid along each bone, as thick as that part of a
+// body is. It needs neither a body nor a graphics card.
 #pragma once
 
 #include "core/pose/pose.h"

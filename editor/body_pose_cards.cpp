@@ -18,7 +18,8 @@ void draw_pictures(const std::shared_ptr<const Armature>& armature, PoseLibrary&
   for (std::size_t b = 0; b < bones.size(); ++b) bones[b] = static_cast<int>(b);
   for (auto& pose : poses) {
     NamedPose drawn = *pose;
-    drawn.picture = render::png_of(body_picture(*armature, taken_from(drawn, *armature, rest_pose(*armature), bones), kThumbnailSize));
+    drawn.picture = render::png_of(
+        body_picture(*armature, taken_from(drawn, *armature, rest_pose(*armature), bones), kThumbnailSize));
     pose = std::make_shared<const NamedPose>(std::move(drawn));
   }
 }

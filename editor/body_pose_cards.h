@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The poses that any body can take (core/pose/body_poses.h) as entries of the pose library, for the open rig, with pictures of
-// its skeleton in them. They are no part of the document.
+// The poses that any body can take (core/pose/body_poses.h) as entries of the pose library, for the open rig, with
+// pictures of its skeleton in them. They are no part of the document.
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@
 
 namespace limber::editor {
 
-// Found once for each rig, and again when it changes. Empty without a rig or where its bones are not known by their names.
+// Found once for each rig, and again when it changes. Empty without a rig or where its bones are not known by their
+// names.
 const PoseLibrary& body_pose_cards(const Editor& editor);
 // The same with pictures, which are drawn the first time.
 const PoseLibrary& pictured_body_pose_cards(const Editor& editor);

@@ -16,19 +16,20 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
 
-constexpr double kUprightLean = 10 * kDegree;    // from the world's axes
-constexpr double kStraightKnee = 20 * kDegree;   // then legs tell the vertical too,
-constexpr double kLegsInLine = 25 * kDegree;     // if both together are so far in line with the trunk
-constexpr double kKneeAside = 5 * kDegree;       // varus and valgus of healthy knees [Hsu 1990]
-constexpr double kElbowAside = 8 * kDegree;      // about half of the carrying angle
+constexpr double kUprightLean = 10 * kDegree;   // from the world's axes
+constexpr double kStraightKnee = 20 * kDegree;  // then legs tell the vertical too,
+constexpr double kLegsInLine = 25 * kDegree;    // if both together are so far in line with the trunk
+constexpr double kKneeAside = 5 * kDegree;      // varus and valgus of healthy knees [Hsu 1990]
+constexpr double kElbowAside = 8 * kDegree;     // about half of the carrying angle
 constexpr double kHyperextension = 15 * kDegree;
-constexpr double kToeOut[] = {-5 * kDegree, 25 * kDegree};       // of a foot against its knee: tibial torsion [Staheli 1985]
+constexpr double kToeOut[] = {-5 * kDegree, 25 * kDegree};  // of a foot against its knee: tibial torsion [Staheli 1985]
 constexpr double kPronation[] = {-10 * kDegree, 175 * kDegree};  // of a palm against its elbow
-constexpr double kSoleSlope = 23 * kDegree;      // of the ankle above the toes' base or tips, sole on the ground
-constexpr double kToeSlope = 8 * kDegree;        // of the toes' base above their tips
-constexpr double kBackwards = 110 * kDegree;     // of a foot's heading: no leg is turned so far
-constexpr double kSteepFoot = 75 * kDegree;      // no heading is told by a foot that points so far down
-constexpr double kRaisedArm = 22.5 * kDegree;    // arms raised further rest with thumbs forward, others with palms forward
+constexpr double kSoleSlope = 23 * kDegree;   // of the ankle above the toes' base or tips, sole on the ground
+constexpr double kToeSlope = 8 * kDegree;     // of the toes' base above their tips
+constexpr double kBackwards = 110 * kDegree;  // of a foot's heading: no leg is turned so far
+constexpr double kSteepFoot = 75 * kDegree;   // no heading is told by a foot that points so far down
+constexpr double kRaisedArm =
+    22.5 * kDegree;  // arms raised further rest with thumbs forward, others with palms forward
 
 const glm::dquat kNoTurn(1, 0, 0, 0);
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
@@ -58,7 +59,9 @@ struct LimbView {
     const glm::dquat own = right ? glm::dquat(q.w, q.x, -q.y, -q.z) : q, axes = glm::quat_cast(body);
     return glm::normalize(axes * own * glm::conjugate(axes));
   }
-  glm::dvec3 world_axis(const glm::dvec3& axis) const { return body * (right ? glm::dvec3(axis.x, -axis.y, -axis.z) : axis); }
+  glm::dvec3 world_axis(const glm::dvec3& axis) const {
+    return body * (right ? glm::dvec3(axis.x, -axis.y, -axis.z) : axis);
+  }
 };
 
 // From hanging to a direction by the shortest way; to straight up by the side.
@@ -68,7 +71,8 @@ glm::dquat swing_from_hanging(const glm::dvec3& direction) {
   return shortest_turn(-kZ, direction);
 }
 
-// How far a limb is turned about itself so that what hangs from it bends towards `bend_heading`, but for `aside` across.
+// How far a limb is turned about itself so that what hangs from it bends towards `bend_heading`, but for `aside`
+// across.
 //   below   direction of the lower part, seen from the limb
 //   wanted  the turn without that
 double turn_about_itself(const glm::dvec3& below, double bend_heading, double aside, double wanted) {
@@ -86,7 +90,8 @@ double turn_about_itself(const glm::dvec3& below, double bend_heading, double as
 
 class Measuring {
  public:
-  Measuring(const Armature& armature, BodyFrames& result) : armature_(armature), skeleton_(skeleton_of(armature)), result_(result) {
+  Measuring(const Armature& armature, BodyFrames& result)
+      : armature_(armature), skeleton_(skeleton_of(armature)), result_(result) {
     result_.bone = skeleton_.joint;
     result_.frames.resize(armature.bones.size());
     done_.assign(armature.bones.size(), false);
@@ -103,7 +108,8 @@ class Measuring {
   void fill() {
     for (std::size_t b = 0; b < done_.size(); ++b) {
       const int parent = armature_.bones[b].parent;
-      if (!done_[b] && parent >= 0) result_.frames[b].anatomical_from_rest = result_.frames[parent].anatomical_from_rest;
+      if (!done_[b] && parent >= 0)
+        result_.frames[b].anatomical_from_rest = result_.frames[parent].anatomical_from_rest;
     }
   }
 
@@ -121,7 +127,9 @@ class Measuring {
     if (side != BodySide::Middle) return side == BodySide::Right;
     if (const auto hand = is_right_hand(skeleton_)) return *hand;
     // A limb on its own leans outwards on its way down.
-    for (const auto& [above, below] : {std::pair{BodyPart::Thigh, BodyPart::Foot}, {BodyPart::UpperArm, BodyPart::Hand}, {BodyPart::UpperArm, BodyPart::Forearm}}) {
+    for (const auto& [above, below] : {std::pair{BodyPart::Thigh, BodyPart::Foot},
+                                       {BodyPart::UpperArm, BodyPart::Hand},
+                                       {BodyPart::UpperArm, BodyPart::Forearm}}) {
       const auto from = skeleton_.place_of(above, side), to = skeleton_.place_of(below, side);
       if (from && to) return glm::dot(*to - *from, result_.body[0]) < 0;
     }
@@ -180,11 +188,13 @@ double excess(double angle, const double (&range)[2]) { return angle - std::clam
 
 double heading_of(const glm::dvec3& foot) {
   const double level = std::hypot(foot.x, foot.y);
-  return level == 0 || std::atan2(-foot.z, level) > kSteepFoot ? (kToeOut[0] + kToeOut[1]) / 2 : std::atan2(foot.x, -foot.y);
+  return level == 0 || std::atan2(-foot.z, level) > kSteepFoot ? (kToeOut[0] + kToeOut[1]) / 2
+                                                               : std::atan2(foot.x, -foot.y);
 }
 
 void Measuring::leg(BodySide side) {
-  const auto thigh = find(BodyPart::Thigh, side), shank = find(BodyPart::Shank, side), foot_bone = find(BodyPart::Foot, side);
+  const auto thigh = find(BodyPart::Thigh, side), shank = find(BodyPart::Shank, side),
+             foot_bone = find(BodyPart::Foot, side);
   const glm::dquat swung = thigh ? swing_from_hanging(direction(*thigh)) : kNoTurn;
   double turn = 0;
   if (thigh && shank) {
@@ -250,7 +260,9 @@ void Measuring::arm(BodySide side) {
   auto& pronation = result_.pronation[side];
   pronation.at_rest = pronation_of_hand(side, bent, raised);
   // A hinge cannot turn about the limb; then the hand does all of it.
-  pronation.forearm_share = hinge_of(*forearm) || *forearm == result_.only_root ? 0 : find(BodyPart::Hand, side) ? 0.5 : 1;
+  pronation.forearm_share = hinge_of(*forearm) || *forearm == result_.only_root ? 0
+                            : find(BodyPart::Hand, side)                        ? 0.5
+                                                                                : 1;
   set(*forearm, bent * about(kZ, -pronation.forearm_share * pronation.at_rest));
   hand(side, bent, pronation.at_rest);
 }
@@ -277,7 +289,8 @@ void Measuring::hand(BodySide side, const glm::dquat& forearm, double pronation)
     const glm::dquat swung = seen == glm::dvec3(0) ? turned : shortest_turn(turned * -kZ, seen) * turned;
     set(*bone, frame ? glm::normalize(glm::quat_cast(*frame)) : swung);
   }
-  for (const auto& [finger, hinge] : finger_hinges(armature_, skeleton_, side, view_.right)) result_.frames[finger].hinge = hinge;
+  for (const auto& [finger, hinge] : finger_hinges(armature_, skeleton_, side, view_.right))
+    result_.frames[finger].hinge = hinge;
 }
 
 // Within a few degrees of the world's axes a body is taken to stand along them.
@@ -296,7 +309,8 @@ glm::dmat3 nearest_world_axes(const glm::dmat3& axes) {
 glm::dvec3 up_of_legs(const Skeleton& skeleton, const glm::dvec3& trunk) {
   glm::dvec3 up(0);
   for (const BodySide side : {BodySide::Left, BodySide::Right}) {
-    const auto hip = skeleton.place_of(BodyPart::Thigh, side), knee = skeleton.place_of(BodyPart::Shank, side), ankle = skeleton.place_of(BodyPart::Foot, side);
+    const auto hip = skeleton.place_of(BodyPart::Thigh, side), knee = skeleton.place_of(BodyPart::Shank, side),
+               ankle = skeleton.place_of(BodyPart::Foot, side);
     if (!hip || !knee || !ankle) return glm::dvec3(0);
     if (angle_between(*hip - *knee, *knee - *ankle) > kStraightKnee) return glm::dvec3(0);
     up += unit(*hip - *ankle);
@@ -337,7 +351,8 @@ BodyFrames body_frames(const Armature& armature) {
   result.body = upright_axes(armature);
   const auto is_root = [](const Bone& bone) { return bone.parent < 0; };
   const auto root = std::find_if(armature.bones.begin(), armature.bones.end(), is_root);
-  if (std::count_if(armature.bones.begin(), armature.bones.end(), is_root) == 1) result.only_root = static_cast<int>(root - armature.bones.begin());
+  if (std::count_if(armature.bones.begin(), armature.bones.end(), is_root) == 1)
+    result.only_root = static_cast<int>(root - armature.bones.begin());
   Measuring measuring(armature, result);
   for (const BodySide side : {BodySide::Middle, BodySide::Left, BodySide::Right}) measuring.measure_side(side);
   measuring.fill();

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far each bone of a rig at rest is from the anatomical position: upright, arms and legs straight, arms hanging, palms and
-// feet forward. Bones are known by their names (rig/joint_names.h); their directions tell the rest.
+// How far each bone of a rig at rest is from the anatomical position: upright, arms and legs straight, arms hanging,
+// palms and feet forward. Bones are known by their names (rig/joint_names.h); their directions tell the rest.
 //
-// A limb's direction is told by its joints. How it is turned about that direction is told by the joint below it, which bends
-// one way: the plane of a bent knee or elbow. A straight one has no plane; then the limb is taken to have been swung to where
-// it is from the anatomical position by the shortest way, without a turn about itself, and is turned further only as far as
-// the foot's heading or the palm would otherwise be out of what feet and forearms reach.
+// A limb's direction is told by its joints. How it is turned about that direction is told by the joint below it, which
+// bends one way: the plane of a bent knee or elbow. A straight one has no plane; then the limb is taken to have been
+// swung to where it is from the anatomical position by the shortest way, without a turn about itself, and is turned
+// further only as far as the foot's heading or the palm would otherwise be out of what feet and forearms reach.
 //
-// Joints with a hinge among the rig's limits bend about that hinge and nothing else; all others are straightened wholly, so
-// that a limb's direction in a pose is exactly the one that its angles say.
+// Joints with a hinge among the rig's limits bend about that hinge and nothing else; all others are straightened
+// wholly, so that a limb's direction in a pose is exactly the one that its angles say.
 #pragma once
 
 #include <map>
@@ -41,7 +41,7 @@ struct BodyFrames {
   std::map<JointRole, int> bone;
   std::vector<BoneFrame> frames;  // #bones
   bool feet_point_back = false;   // so that left and right may be exchanged
-  int only_root = -1;             // the bone that carries all others, where it is one: its joint would turn the whole rig
+  int only_root = -1;  // the bone that carries all others, where it is one: its joint would turn the whole rig
   // By side, as in BodySide: the angle from palms forward at rest, and the part of it that the forearm's bone takes.
   struct Pronation {
     double at_rest = 0, forearm_share = 0;
@@ -55,8 +55,9 @@ struct BodyFrames {
 
 BodyFrames body_frames(const Armature& armature);
 
-// The body's axes from its hips and shoulders, its trunk and its legs. Where they lie within 10 degrees of the world's axes they
-// are the world's: joints of a body that stands upright are off by as much. Upright (LPS) where the rig does not tell.
+// The body's axes from its hips and shoulders, its trunk and its legs. Where they lie within 10 degrees of the world's
+// axes they are the world's: joints of a body that stands upright are off by as much. Upright (LPS) where the rig does
+// not tell.
 glm::dmat3 upright_axes(const Armature& armature);
 
 }  // namespace limber

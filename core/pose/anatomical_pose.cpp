@@ -20,22 +20,29 @@ const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);  // the body's left, bac
 
 glm::dquat about(const glm::dvec3& axis, double angle) { return glm::angleAxis(angle, axis); }
 
-constexpr BodyJoint kJoints[] = {Spine, Neck, Girdle, Shoulder, Elbow, Forearm, Wrist, Hip, Knee, Ankle, Toes, Thumb, Index, Middle, Ring, Little};
+constexpr BodyJoint kJoints[] = {Spine, Neck,  Girdle, Shoulder, Elbow, Forearm, Wrist, Hip,
+                                 Knee,  Ankle, Toes,   Thumb,    Index, Middle,  Ring,  Little};
 
 bool is_finger(BodyJoint joint) { return joint >= Thumb; }
 
 // Radians of a motion, zero where it is not said.
-double radians_of(const JointMotions& motions, std::size_t motion) { return motions[motion].value_or(0) * std::numbers::pi / 180; }
+double radians_of(const JointMotions& motions, std::size_t motion) {
+  return motions[motion].value_or(0) * std::numbers::pi / 180;
+}
 
 // A left joint's turn from the anatomical position, in the body's axes.
 glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
   const double a = radians_of(motions, 0), b = radians_of(motions, 1), c = radians_of(motions, 2);
   switch (joint) {
-    case Spine: case Neck: return about(kX, a) * about(kY, -b) * about(kZ, c);
+    case Spine:
+    case Neck: return about(kX, a) * about(kY, -b) * about(kZ, c);
     case Girdle: return about(kZ, -b) * about(kY, -a);
-    case Shoulder: case Hip: return about(kX, -a) * about(kY, -b) * about(kZ, -c);
-    case Elbow: case Toes: return about(kX, -a);
-    case Wrist: case Ankle: return about(kX, -a) * about(kY, b);
+    case Shoulder:
+    case Hip: return about(kX, -a) * about(kY, -b) * about(kZ, -c);
+    case Elbow:
+    case Toes: return about(kX, -a);
+    case Wrist:
+    case Ankle: return about(kX, -a) * about(kY, b);
     case Knee: return about(kX, a);
     default: return kNoTurn;
   }
@@ -45,7 +52,8 @@ glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
 std::vector<int> bones_of(const BodyFrames& frames, const SidedJoint& joint) {
   std::vector<int> bones;
   const auto add = [&](BodyPart part, int index) {
-    if (const auto bone = frames.find(part, joint.side, index); bone && *bone != frames.only_root) bones.push_back(*bone);
+    if (const auto bone = frames.find(part, joint.side, index); bone && *bone != frames.only_root)
+      bones.push_back(*bone);
   };
   const BodyPart part = part_of(joint.joint);
   if (joint.joint == Spine || joint.joint == Neck) {
@@ -80,7 +88,9 @@ bool has_on_a_side(const BodyFrames& frames, BodyJoint joint) {
 SidedJoint sided(const BodyFrames& frames, const SidedJoint& joint, const std::string& where) {
   if (has(frames, joint)) return joint;
   const std::string known = joints_of_rig(frames);
-  if (known.empty()) throw Error("no bone of the rig is known by its name", where, "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");
+  if (known.empty())
+    throw Error("no bone of the rig is known by its name", where,
+                "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");
   if (is_paired(joint.joint) && joint.side == BodySide::Middle) {
     const SidedJoint left{joint.joint, BodySide::Left}, right{joint.joint, BodySide::Right};
     if (has(frames, left) && has(frames, right))
@@ -88,14 +98,19 @@ SidedJoint sided(const BodyFrames& frames, const SidedJoint& joint, const std::s
     if (has(frames, left)) return left;
     if (has(frames, right)) return right;
   }
-  throw Error("the rig has no " + name_of(joint) + " between bones that are known by their names", where, "use what it has: " + known);
+  throw Error("the rig has no " + name_of(joint) + " between bones that are known by their names", where,
+              "use what it has: " + known);
 }
 
 // Turns of all bones in the world, joint by joint. Bones are asked for in any order.
 class Posing {
  public:
   Posing(const Armature& armature, const BodyFrames& frames, const Pose& base, const JointAngles& angles)
-      : armature_(armature), frames_(frames), base_(base), turned_(armature.bones.size()), changed_(armature.bones.size(), false) {
+      : armature_(armature),
+        frames_(frames),
+        base_(base),
+        turned_(armature.bones.size()),
+        changed_(armature.bones.size(), false) {
     for (const RigidTransform& transform : posed_from_rest(armature, base)) base_turned_.push_back(transform.rotation);
     wanted_.resize(armature.bones.size());
     for (const auto& [joint, motions] : angles) want(joint, motions);
@@ -126,8 +141,10 @@ class Posing {
       Wanted& wanted = wanted_[static_cast<std::size_t>(bones[i])];
       wanted.joints.emplace_back(joint, motions);
       wanted.share = 1.0 / static_cast<double>(bones.size());
-      const auto role = std::find_if(frames_.bone.begin(), frames_.bone.end(), [&](const auto& one) { return one.second == bones[i]; });
-      if (is_finger(joint.joint)) wanted.motion = role->first.part == BodyPart::Fingers ? 0 : static_cast<std::size_t>(role->first.index - 1);
+      const auto role = std::find_if(frames_.bone.begin(), frames_.bone.end(),
+                                     [&](const auto& one) { return one.second == bones[i]; });
+      if (is_finger(joint.joint))
+        wanted.motion = role->first.part == BodyPart::Fingers ? 0 : static_cast<std::size_t>(role->first.index - 1);
     }
     // The hand does the forearm's part of a pronation that the forearm cannot do.
     const auto hand = joint.joint == Forearm ? hand_of_forearm(frames_, joint.side) : std::nullopt;
@@ -139,8 +156,10 @@ class Posing {
     followed_.assign(armature_.bones.size(), -1);
     for (const auto& [role, bone] : frames_.bone) {
       const auto hand = frames_.find(BodyPart::Hand, role.side), forearm = frames_.find(BodyPart::Forearm, role.side);
-      const bool of_hand = role.part == BodyPart::Palm || role.part == BodyPart::Fingers || role.part >= BodyPart::Thumb;
-      if (of_hand && hand && forearm && armature_.bones[static_cast<std::size_t>(bone)].parent == *forearm) followed_[static_cast<std::size_t>(bone)] = *hand;
+      const bool of_hand =
+          role.part == BodyPart::Palm || role.part == BodyPart::Fingers || role.part >= BodyPart::Thumb;
+      if (of_hand && hand && forearm && armature_.bones[static_cast<std::size_t>(bone)].parent == *forearm)
+        followed_[static_cast<std::size_t>(bone)] = *hand;
     }
   }
 
@@ -181,7 +200,8 @@ class Posing {
 
   // How the bone has turned from its place in the anatomical position.
   glm::dquat from_anatomical(int bone, const glm::dquat& turned) const {
-    return bone < 0 ? kNoTurn : turned * glm::conjugate(frames_.frames[static_cast<std::size_t>(bone)].anatomical_from_rest);
+    return bone < 0 ? kNoTurn
+                    : turned * glm::conjugate(frames_.frames[static_cast<std::size_t>(bone)].anatomical_from_rest);
   }
 
   bool mirrored(BodySide side) const {
@@ -197,25 +217,31 @@ class Posing {
     return mirrored(side) ? glm::dquat(q.w, q.x, -q.y, -q.z) : q;
   }
 
-  glm::dquat with_joint(int bone, const glm::dquat& now, const SidedJoint& joint, const JointMotions& motions, const Wanted& wanted) {
+  glm::dquat with_joint(int bone, const glm::dquat& now, const SidedJoint& joint, const JointMotions& motions,
+                        const Wanted& wanted) {
     const BoneFrame& frame = frames_.frames[static_cast<std::size_t>(bone)];
     const bool across = motions[1].value_or(0) != 0 || motions[2].value_or(0) != 0;
-    if (is_finger(joint.joint)) return motions[wanted.motion] && frame.hinge ? hinged(bone, now, radians_of(motions, wanted.motion), *frame.hinge) : now;
-    if (frame.hinge && joint.joint != Forearm && !across) return hinged(bone, now, radians_of(motions, 0), *frame.hinge);
+    if (is_finger(joint.joint))
+      return motions[wanted.motion] && frame.hinge ? hinged(bone, now, radians_of(motions, wanted.motion), *frame.hinge)
+                                                   : now;
+    if (frame.hinge && joint.joint != Forearm && !across)
+      return hinged(bone, now, radians_of(motions, 0), *frame.hinge);
 
     const int reference = reference_of(bone, joint.joint);
     const glm::dquat above = reference < 0 ? kNoTurn : from_anatomical(reference, turned(reference));
     const glm::dquat before = glm::conjugate(above) * from_anatomical(bone, now);
     glm::dquat turn = turn_of(joint.joint, motions);
     if (joint.joint == Spine || joint.joint == Neck) turn = exponential(wanted.share * rotation_vector(turn));
-    if (joint.joint == Elbow || joint.joint == Forearm || joint.joint == Wrist) turn = arm_turn(bone, in_body(joint.side, before), joint, motions);
+    if (joint.joint == Elbow || joint.joint == Forearm || joint.joint == Wrist)
+      turn = arm_turn(bone, in_body(joint.side, before), joint, motions);
     const glm::dquat world = frame.joint_axes * in_world(joint.side, turn) * glm::conjugate(frame.joint_axes);
     return above * world * frame.anatomical_from_rest;
   }
 
   // A hinge in place of what the pose has.
   glm::dquat hinged(int bone, const glm::dquat& now, double flexion, const AnatomicalHinge& hinge) const {
-    return now * glm::conjugate(base_.rotation[static_cast<std::size_t>(bone)]) * about(hinge.axis, flexion - hinge.at_rest);
+    return now * glm::conjugate(base_.rotation[static_cast<std::size_t>(bone)]) *
+           about(hinge.axis, flexion - hinge.at_rest);
   }
 
   static glm::dvec3 rotation_vector(const glm::dquat& q) {
@@ -252,7 +278,8 @@ class Posing {
 
 }  // namespace
 
-Pose with_joint_angles(const Armature& armature, const BodyFrames& frames, const Pose& pose, const JointAngles& angles) {
+Pose with_joint_angles(const Armature& armature, const BodyFrames& frames, const Pose& pose,
+                       const JointAngles& angles) {
   return angles.empty() ? pose : Posing(armature, frames, pose, angles).pose();
 }
 
@@ -260,7 +287,9 @@ JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, cons
   // Of what is said for both sides or for a whole hand, the rig need not have all.
   JointAngles found;
   for (const auto& [joint, motions] : angles)
-    if (angles.size() == 1 || has(frames, joint) || (joint.side == BodySide::Middle && has_on_a_side(frames, joint.joint))) found[sided(frames, joint, where)] = motions;
+    if (angles.size() == 1 || has(frames, joint) ||
+        (joint.side == BodySide::Middle && has_on_a_side(frames, joint.joint)))
+      found[sided(frames, joint, where)] = motions;
   if (!found.empty() || angles.empty()) return found;
   // A limb whose names say no side is both sides that there are.
   for (const auto& [joint, motions] : angles)
@@ -277,7 +306,9 @@ JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles) {
     const bool right = joint.side == BodySide::Right;
     const SidedJoint sideless{joint.joint, BodySide::Middle};
     const auto shape = frames.is_right.find(BodySide::Middle);
-    if (is_paired(joint.joint) && joint.side != BodySide::Middle && has(frames, sideless) && shape != frames.is_right.end() && shape->second == right) known[sideless] = motions;
+    if (is_paired(joint.joint) && joint.side != BodySide::Middle && has(frames, sideless) &&
+        shape != frames.is_right.end() && shape->second == right)
+      known[sideless] = motions;
   }
   return known;
 }
@@ -295,7 +326,8 @@ std::string joints_of_rig(const BodyFrames& frames) {
   std::string names;
   for (const BodyJoint joint : kJoints)
     for (const BodySide side : {BodySide::Left, BodySide::Right, BodySide::Middle}) {
-      if ((side == BodySide::Middle || is_paired(joint)) && has(frames, {joint, side})) names += (names.empty() ? "" : ", ") + name_of({joint, side});
+      if ((side == BodySide::Middle || is_paired(joint)) && has(frames, {joint, side}))
+        names += (names.empty() ? "" : ", ") + name_of({joint, side});
     }
   return names;
 }

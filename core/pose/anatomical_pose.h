@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A pose by the angles of a body's joints, on any rig whose bones are recognised. A joint that is named stands at the angles
-// that are said, from the anatomical position and whatever the rig's rest, its other motions at zero; joints that are not named
-// keep what the pose has. What hangs from a named joint goes with it.
+// A pose by the angles of a body's joints, on any rig whose bones are recognised. A joint that is named stands at the
+// angles that are said, from the anatomical position and whatever the rig's rest, its other motions at zero; joints
+// that are not named keep what the pose has. What hangs from a named joint goes with it.
 //
-// Hips and shoulders turn by flexion about the body's left-right axis, then abduction about the axis that this has carried
-// along, then rotation about the limb [Grood & Suntay 1983]; shoulders count from the trunk, not from the collarbone. Spine and
-// neck share their turn evenly among their bones. A forearm's pronation is shared by forearm and hand. The body as a whole
-// neither turns nor moves.
+// Hips and shoulders turn by flexion about the body's left-right axis, then abduction about the axis that this has
+// carried along, then rotation about the limb [Grood & Suntay 1983]; shoulders count from the trunk, not from the
+// collarbone. Spine and neck share their turn evenly among their bones. A forearm's pronation is shared by forearm and
+// hand. The body as a whole neither turns nor moves.
 #pragma once
 
 #include <string>
@@ -21,8 +21,8 @@ namespace limber {
 //   angles  of joints that the rig has; others are passed over
 Pose with_joint_angles(const Armature& armature, const BodyFrames& frames, const Pose& pose, const JointAngles& angles);
 
-// The joints with the side that the rig has them on, where none was said; fingers that are one bone bend as the middle one.
-// throws Error for a joint that the rig lacks or whose side must be said; `where` names the request
+// The joints with the side that the rig has them on, where none was said; fingers that are one bone bend as the middle
+// one. throws Error for a joint that the rig lacks or whose side must be said; `where` names the request
 JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, const std::string& where);
 
 // The joints of `angles` that the rig has, with their sides: what a pose for any body is on this one.

@@ -10,31 +10,42 @@ namespace limber {
 
 namespace {
 
+// Raised arms take a fifth of what is beyond 30 degrees from the shoulder girdle [Inman, Saunders & Abbott 1944].
 constexpr BodyPose kPoses[] = {
-    {"stand", "Standing, arms hanging, palms to the body.", "shoulders abduction=8; elbows flexion=5; forearms pronation=90"},
+    {"stand", "Standing, arms hanging, palms to the body.",
+     "shoulders abduction=8; elbows flexion=5; forearms pronation=90"},
     {"sit", "Sitting upright: thighs level, shanks down, forearms forward.",
-     "hips flexion=90; hips abduction=5; knees flexion=90; shoulders flexion=10; shoulders abduction=10; elbows flexion=80; forearms pronation=90"},
+     "hips flexion=90; hips abduction=5; knees flexion=90;"
+     "shoulders flexion=10; shoulders abduction=10; elbows flexion=80; forearms pronation=90"},
     {"walk", "In the middle of a stride: the right leg and the left arm are in front.",
-     "right hip flexion=25; right knee flexion=5; left hip extension=12; left knee flexion=15; left ankle dorsiflexion=8; left toes extension=15;"
-     "left shoulder flexion=25; left elbow flexion=30; right shoulder extension=20; right elbow flexion=15; shoulders abduction=8; forearms pronation=90"},
+     "right hip flexion=25; right knee flexion=5;"
+     "left hip extension=12; left knee flexion=15; left ankle dorsiflexion=8; left toes extension=15;"
+     "left shoulder flexion=25; left elbow flexion=30; right shoulder extension=20; right elbow flexion=15;"
+     "shoulders abduction=8; forearms pronation=90"},
     {"phone", "Standing with a telephone: the right hand is at the ear.",
-     "right shoulder flexion=85; right shoulder internal rotation=20; right elbow flexion=145; right forearm pronation=108;"
+     "right shoulder girdle elevation=10; right shoulder flexion=85; right shoulder internal rotation=20;"
+     "right elbow flexion=145; right forearm pronation=108;"
      "left shoulder abduction=8; left elbow flexion=5; left forearm pronation=90"},
-    {"arms-up", "Standing with both arms raised beside the head.", "shoulders abduction=165; elbows flexion=10; forearms pronation=20"},
+    {"arms-up", "Standing with both arms raised beside the head.",
+     "shoulder girdles elevation=30; shoulders abduction=160; elbows flexion=10; forearms pronation=20"},
     {"squat", "Squatting deeply, arms forward for balance.",
-     "hips flexion=110; hips abduction=15; knees flexion=120; ankles dorsiflexion=25; shoulders flexion=80; elbows flexion=10; forearms pronation=90"},
+     "hips flexion=110; hips abduction=15; knees flexion=120; ankles dorsiflexion=25;"
+     "shoulder girdles elevation=8; shoulders flexion=80; elbows flexion=10; forearms pronation=90"},
     {"drive", "Sitting in a car, both hands at the wheel.",
-     "hips flexion=85; hips abduction=8; knees flexion=60; ankles plantarflexion=5; shoulders flexion=55; shoulders abduction=5; elbows flexion=45;"
-     "forearms pronation=100; hands curl=50"},
-    {"supine", "As on a scanner's table: straight, arms a little apart, palms forward. The body itself is not laid down.", "shoulders abduction=15"},
+     "hips flexion=85; hips abduction=8; knees flexion=60; ankles plantarflexion=5;"
+     "shoulders flexion=55; shoulders abduction=5; elbows flexion=45; forearms pronation=100; hands curl=50"},
+    {"supine", "As on a scanner's table: straight, arms a little apart, palms forward. The body itself is not laid down.",
+     "shoulders abduction=15"},
     {"reach", "Standing, the right arm stretched forward and up.",
-     "right shoulder flexion=135; right elbow flexion=5; right forearm pronation=90; left shoulder abduction=8; left elbow flexion=5; left forearm pronation=90"},
+     "right shoulder girdle elevation=22; right shoulder flexion=135; right elbow flexion=5; right forearm pronation=90;"
+     "left shoulder abduction=8; left elbow flexion=5; left forearm pronation=90"},
     {"T", "Arms straight to the sides, palms down.", "shoulders abduction=90; forearms pronation=90"},
     {"A", "Arms straight and half way down, thumbs forward.", "shoulders abduction=45; forearms pronation=90"},
 };
 
 // Joints that a pose of the whole body sets also where it says nothing of them.
-constexpr BodyJoint kLimbs[] = {BodyJoint::Shoulder, BodyJoint::Elbow, BodyJoint::Forearm, BodyJoint::Wrist, BodyJoint::Hip, BodyJoint::Knee, BodyJoint::Ankle};
+constexpr BodyJoint kLimbs[] = {BodyJoint::Shoulder, BodyJoint::Elbow, BodyJoint::Forearm, BodyJoint::Wrist,
+                                BodyJoint::Hip,      BodyJoint::Knee,  BodyJoint::Ankle};
 
 std::string plain(std::string_view name) {
   std::string letters;
@@ -61,7 +72,8 @@ const BodyPose& require_body_pose(const std::string& name, const std::string& wh
 JointAngles angles_of(const BodyPose& pose) {
   JointAngles angles;
   for (const BodyJoint joint : kLimbs)
-    for (const BodySide side : {BodySide::Left, BodySide::Right}) angles[{joint, side}] = {0.0, std::nullopt, std::nullopt};
+    for (const BodySide side : {BodySide::Left, BodySide::Right})
+      angles[{joint, side}] = {0.0, std::nullopt, std::nullopt};
   for (std::string_view rest = pose.joints; !rest.empty();) {
     const std::size_t end = std::min(rest.find(';'), rest.size());
     add_joint_request(angles, std::string(rest.substr(0, end)), std::string(pose.name));
@@ -70,16 +82,21 @@ JointAngles angles_of(const BodyPose& pose) {
   return angles;
 }
 
-Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest& request, std::vector<std::string>& warnings) {
+Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest& request,
+                  std::vector<std::string>& warnings) {
   if (request.empty()) return pose;
   const BodyFrames frames = body_frames(armature);
   if (frames.feet_point_back)
-    warnings.emplace_back("the rig's feet point to its back: if left and right are exchanged in its bones' names, the pose is wrong: exchange them, or mirror volume and rig");
+    warnings.emplace_back(
+        "the rig's feet point to its back: if left and right are exchanged in its bones' names, the pose is wrong: "
+        "exchange them, or mirror volume and rig");
   JointAngles angles;
   if (!request.name.empty()) {
     const std::string where = "--pose-name " + request.name.substr(0, 60);
     angles = known_to_rig(frames, angles_of(require_body_pose(request.name, "--pose-name")));
-    if (angles.empty()) throw Error("the rig has no limb's joint between bones that are known by their names", where, "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");
+    if (angles.empty())
+      throw Error("the rig has no limb's joint between bones that are known by their names", where,
+                  "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");
   }
   for (const std::string& one : request.joints) {
     JointAngles asked;

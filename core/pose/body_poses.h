@@ -16,8 +16,8 @@ namespace limber {
 struct BodyPose {
   std::string_view name;         // "sit"
   std::string_view description;  // a sentence
-  // Requests of joint_angles.h with a semicolon between. Limbs stand in the anatomical position where nothing is said; spine,
-  // neck, collarbones, fingers and toes keep their rest.
+  // Requests of joint_angles.h with a semicolon between. Limbs stand in the anatomical position where nothing is said;
+  // spine, neck, collarbones, fingers and toes keep their rest.
   std::string_view joints;
 };
 
@@ -36,13 +36,14 @@ struct PoseRequest {
   bool empty() const { return name.empty() && joints.empty(); }
 };
 
-// `pose` with the joints that are asked for; of a named pose what the rig lacks is left out. `warnings` gets a line for each
-// asked angle that adults do not reach, and one that lists bones beyond the rig's own limits.
-// throws Error for a name or a joint that is not known or that the rig lacks
-Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest& request, std::vector<std::string>& warnings);
+// `pose` with the joints that are asked for; of a named pose what the rig lacks is left out. `warnings` gets a line for
+// each asked angle that adults do not reach, and one that lists bones beyond the rig's own limits. throws Error for a
+// name or a joint that is not known or that the rig lacks
+Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest& request,
+                  std::vector<std::string>& warnings);
 
-// The named poses that this rig can take, as entries of a library (pose_library.h): with all bones of the joints that they set, and
-// without pictures. None where no limb's joint is known.
+// The named poses that this rig can take, as entries of a library (pose_library.h): with all bones of the joints that
+// they set, and without pictures. None where no limb's joint is known.
 PoseLibrary body_pose_library(const Armature& armature);
 
 }  // namespace limber

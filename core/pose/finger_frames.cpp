@@ -45,8 +45,8 @@ std::optional<int> last_segment(const Skeleton& skeleton, BodyPart finger, BodyS
 }
 
 struct Finger {
-  std::vector<int> bones;               // from the knuckle outwards
-  std::vector<glm::dvec3> directions;   // of what comes before the first bone, then of each
+  std::vector<int> bones;              // from the knuckle outwards
+  std::vector<glm::dvec3> directions;  // of what comes before the first bone, then of each
 };
 
 Finger finger_of(const Skeleton& skeleton, BodyPart part, BodySide side) {
@@ -67,27 +67,32 @@ Finger finger_of(const Skeleton& skeleton, BodyPart part, BodySide side) {
 // The axis about which it is curled, as long as the sine of the curl.
 glm::dvec3 curl(const Finger& finger) {
   glm::dvec3 axis(0);
-  for (std::size_t i = 1; i < finger.directions.size(); ++i) axis += glm::cross(finger.directions[i - 1], finger.directions[i]);
+  for (std::size_t i = 1; i < finger.directions.size(); ++i)
+    axis += glm::cross(finger.directions[i - 1], finger.directions[i]);
   return axis;
 }
 
 double bend(const glm::dvec3& before, const glm::dvec3& after, const glm::dvec3& axis) {
   const glm::dvec3 a = before - glm::dot(before, axis) * axis, b = after - glm::dot(after, axis) * axis;
-  return glm::length(a) < 0.3 || glm::length(b) < 0.3 ? 0 : std::atan2(glm::dot(glm::cross(a, b), axis), glm::dot(a, b));
+  return glm::length(a) < 0.3 || glm::length(b) < 0.3 ? 0
+                                                      : std::atan2(glm::dot(glm::cross(a, b), axis), glm::dot(a, b));
 }
 
 using Hinges = std::vector<std::pair<int, AnatomicalHinge>>;
 
 void add_hinges(Hinges& hinges, const Armature& armature, const Finger& finger, const glm::dvec3& across) {
   if (finger.bones.empty()) return;
-  const glm::dvec3 turning = curl(finger), straight = unit(across - finger.directions[1] * glm::dot(across, finger.directions[1]));
-  const bool curled = glm::length(turning) > kCurled && (straight == glm::dvec3(0) || glm::dot(unit(turning), straight) > kAskew);
+  const glm::dvec3 turning = curl(finger),
+                   straight = unit(across - finger.directions[1] * glm::dot(across, finger.directions[1]));
+  const bool curled =
+      glm::length(turning) > kCurled && (straight == glm::dvec3(0) || glm::dot(unit(turning), straight) > kAskew);
   const glm::dvec3 axis = curled ? unit(turning) : straight;
   if (axis == glm::dvec3(0)) return;
   for (std::size_t i = 0; i < finger.bones.size(); ++i) {
     const JointLimits& limits = armature.bones[static_cast<std::size_t>(finger.bones[i])].limits;
     AnatomicalHinge hinge{axis, 0};
-    if (limits.type == JointLimits::Type::Hinge) hinge.axis = glm::dot(limits.axis, axis) < 0 ? -limits.axis : limits.axis;
+    if (limits.type == JointLimits::Type::Hinge)
+      hinge.axis = glm::dot(limits.axis, axis) < 0 ? -limits.axis : limits.axis;
     hinge.at_rest = bend(finger.directions[i], finger.directions[i + 1], hinge.axis);
     hinges.emplace_back(finger.bones[i], hinge);
   }
@@ -107,7 +112,8 @@ std::optional<glm::dvec3> along_hand(const Skeleton& skeleton, BodySide side) {
     sum += *place, ++count;
   }
   for (const BodyPart part : {BodyPart::Palm, BodyPart::Fingers})
-    if (const auto place = skeleton.place_of(part, side); place && !count && glm::distance(*place, *from) > 1e-6) return *place - *from;
+    if (const auto place = skeleton.place_of(part, side); place && !count && glm::distance(*place, *from) > 1e-6)
+      return *place - *from;
   return count ? std::optional(sum / double(count) - *from) : std::nullopt;
 }
 
@@ -115,7 +121,8 @@ std::optional<glm::dvec3> across_palm(const Skeleton& skeleton, BodySide side) {
   std::vector<glm::dvec3> knuckles;
   for (const BodyPart finger : kFingers)
     if (const auto place = knuckle(skeleton, finger, side)) knuckles.push_back(*place);
-  if (knuckles.size() >= 2 && glm::distance(knuckles.front(), knuckles.back()) > 1e-9) return knuckles.back() - knuckles.front();
+  if (knuckles.size() >= 2 && glm::distance(knuckles.front(), knuckles.back()) > 1e-9)
+    return knuckles.back() - knuckles.front();
   const auto thumb = last_segment(skeleton, BodyPart::Thumb, side);
   const auto from = wrist(skeleton, side);
   const auto hand = bone_of(skeleton, BodyPart::Hand, side, 0);

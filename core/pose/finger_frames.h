@@ -22,6 +22,7 @@ std::optional<bool> is_right_hand(const Skeleton& skeleton);
 
 // The hinges of a hand's finger bones, fingers that curl by the plane in which they do, straight ones across the palm.
 // Fingers keep their spread.
-std::vector<std::pair<int, AnatomicalHinge>> finger_hinges(const Armature& armature, const Skeleton& skeleton, BodySide side, bool right);
+std::vector<std::pair<int, AnatomicalHinge>> finger_hinges(const Armature& armature, const Skeleton& skeleton,
+                                                           BodySide side, bool right);
 
 }  // namespace limber

@@ -24,23 +24,49 @@ struct JointName {
 
 // The first name of each joint is the one that messages use.
 constexpr JointName kNames[] = {
-    {"spine", Spine}, {"trunk", Spine}, {"back", Spine},
-    {"neck", Neck}, {"head", Neck},
-    {"shoulder girdle", Girdle}, {"shoulder girdles", Girdle, true}, {"girdle", Girdle}, {"girdles", Girdle, true},
-    {"clavicle", Girdle}, {"clavicles", Girdle, true}, {"scapula", Girdle}, {"scapulae", Girdle, true},
-    {"shoulder", Shoulder}, {"shoulders", Shoulder, true},
-    {"elbow", Elbow}, {"elbows", Elbow, true},
-    {"forearm", Forearm}, {"forearms", Forearm, true},
-    {"wrist", Wrist}, {"wrists", Wrist, true},
-    {"hip", Hip}, {"hips", Hip, true},
-    {"knee", Knee}, {"knees", Knee, true},
-    {"ankle", Ankle}, {"ankles", Ankle, true},
-    {"toes", Toes}, {"toe", Toes},
-    {"thumb", Thumb}, {"thumbs", Thumb, true},
-    {"index", Index}, {"index finger", Index}, {"index fingers", Index, true},
-    {"middle", Middle}, {"middle finger", Middle}, {"middle fingers", Middle, true},
-    {"ring", Ring}, {"ring finger", Ring}, {"ring fingers", Ring, true},
-    {"little", Little}, {"little finger", Little}, {"little fingers", Little, true},
+    {"spine", Spine},
+    {"trunk", Spine},
+    {"back", Spine},
+    {"neck", Neck},
+    {"head", Neck},
+    {"shoulder girdle", Girdle},
+    {"shoulder girdles", Girdle, true},
+    {"girdle", Girdle},
+    {"girdles", Girdle, true},
+    {"clavicle", Girdle},
+    {"clavicles", Girdle, true},
+    {"scapula", Girdle},
+    {"scapulae", Girdle, true},
+    {"shoulder", Shoulder},
+    {"shoulders", Shoulder, true},
+    {"elbow", Elbow},
+    {"elbows", Elbow, true},
+    {"forearm", Forearm},
+    {"forearms", Forearm, true},
+    {"wrist", Wrist},
+    {"wrists", Wrist, true},
+    {"hip", Hip},
+    {"hips", Hip, true},
+    {"knee", Knee},
+    {"knees", Knee, true},
+    {"ankle", Ankle},
+    {"ankles", Ankle, true},
+    {"toes", Toes},
+    {"toe", Toes},
+    {"thumb", Thumb},
+    {"thumbs", Thumb, true},
+    {"index", Index},
+    {"index finger", Index},
+    {"index fingers", Index, true},
+    {"middle", Middle},
+    {"middle finger", Middle},
+    {"middle fingers", Middle, true},
+    {"ring", Ring},
+    {"ring finger", Ring},
+    {"ring fingers", Ring, true},
+    {"little", Little},
+    {"little finger", Little},
+    {"little fingers", Little, true},
 };
 
 // A motion's word, the place in JointMotions that it sets, and its sign there.
@@ -53,21 +79,59 @@ struct MotionWord {
 
 // The first word of each motion is the one that messages use; of a finger's motions see finger_motions().
 constexpr MotionWord kMotions[] = {
-    {Spine, "flexion", 0}, {Spine, "extension", 0, -1}, {Spine, "lateral bending", 1}, {Spine, "right bending", 1}, {Spine, "left bending", 1, -1},
-    {Spine, "axial rotation", 2}, {Spine, "left rotation", 2}, {Spine, "right rotation", 2, -1},
-    {Neck, "flexion", 0}, {Neck, "extension", 0, -1}, {Neck, "lateral bending", 1}, {Neck, "right bending", 1}, {Neck, "left bending", 1, -1},
-    {Neck, "axial rotation", 2}, {Neck, "left rotation", 2}, {Neck, "right rotation", 2, -1},
-    {Girdle, "elevation", 0}, {Girdle, "depression", 0, -1}, {Girdle, "protraction", 1}, {Girdle, "retraction", 1, -1},
-    {Shoulder, "flexion", 0}, {Shoulder, "extension", 0, -1}, {Shoulder, "abduction", 1}, {Shoulder, "adduction", 1, -1},
-    {Shoulder, "internal rotation", 2}, {Shoulder, "external rotation", 2, -1}, {Shoulder, "medial rotation", 2}, {Shoulder, "lateral rotation", 2, -1},
-    {Elbow, "flexion", 0}, {Elbow, "extension", 0, -1},
-    {Forearm, "pronation", 0}, {Forearm, "supination", 0, -1},
-    {Wrist, "flexion", 0}, {Wrist, "extension", 0, -1}, {Wrist, "ulnar deviation", 1}, {Wrist, "radial deviation", 1, -1},
-    {Hip, "flexion", 0}, {Hip, "extension", 0, -1}, {Hip, "abduction", 1}, {Hip, "adduction", 1, -1},
-    {Hip, "internal rotation", 2}, {Hip, "external rotation", 2, -1}, {Hip, "medial rotation", 2}, {Hip, "lateral rotation", 2, -1},
-    {Knee, "flexion", 0}, {Knee, "extension", 0, -1},
-    {Ankle, "dorsiflexion", 0}, {Ankle, "plantarflexion", 0, -1}, {Ankle, "plantar flexion", 0, -1}, {Ankle, "inversion", 1}, {Ankle, "eversion", 1, -1},
-    {Toes, "extension", 0}, {Toes, "flexion", 0, -1},
+    {Spine, "flexion", 0},
+    {Spine, "extension", 0, -1},
+    {Spine, "lateral bending", 1},
+    {Spine, "right bending", 1},
+    {Spine, "left bending", 1, -1},
+    {Spine, "axial rotation", 2},
+    {Spine, "left rotation", 2},
+    {Spine, "right rotation", 2, -1},
+    {Neck, "flexion", 0},
+    {Neck, "extension", 0, -1},
+    {Neck, "lateral bending", 1},
+    {Neck, "right bending", 1},
+    {Neck, "left bending", 1, -1},
+    {Neck, "axial rotation", 2},
+    {Neck, "left rotation", 2},
+    {Neck, "right rotation", 2, -1},
+    {Girdle, "elevation", 0},
+    {Girdle, "depression", 0, -1},
+    {Girdle, "protraction", 1},
+    {Girdle, "retraction", 1, -1},
+    {Shoulder, "flexion", 0},
+    {Shoulder, "extension", 0, -1},
+    {Shoulder, "abduction", 1},
+    {Shoulder, "adduction", 1, -1},
+    {Shoulder, "internal rotation", 2},
+    {Shoulder, "external rotation", 2, -1},
+    {Shoulder, "medial rotation", 2},
+    {Shoulder, "lateral rotation", 2, -1},
+    {Elbow, "flexion", 0},
+    {Elbow, "extension", 0, -1},
+    {Forearm, "pronation", 0},
+    {Forearm, "supination", 0, -1},
+    {Wrist, "flexion", 0},
+    {Wrist, "extension", 0, -1},
+    {Wrist, "ulnar deviation", 1},
+    {Wrist, "radial deviation", 1, -1},
+    {Hip, "flexion", 0},
+    {Hip, "extension", 0, -1},
+    {Hip, "abduction", 1},
+    {Hip, "adduction", 1, -1},
+    {Hip, "internal rotation", 2},
+    {Hip, "external rotation", 2, -1},
+    {Hip, "medial rotation", 2},
+    {Hip, "lateral rotation", 2, -1},
+    {Knee, "flexion", 0},
+    {Knee, "extension", 0, -1},
+    {Ankle, "dorsiflexion", 0},
+    {Ankle, "plantarflexion", 0, -1},
+    {Ankle, "plantar flexion", 0, -1},
+    {Ankle, "inversion", 1},
+    {Ankle, "eversion", 1, -1},
+    {Toes, "extension", 0},
+    {Toes, "flexion", 0, -1},
 };
 
 struct UsualRange {
@@ -77,10 +141,12 @@ struct UsualRange {
 };
 
 constexpr UsualRange kUsual[] = {
-    {Spine, 0, -35, 90}, {Spine, 1, -40, 40}, {Spine, 2, -50, 50}, {Neck, 0, -60, 60}, {Neck, 1, -45, 45}, {Neck, 2, -80, 80},
-    {Girdle, 0, -10, 40}, {Girdle, 1, -20, 30}, {Shoulder, 0, -60, 180}, {Shoulder, 1, -50, 180}, {Shoulder, 2, -90, 90},
-    {Elbow, 0, -10, 150}, {Forearm, 0, -10, 175}, {Wrist, 0, -75, 80}, {Wrist, 1, -20, 35},
-    {Hip, 0, -30, 125}, {Hip, 1, -30, 50}, {Hip, 2, -45, 45}, {Knee, 0, -10, 150}, {Ankle, 0, -50, 30}, {Ankle, 1, -20, 35}, {Toes, 0, -45, 70},
+    {Spine, 0, -35, 90},     {Spine, 1, -40, 40},     {Spine, 2, -50, 50},    {Neck, 0, -60, 60},
+    {Neck, 1, -45, 45},      {Neck, 2, -80, 80},      {Girdle, 0, -10, 40},   {Girdle, 1, -20, 30},
+    {Shoulder, 0, -60, 180}, {Shoulder, 1, -50, 180}, {Shoulder, 2, -90, 90}, {Elbow, 0, -10, 150},
+    {Forearm, 0, -10, 175},  {Wrist, 0, -75, 80},     {Wrist, 1, -20, 35},    {Hip, 0, -30, 125},
+    {Hip, 1, -30, 50},       {Hip, 2, -45, 45},       {Knee, 0, -10, 150},    {Ankle, 0, -50, 30},
+    {Ankle, 1, -20, 35},     {Toes, 0, -45, 70},
 };
 constexpr UsualRange kUsualThumb[] = {{Thumb, 0, -10, 60}, {Thumb, 1, -15, 80}, {Thumb, 2, -15, 80}};
 constexpr UsualRange kUsualFinger[] = {{Index, 0, -45, 95}, {Index, 1, -10, 110}, {Index, 2, -10, 90}};
@@ -97,7 +163,7 @@ std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words;
   bool within = false;
   for (char c : text) {
-    const bool upper = c >= 'A' && c <= 'Z', part = upper || (c != ' ' && c != '-' && c != '_' && c != '\t');
+    const bool upper = c >= 'A' && c <= 'Z', part = upper || (static_cast<unsigned char>(c) > ' ' && c != '-' && c != '_');
     if (part && !within) words.emplace_back();
     if (part) words.back() += upper ? static_cast<char>(c - 'A' + 'a') : c;
     within = part;
@@ -126,6 +192,8 @@ std::vector<BodySide> sides_of(Sides sides) {
 std::string request_of(const std::string& request) {
   std::string quoted = "\"";
   quoted.append(request, 0, 80);
+  for (char& c : quoted)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
   return quoted += '"';
 }
 
@@ -136,20 +204,24 @@ double degrees_of(const std::string& request, std::size_t equals, const std::str
   while (begin != end && (*begin == ' ' || *begin == '+')) ++begin;
   while (begin != end && (end[-1] == ' ')) --end;
   const auto [stop, error] = std::from_chars(begin, end, degrees);
-  if (begin == end || error != std::errc() || stop != end || !std::isfinite(degrees) || std::abs(degrees) > kMostDegrees)
-    throw Error("this is no angle of a joint", where + " " + request_of(request), "write JOINT MOTION=DEGREES, from -360 to 360, as in \"left hip flexion=90\"");
+  if (begin == end || error != std::errc() || stop != end || !std::isfinite(degrees) ||
+      std::abs(degrees) > kMostDegrees)
+    throw Error("this is no angle of a joint", where + " " + request_of(request),
+                "write JOINT MOTION=DEGREES, from -360 to 360, as in \"left hip flexion=90\"");
   return degrees;
 }
 
 void set_fingers(JointAngles& angles, Sides sides, double degrees, bool with_thumb) {
   for (const BodySide side : sides_of(sides)) {
-    for (const BodyJoint finger : {Index, Middle, Ring, Little}) angles[{finger, side}] = {degrees, degrees, kLastJointShare * degrees};
+    for (const BodyJoint finger : {Index, Middle, Ring, Little})
+      angles[{finger, side}] = {degrees, degrees, kLastJointShare * degrees};
     if (with_thumb) angles[{Thumb, side}] = {std::nullopt, kThumbShare * degrees, kThumbShare * degrees};
   }
 }
 
 // "left hand curl", "fingers flexion": several joints at once.
-bool add_hand_request(JointAngles& angles, const std::vector<std::string>& words, std::size_t first, Sides sides, double degrees) {
+bool add_hand_request(JointAngles& angles, const std::vector<std::string>& words, std::size_t first, Sides sides,
+                      double degrees) {
   if (words.size() != first + 2) return false;
   const std::string& hand = words[first];
   const bool curl = words[first + 1] == "curl" && (hand == "hand" || hand == "hands");
@@ -167,8 +239,12 @@ std::optional<JointMotions> finger_motions(BodyJoint finger, const std::string& 
     return JointMotions{degrees, degrees, kLastJointShare * degrees};
   }
   if (motion == "extension") return finger_motions(finger, "flexion", -degrees);
-  constexpr std::string_view kFinger[][2] = {{"mcp flexion", "knuckle flexion"}, {"pip flexion", "middle joint flexion"}, {"dip flexion", "last joint flexion"}};
-  constexpr std::string_view kThumb[][2] = {{"cmc flexion", "saddle joint flexion"}, {"mcp flexion", "knuckle flexion"}, {"ip flexion", "last joint flexion"}};
+  constexpr std::string_view kFinger[][2] = {{"mcp flexion", "knuckle flexion"},
+                                             {"pip flexion", "middle joint flexion"},
+                                             {"dip flexion", "last joint flexion"}};
+  constexpr std::string_view kThumb[][2] = {{"cmc flexion", "saddle joint flexion"},
+                                            {"mcp flexion", "knuckle flexion"},
+                                            {"ip flexion", "last joint flexion"}};
   for (std::size_t i = 0; i < 3; ++i)
     for (const std::string_view word : finger == Thumb ? kThumb[i] : kFinger[i])
       if (motion == word) {
@@ -217,7 +293,9 @@ void merge(JointMotions& into, const JointMotions& from) {
 const UsualRange* usual_range(BodyJoint joint, std::size_t motion) {
   if (joint == Thumb) return &kUsualThumb[motion];
   if (is_finger(joint)) return &kUsualFinger[motion];
-  const auto found = std::find_if(std::begin(kUsual), std::end(kUsual), [&](const UsualRange& range) { return range.joint == joint && range.motion == motion; });
+  const auto found = std::find_if(std::begin(kUsual), std::end(kUsual), [&](const UsualRange& range) {
+    return range.joint == joint && range.motion == motion;
+  });
   return found == std::end(kUsual) ? nullptr : found;
 }
 
@@ -242,14 +320,20 @@ void add_joint_request(JointAngles& angles, const std::string& request, const st
   const std::string motion = joined(words, next, words.size());
   const auto motions = motions_of(joint, motion, degrees);
   const std::string name = name_of(SidedJoint{joint});
-  if (!motions) throw Error("the " + name + (motion.empty() ? " has several motions" : " has no motion \"" + motion.substr(0, 40) + "\""), here, "write one of: " + known_motions(joint));
-  if (!is_paired(joint) && sides != Sides::NotSaid) throw Error("the body has one " + name + " only", here, "leave out the side; write \"" + name + " left bending\" for what goes to a side");
+  if (!motions)
+    throw Error(
+        "the " + name + (motion.empty() ? " has several motions" : " has no motion \"" + motion.substr(0, 40) + "\""),
+        here, "write one of: " + known_motions(joint));
+  if (!is_paired(joint) && sides != Sides::NotSaid)
+    throw Error("the body has one " + name + " only", here,
+                "leave out the side; write \"" + name + " left bending\" for what goes to a side");
   if (plural && sides == Sides::NotSaid) sides = Sides::Both;
   for (const BodySide side : sides_of(sides)) merge(angles[{joint, side}], *motions);
 }
 
 std::string name_of(const SidedJoint& joint) {
-  const auto found = std::find_if(std::begin(kNames), std::end(kNames), [&](const JointName& known) { return known.joint == joint.joint; });
+  const auto found = std::find_if(std::begin(kNames), std::end(kNames),
+                                  [&](const JointName& known) { return known.joint == joint.joint; });
   const std::string side = joint.side == BodySide::Left ? "left " : joint.side == BodySide::Right ? "right " : "";
   return side + std::string(found->name);
 }
@@ -289,7 +373,8 @@ BodyPart part_of(BodyJoint joint) {
     case Neck: return BodyPart::Neck;
     case Girdle: return BodyPart::Clavicle;
     case Shoulder: return BodyPart::UpperArm;
-    case Elbow: case Forearm: return BodyPart::Forearm;
+    case Elbow:
+    case Forearm: return BodyPart::Forearm;
     case Wrist: return BodyPart::Hand;
     case Hip: return BodyPart::Thigh;
     case Knee: return BodyPart::Shank;
@@ -313,8 +398,9 @@ std::vector<std::string> beyond_usual(const JointAngles& angles) {
       const UsualRange* range = motions[i] ? usual_range(joint.joint, i) : nullptr;
       if (!range || (*motions[i] >= range->low && *motions[i] <= range->high)) continue;
       char text[200];
-      std::snprintf(text, sizeof text, "%s %s of %g degrees is beyond the %g to %g that adults usually reach", name_of(joint).c_str(),
-                    std::string(motion_name(joint.joint, i)).c_str(), *motions[i], range->low, range->high);
+      std::snprintf(text, sizeof text, "%s %s of %g degrees is beyond the %g to %g that adults usually reach",
+                    name_of(joint).c_str(), std::string(motion_name(joint.joint, i)).c_str(), *motions[i], range->low,
+                    range->high);
       lines.emplace_back(text);
     }
   return lines;

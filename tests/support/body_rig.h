@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A rig of a whole body, built in code in the anatomical position: upright along LPS, limbs straight, arms hanging, palms and feet
-// forward. Tests turn its joints by hand to make rigs that rest otherwise.
+// A rig of a whole body, built in code in the anatomical position: upright along LPS, limbs straight, arms hanging,
+// palms and feet forward. Tests turn its joints by hand to make rigs that rest otherwise.
 #pragma once
 
 #include <functional>
@@ -22,10 +22,59 @@ struct RigNames {
   std::vector<std::string> fingers{"Thumb", "Index", "Middle", "Ring", "Little"};
 };
 
-inline const RigNames kAnatomistsNames{"Pelvis", "Lumbar", "Thorax", "Neck", "Head", "@Clavicle", "@UpperArm", "@Forearm", "@Hand", "@Thigh", "@Shank", "@Foot", "@Toes", "@Hand#%"};
-inline const RigNames kMixamoNames{"mixamorig:Hips", "mixamorig:Spine", "mixamorig:Spine1", "mixamorig:Neck", "mixamorig:Head", "mixamorig:@Shoulder", "mixamorig:@Arm", "mixamorig:@ForeArm", "mixamorig:@Hand", "mixamorig:@UpLeg", "mixamorig:@Leg", "mixamorig:@Foot", "mixamorig:@ToeBase", "mixamorig:@Hand#%", "Left", "Right", {"Thumb", "Index", "Middle", "Ring", "Pinky"}};
-inline const RigNames kBlenderNames{"pelvis", "spine", "chest", "neck", "head", "clavicle.@", "upper_arm.@", "forearm.@", "hand.@", "thigh.@", "shin.@", "foot.@", "toe.@", "f_#.0%.@", "L", "R", {"thumb", "index", "middle", "ring", "pinky"}};
-inline const RigNames kUnrealNames{"pelvis", "spine_01", "spine_02", "neck_01", "head", "clavicle_@", "upperarm_@", "lowerarm_@", "hand_@", "thigh_@", "calf_@", "foot_@", "ball_@", "#_0%_@", "l", "r", {"thumb", "index", "middle", "ring", "pinky"}};
+inline const RigNames kAnatomistsNames{"Pelvis",   "Lumbar", "Thorax", "Neck",   "Head",  "@Clavicle", "@UpperArm",
+                                       "@Forearm", "@Hand",  "@Thigh", "@Shank", "@Foot", "@Toes",     "@Hand#%"};
+inline const RigNames kMixamoNames{"mixamorig:Hips",
+                                   "mixamorig:Spine",
+                                   "mixamorig:Spine1",
+                                   "mixamorig:Neck",
+                                   "mixamorig:Head",
+                                   "mixamorig:@Shoulder",
+                                   "mixamorig:@Arm",
+                                   "mixamorig:@ForeArm",
+                                   "mixamorig:@Hand",
+                                   "mixamorig:@UpLeg",
+                                   "mixamorig:@Leg",
+                                   "mixamorig:@Foot",
+                                   "mixamorig:@ToeBase",
+                                   "mixamorig:@Hand#%",
+                                   "Left",
+                                   "Right",
+                                   {"Thumb", "Index", "Middle", "Ring", "Pinky"}};
+inline const RigNames kBlenderNames{"pelvis",
+                                    "spine",
+                                    "chest",
+                                    "neck",
+                                    "head",
+                                    "clavicle.@",
+                                    "upper_arm.@",
+                                    "forearm.@",
+                                    "hand.@",
+                                    "thigh.@",
+                                    "shin.@",
+                                    "foot.@",
+                                    "toe.@",
+                                    "f_#.0%.@",
+                                    "L",
+                                    "R",
+                                    {"thumb", "index", "middle", "ring", "pinky"}};
+inline const RigNames kUnrealNames{"pelvis",
+                                   "spine_01",
+                                   "spine_02",
+                                   "neck_01",
+                                   "head",
+                                   "clavicle_@",
+                                   "upperarm_@",
+                                   "lowerarm_@",
+                                   "hand_@",
+                                   "thigh_@",
+                                   "calf_@",
+                                   "foot_@",
+                                   "ball_@",
+                                   "#_0%_@",
+                                   "l",
+                                   "r",
+                                   {"thumb", "index", "middle", "ring", "pinky"}};
 
 inline std::string replaced(std::string text, const std::string& what, const std::string& with) {
   for (std::size_t at; (at = text.find(what)) != text.npos;) text.replace(at, what.size(), with);
@@ -38,8 +87,10 @@ inline Armature body_rig(const RigNames& names = kAnatomistsNames, bool with_fin
     rig.bones.push_back({.name = name, .parent = parent, .head = head, .tail = tail});
     return static_cast<int>(rig.bones.size()) - 1;
   };
-  const int pelvis = add(names.pelvis, -1, {0, 0, 950}, {0, 0, 1050}), spine = add(names.spine, pelvis, {0, 0, 1050}, {0, 0, 1200});
-  const int chest = add(names.chest, spine, {0, 0, 1200}, {0, 0, 1450}), neck = add(names.neck, chest, {0, 0, 1450}, {0, 0, 1550});
+  const int pelvis = add(names.pelvis, -1, {0, 0, 950}, {0, 0, 1050}),
+            spine = add(names.spine, pelvis, {0, 0, 1050}, {0, 0, 1200});
+  const int chest = add(names.chest, spine, {0, 0, 1200}, {0, 0, 1450}),
+            neck = add(names.neck, chest, {0, 0, 1450}, {0, 0, 1550});
   add(names.head, neck, {0, 0, 1550}, {0, 0, 1750});
   for (const double out : {1.0, -1.0}) {
     const auto sided = [&](const std::string& name) { return replaced(name, "@", out > 0 ? names.left : names.right); };
@@ -54,10 +105,13 @@ inline Armature body_rig(const RigNames& names = kAnatomistsNames, bool with_fin
       int parent = hand;
       for (int segment = 1; segment <= 3; ++segment) {
         const double top = (thumb ? 830 : 770) - 30 * (segment - 1);
-        parent = add(replaced(replaced(sided(names.finger), "#", names.fingers[static_cast<std::size_t>(finger)]), "%", std::to_string(segment)), parent, at(aside, 0, top), at(aside, 0, top - 30));
+        parent = add(replaced(replaced(sided(names.finger), "#", names.fingers[static_cast<std::size_t>(finger)]), "%",
+                              std::to_string(segment)),
+                     parent, at(aside, 0, top), at(aside, 0, top - 30));
       }
     }
-    const int thigh = add(sided(names.thigh), pelvis, at(90, 0, 930), at(90, 0, 500)), shank = add(sided(names.shank), thigh, at(90, 0, 500), at(90, 0, 90));
+    const int thigh = add(sided(names.thigh), pelvis, at(90, 0, 930), at(90, 0, 500)),
+              shank = add(sided(names.shank), thigh, at(90, 0, 500), at(90, 0, 90));
     const int foot = add(sided(names.foot), shank, at(90, 0, 90), at(90, -130, 30));
     add(sided(names.toes), foot, at(90, -130, 30), at(90, -190, 22));
   }

