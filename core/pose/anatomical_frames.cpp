@@ -18,7 +18,7 @@ constexpr double kDegree = kPi / 180;
 
 constexpr double kUprightLean = 10 * kDegree;   // from the world's axes
 constexpr double kStraightKnee = 20 * kDegree;  // then legs tell the vertical too,
-constexpr double kLegsInLine = 25 * kDegree;    // if both together are so far in line with the trunk
+constexpr double kLegsInLine = 25 * kDegree;    // if they are so far in line with the trunk
 constexpr double kKneeAside = 5 * kDegree;      // varus and valgus of healthy knees [Hsu 1990]
 constexpr double kElbowAside = 8 * kDegree;     // about half of the carrying angle
 constexpr double kHyperextension = 15 * kDegree;
@@ -305,18 +305,20 @@ glm::dmat3 nearest_world_axes(const glm::dmat3& axes) {
   return nearest;
 }
 
-// Up along legs that are straight and in line with the trunk; zero where they are not.
-glm::dvec3 up_of_legs(const Skeleton& skeleton, const glm::dvec3& trunk) {
+// Up along legs that are straight and, seen from the side, both in line with the trunk; zero where they are not.
+glm::dvec3 up_of_legs(const Skeleton& skeleton, const glm::dvec3& trunk, const glm::dvec3& across) {
+  const auto from_the_side = [&](const glm::dvec3& v) { return v - unit(across) * glm::dot(v, unit(across)); };
   glm::dvec3 up(0);
   for (const BodySide side : {BodySide::Left, BodySide::Right}) {
     const auto hip = skeleton.place_of(BodyPart::Thigh, side), knee = skeleton.place_of(BodyPart::Shank, side),
                ankle = skeleton.place_of(BodyPart::Foot, side);
     if (!hip || !knee || !ankle) return glm::dvec3(0);
-    if (angle_between(*hip - *knee, *knee - *ankle) > kStraightKnee) return glm::dvec3(0);
-    up += unit(*hip - *ankle);
+    const glm::dvec3 leg = *hip - *ankle;
+    const bool straight = angle_between(*hip - *knee, *knee - *ankle) < kStraightKnee;
+    if (!straight || angle_between(from_the_side(leg), from_the_side(trunk)) > kLegsInLine) return glm::dvec3(0);
+    up += unit(leg);
   }
-  // Legs apart lean to both sides alike.
-  return angle_between(up, trunk) < kLegsInLine ? up : glm::dvec3(0);
+  return up;
 }
 
 }  // namespace
@@ -330,13 +332,14 @@ glm::dmat3 upright_axes(const Armature& armature) {
   const Skeleton skeleton = skeleton_of(armature);
   const auto trunk = trunk_line(skeleton);
   if (!trunk) return glm::dmat3(1);
-  // Trunks of upright bodies lean back on their way up and legs on their way down; the mean of both stands upright.
-  const glm::dvec3 legs = up_of_legs(skeleton, *trunk), up = legs == glm::dvec3(0) ? *trunk : unit(*trunk) + unit(legs);
   glm::dvec3 across(0);
   for (const BodyPart part : {BodyPart::Thigh, BodyPart::UpperArm}) {
     const auto left = skeleton.place_of(part, BodySide::Left), right = skeleton.place_of(part, BodySide::Right);
     if (left && right) across += *left - *right;
   }
+  // Trunks of upright bodies lean back on their way up and legs on their way down; the mean of both stands upright.
+  const glm::dvec3 legs = up_of_legs(skeleton, *trunk, across);
+  const glm::dvec3 up = legs == glm::dvec3(0) ? *trunk : unit(*trunk) + unit(legs);
   const std::optional<glm::dmat3> axes = axes_of(up, across);
   if (!axes) return glm::dmat3(1);
   const glm::dmat3 world = nearest_world_axes(*axes);

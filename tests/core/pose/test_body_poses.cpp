@@ -131,6 +131,7 @@ TEST_CASE("body poses: T-pose, A-pose, seated and crooked rests give the same bo
                                                      {"LeftForearm", {1, 0, 0}, -60},
                                                      {"RightForearm", {1, 0, 0}, -100},
                                                      {"LeftFoot", {1, 0, 0}, 30}},
+                                                    {{"LeftThigh", {1, 0, 0}, -50}},
                                                     {{"LeftThigh", {0, 0, 1}, 40},
                                                      {"RightThigh", {0, 0, 1}, -40},
                                                      {"LeftUpperArm", {0, 0, 1}, 30},
