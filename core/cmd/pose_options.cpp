@@ -77,6 +77,8 @@ CLI::Option* add_body_pose_options(CLI::App& command, PoseRequest& request, CLI:
   for (const BodyPose& one : body_poses()) names += (names.empty() ? "" : ", ") + std::string(one.name);
   auto* name = command.add_option("--pose-name", request.name, "pose of any body, by its joints: " + names)
                    ->type_name("NAME")->excludes(pose)->group(pose->get_group());
+  // An empty name would be no pose, in silence.
+  name->check([](const std::string& given) { return given.empty() ? std::string("write a pose's name") : std::string(); }, "");
   command.add_option("--joint", request.joints, "angle of a joint from the anatomical position, over the pose (repeatable): "
                                                 "\"left hip flexion=90\", \"knees flexion=60\"")
       ->type_name("\"JOINT MOTION=DEG\"")->expected(1)->take_all()->group(pose->get_group());

@@ -117,7 +117,7 @@ double roll_of(const Bone& bone, const glm::dvec3& x) {
 glm::dvec3 flex_axis(const Armature& armature, int bone_index) {
   const Bone& bone = armature.bones[bone_index];
   if (bone.limits.type == JointLimits::Type::Hinge) return bone.limits.axis;
-  const std::string remedy = "give the bone a hinge axis in its limits, or pose it with --pose";
+  const std::string remedy = "give the bone a hinge axis in its limits, or name its joint, as in --joint \"left knee flexion=90\"";
   if (bone.parent < 0) throw Error("the bone has no parent to flex against", bone.name, remedy);
 
   const Bone& parent = armature.bones[bone.parent];
