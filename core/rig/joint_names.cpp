@@ -38,6 +38,8 @@ Words words_of(std::string_view name) {
   const Words all = words;
   std::erase_if(words, [&](const std::string& word) { return kNoise.contains(word); });
   if (all.size() > 2 && all[0] == "cc" && all[1] == "base") words.erase(words.begin());
+  // VRoid's "J_Bip_L_Hand", "J_Bip_C_Hips": C is the middle.
+  if (all.size() > 2 && all[0] == "j" && all[1] == "bip") words.erase(words.begin(), words.begin() + (words.size() > 2 && all[2] == "c" ? 2 : 1));
   // "Bip01", "Character1": the number goes with the word.
   if (all.size() > 2 && kNoise.contains(all[0]) && is_digit(all[1][0]) && !words.empty()) words.erase(words.begin());
   return words.empty() ? all : words;
@@ -67,7 +69,7 @@ const std::map<std::string, Word, std::less<>>& dictionary() {
       {"lowerneck", Word::Neck}, {"upperneck", Word::Neck}, {"necklower", Word::Neck}, {"neckupper", Word::Neck},
       {"head", Word::Head}, {"skull", Word::Head},
       {"clavicle", Word::Clavicle}, {"clav", Word::Clavicle}, {"collar", Word::Clavicle}, {"collarbone", Word::Clavicle}, {"acromion", Word::Clavicle},
-      {"shoulder", Word::Shoulder}, {"shldr", Word::Shoulder},
+      {"shoulder", Word::Shoulder}, {"shldr", Word::Shoulder}, {"shldrbend", Word::UpperArm}, {"forearmbend", Word::Elbow}, {"thighbend", Word::Thigh},
       {"arm", Word::UpperArm}, {"upperarm", Word::UpperArm}, {"uparm", Word::UpperArm}, {"humerus", Word::UpperArm}, {"humrus", Word::UpperArm},
       {"humeurs", Word::UpperArm},
       {"forearm", Word::Elbow}, {"elbow", Word::Elbow}, {"lowerarm", Word::Elbow}, {"loarm", Word::Elbow}, {"ulna", Word::Elbow},

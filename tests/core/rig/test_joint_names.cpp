@@ -88,6 +88,24 @@ TEST_CASE("joint names: the schools of naming are understood") {
   CHECK(makehuman.joint({P::Spine, M, 0}) == "spine05");
 }
 
+TEST_CASE("joint names: what game and character makers call bones is understood too") {
+  const Named vroid{"Root", "J_Bip_C_Hips", "J_Bip_C_Spine", "J_Bip_C_Chest", "J_Bip_C_Neck", "J_Bip_C_Head", "<J_Bip_L_Shoulder", "J_Bip_L_UpperArm",
+                    "J_Bip_L_LowerArm", "J_Bip_L_Hand", "J_Bip_L_Index2", "<J_Bip_R_UpperLeg", "J_Bip_R_LowerLeg", "J_Bip_R_Foot"};
+  CHECK(vroid.joint({P::Pelvis}) == "J_Bip_C_Hips");
+  CHECK(vroid.joint({P::Spine, M, 1}) == "J_Bip_C_Chest");
+  CHECK(vroid.joint({P::Clavicle, L}) == "J_Bip_L_Shoulder");
+  CHECK(vroid.joint({P::Forearm, L}) == "J_Bip_L_LowerArm");
+  CHECK(vroid.joint({P::Index, L, 2}) == "J_Bip_L_Index2");
+  CHECK(vroid.joint({P::Thigh, R}) == "J_Bip_R_UpperLeg");
+
+  const Named daz{"hip", "abdomenLower", "chestUpper", "neckLower", "head", "<lCollar", "lShldrBend", "lShldrTwist", "lForearmBend", "lHand", "<rThighBend",
+                  "rThighTwist", "rShin", "rFoot"};
+  CHECK(daz.joint({P::UpperArm, L}) == "lShldrBend");
+  CHECK(daz.joint({P::Forearm, L}) == "lForearmBend");
+  CHECK(daz.joint({P::Thigh, R}) == "rThighBend");
+  CHECK(daz.joint({P::Shank, R}) == "rShin");
+}
+
 TEST_CASE("joint names: an arm of its own needs no sides") {
   const Named arm{"Humerus", "Forearm", "IndexMetarcapal", "IndexMidllePhalange", "<MiddleMiddlePhalange", "<ThumbProximalPhalange", "<SmallDistalPhalange"};
   CHECK(arm.joint({P::UpperArm, M}) == "Humerus");
