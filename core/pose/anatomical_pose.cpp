@@ -313,6 +313,19 @@ JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles) {
   return known;
 }
 
+std::string lacking_within_limbs(const BodyFrames& frames, const JointAngles& angles) {
+  constexpr std::pair<BodyJoint, BodyJoint> kNextBelow[] = {
+      {Shoulder, Elbow}, {Elbow, Wrist}, {Hip, Knee}, {Knee, Ankle}};
+  std::string names;
+  for (const auto& [joint, motions] : angles)
+    for (const auto& [above, below] : kNextBelow) {
+      const bool lacking =
+          joint.joint == above && !frames.find(part_of(above), joint.side) && has(frames, {below, joint.side});
+      if (lacking) names += (names.empty() ? "" : ", ") + name_of(joint);
+    }
+  return names;
+}
+
 std::vector<int> bones_of_joints(const BodyFrames& frames, const JointAngles& angles) {
   std::vector<int> all;
   for (const auto& [joint, motions] : angles) {

@@ -28,6 +28,10 @@ JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, cons
 // The joints of `angles` that the rig has, with their sides: what a pose for any body is on this one.
 JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles);
 
+// The joints of `angles` that the rig lacks between others that it has, by name: "left hip, right hip". A limb that
+// begins or ends further out lacks nothing.
+std::string lacking_within_limbs(const BodyFrames& frames, const JointAngles& angles);
+
 // The bones that the joints of `angles` turn.
 std::vector<int> bones_of_joints(const BodyFrames& frames, const JointAngles& angles);
 

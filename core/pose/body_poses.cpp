@@ -34,10 +34,12 @@ constexpr BodyPose kPoses[] = {
     {"drive", "Sitting in a car, both hands at the wheel.",
      "hips flexion=85; hips abduction=8; knees flexion=60; ankles plantarflexion=5;"
      "shoulders flexion=55; shoulders abduction=5; elbows flexion=45; forearms pronation=100; hands curl=50"},
-    {"supine", "As on a scanner's table: straight, arms a little apart, palms forward. The body itself is not laid down.",
+    {"supine",
+     "As on a scanner's table: straight, arms a little apart, palms forward. The body itself is not laid down.",
      "shoulders abduction=15"},
     {"reach", "Standing, the right arm stretched forward and up.",
-     "right shoulder girdle elevation=22; right shoulder flexion=135; right elbow flexion=5; right forearm pronation=90;"
+     "right shoulder girdle elevation=22; right shoulder flexion=135; right elbow flexion=5; right forearm "
+     "pronation=90;"
      "left shoulder abduction=8; left elbow flexion=5; left forearm pronation=90"},
     {"T", "Arms straight to the sides, palms down.", "shoulders abduction=90; forearms pronation=90"},
     {"A", "Arms straight and half way down, thumbs forward.", "shoulders abduction=45; forearms pronation=90"},
@@ -93,7 +95,10 @@ Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest&
   JointAngles angles;
   if (!request.name.empty()) {
     const std::string where = "--pose-name " + request.name.substr(0, 60);
-    angles = known_to_rig(frames, angles_of(require_body_pose(request.name, "--pose-name")));
+    const JointAngles whole = angles_of(require_body_pose(request.name, "--pose-name"));
+    angles = known_to_rig(frames, whole);
+    if (const std::string lacking = lacking_within_limbs(frames, whole); !lacking.empty())
+      warnings.push_back("the pose leaves out joints whose bones are not known by their names: " + lacking);
     if (angles.empty())
       throw Error("the rig has no limb's joint between bones that are known by their names", where,
                   "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");

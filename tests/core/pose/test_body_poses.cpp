@@ -377,6 +377,16 @@ TEST_CASE(
   CHECK(warnings[0].find("exchanged") != std::string::npos);
 }
 
+TEST_CASE("body poses: joints that a named pose has to leave out in the middle of a limb are told") {
+  Armature rig = body_rig();
+  rig.bones[static_cast<std::size_t>(require_bone(rig, "LeftThigh"))].name = "Stick";
+  std::vector<std::string> warnings;
+  with_request(rig, rest_pose(rig), {"sit", {}}, warnings);
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0].find("left hip") != std::string::npos);
+  CHECK(warnings[0].find("right hip") == std::string::npos);
+}
+
 TEST_CASE("body poses: real rigs of CT bodies, modellers and scanners take the poses to a hundredth of a degree") {
   NEEDS_SHARED("data/bp3d/body.armature.json");
   NEEDS_SHARED("data/makehuman/body.armature.json");
