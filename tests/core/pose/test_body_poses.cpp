@@ -377,6 +377,25 @@ TEST_CASE(
   CHECK(warnings[0].find("exchanged") != std::string::npos);
 }
 
+TEST_CASE("body poses: with the telephone the right palm is beside the right ear, facing it") {
+  NEEDS_SHARED("data/bp3d/body.armature.json");
+  const Armature rig = read_armature(shared_path("data/bp3d/body.armature.json"));
+  const Pose pose = posed(rig, "phone");
+  const auto world = posed_from_rest(rig, pose);
+  const auto head_of = [&](const char* bone) {
+    const auto b = static_cast<std::size_t>(require_bone(rig, bone));
+    return world[b] * rig.bones[b].head;
+  };
+  // The ear's opening lies beside the joint between head and neck and a little above it.
+  const glm::dvec3 ear = head_of("Head") + glm::dvec3(-78, 0, 15);
+  const glm::dvec3 palm = (head_of("RightHand") + head_of("RightMiddleProximal")) / 2.0;
+  CHECK(glm::distance(palm, ear) < 60);
+  CHECK(palm.x < ear.x);
+  const glm::dvec3 along = head_of("RightMiddleProximal") - head_of("RightHand");
+  const glm::dvec3 across = head_of("RightLittleProximal") - head_of("RightIndexProximal");
+  CHECK(glm::normalize(glm::cross(along, across)).x > 0.8);
+}
+
 TEST_CASE("body poses: joints that a named pose has to leave out in the middle of a limb are told") {
   Armature rig = body_rig();
   rig.bones[static_cast<std::size_t>(require_bone(rig, "LeftThigh"))].name = "Stick";
