@@ -11,8 +11,9 @@ namespace limber {
 namespace {
 
 constexpr BodyPart kFingers[] = {BodyPart::Index, BodyPart::Middle, BodyPart::Ring, BodyPart::Little};
-constexpr double kCurled = 0.26;  // sine of 15 degrees, summed along the finger: what tells the plane of its curl
-constexpr double kAskew = 0.7;    // cosine of 45 degrees: a finger curled further aside is crooked, not curled
+constexpr double kCurled = 0.5;  // sine of 30 degrees, summed along the finger: what tells the plane of its curl
+constexpr double kAskew = 0.8;   // cosine of 37 degrees: a finger curled further aside is crooked, not curled
+constexpr double kSided = 0.26;  // sine of 15 degrees, summed along all fingers: what tells a left hand from a right one
 
 glm::dvec3 unit(const glm::dvec3& v) {
   const double length = glm::length(v);
@@ -139,7 +140,7 @@ std::optional<bool> is_right_hand(const Skeleton& skeleton) {
   glm::dvec3 turning(0);
   for (const BodyPart finger : kFingers) turning += curl(finger_of(skeleton, finger, BodySide::Middle));
   const double along_axis = glm::dot(turning, unit(*across));
-  return std::abs(along_axis) > kCurled ? std::optional(along_axis < 0) : std::nullopt;
+  return std::abs(along_axis) > kSided ? std::optional(along_axis < 0) : std::nullopt;
 }
 
 Hinges finger_hinges(const Armature& armature, const Skeleton& skeleton, BodySide side, bool right) {

@@ -406,6 +406,30 @@ TEST_CASE("body poses: joints that a named pose has to leave out in the middle o
   CHECK(warnings[0].find("right hip") == std::string::npos);
 }
 
+TEST_CASE("body poses: the rigs that come with the program, hinges and all, take the poses") {
+  for (const char* rig : {"adult", "child"})
+    check_poses({kAnatomistsNames, read_armature(std::string(LIMBER_SOURCE_DIR "/assets/rigs/") + rig + ".json")});
+}
+
+TEST_CASE("body poses: a hand whose names say no side curls its fingers into its palm") {
+  const Armature hand = read_armature(LIMBER_SOURCE_DIR "/assets/rigs/hand.json");
+  const Pose straight = posed(hand, "", {"hand curl=0"}), fist = posed(hand, "", {"hand curl=80"});
+  // It is a right one: its palm faces along these two.
+  const auto place = [&](const char* bone) {
+    return hand.bones[static_cast<std::size_t>(require_bone(hand, bone))].head;
+  };
+  const glm::dvec3 along = place("MiddleProximal") - place("Hand");
+  const glm::dvec3 palm = glm::normalize(glm::cross(along, place("LittleProximal") - place("IndexProximal")));
+  for (const std::string finger : {"Index", "Middle", "Ring", "Little"}) {
+    const glm::dvec3 before = posed_direction(hand, straight, finger + "Proximal"),
+                     after = posed_direction(hand, fist, finger + "Proximal");
+    CHECK(degrees_between(before, after) == doctest::Approx(80).epsilon(0.01));
+    CHECK(glm::dot(after - before, palm) > 0.8);
+    CHECK(degrees_between(posed_direction(hand, fist, finger + "Middle"), after) == doctest::Approx(80).epsilon(0.01));
+    CHECK(degrees_between(posed_direction(hand, straight, finger + "Middle"), before) < 0.5);
+  }
+}
+
 TEST_CASE("body poses: real rigs of CT bodies, modellers and scanners take the poses to a hundredth of a degree") {
   NEEDS_SHARED("data/bp3d/body.armature.json");
   NEEDS_SHARED("data/makehuman/body.armature.json");
