@@ -16,7 +16,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
 
-constexpr double kUprightLean = 10 * kDegree;   // from the world's axes
+constexpr double kUprightLean = 7.5 * kDegree;  // from the world's axes
 constexpr double kStraightKnee = 20 * kDegree;  // then legs tell the vertical too,
 constexpr double kLegsInLine = 25 * kDegree;    // if they are so far in line with the trunk
 constexpr double kKneeAside = 5 * kDegree;      // varus and valgus of healthy knees [Hsu 1990]

@@ -55,7 +55,7 @@ struct BodyFrames {
 
 BodyFrames body_frames(const Armature& armature);
 
-// The body's axes from its hips and shoulders, its trunk and its legs. Where they lie within 10 degrees of the world's
+// The body's axes from its hips and shoulders, its trunk and its legs. Where they lie within 7.5 degrees of the world's
 // axes they are the world's: joints of a body that stands upright are off by as much. Upright (LPS) where the rig does
 // not tell.
 glm::dmat3 upright_axes(const Armature& armature);

@@ -188,6 +188,20 @@ TEST_CASE("body poses: a body that lies or is turned as a whole takes its poses 
   }
 }
 
+TEST_CASE(
+    "body poses: joints that are a little off do not turn an upright body, one that lies askew keeps its own axes") {
+  Body leaning{kAnatomistsNames, body_rig()};
+  for (Bone& bone : leaning.rig.bones) {
+    // A neck too far back, a left hip too far in front.
+    const bool neck = bone.name == "Neck" || bone.name == "Head", hip = bone.name == "LeftThigh";
+    if (neck) bone.head.y += 35, bone.tail.y += 35;
+    if (hip) bone.head.y -= 12;
+  }
+  check_poses(leaning);
+  const glm::dquat askew = glm::angleAxis(glm::radians(11.0), kUpwards);
+  check_poses({kAnatomistsNames, moved(body_rig(), askew, {0, 0, 0}), askew});
+}
+
 TEST_CASE("body poses: the roll of bones and hands without fingers change no direction") {
   Body body{kAnatomistsNames, body_rig(kAnatomistsNames, false)};
   for (std::size_t b = 0; b < body.rig.bones.size(); ++b) body.rig.bones[b].roll = 0.7 * static_cast<double>(b);
