@@ -326,6 +326,25 @@ std::string lacking_within_limbs(const BodyFrames& frames, const JointAngles& an
   return names;
 }
 
+std::string limbs_apart(const Armature& armature, const BodyFrames& frames) {
+  constexpr std::pair<BodyPart, BodyPart> kNextBelow[] = {{BodyPart::UpperArm, BodyPart::Forearm},
+                                                          {BodyPart::Forearm, BodyPart::Hand},
+                                                          {BodyPart::Thigh, BodyPart::Shank},
+                                                          {BodyPart::Shank, BodyPart::Foot}};
+  std::string names;
+  for (const BodySide side : {BodySide::Middle, BodySide::Left, BodySide::Right})
+    for (const auto& [part, next] : kNextBelow) {
+      const auto above = frames.find(part, side), below = frames.find(next, side);
+      if (!above || !below) continue;
+      int carrier = *below;
+      while (carrier >= 0 && carrier != *above) carrier = armature.bones[static_cast<std::size_t>(carrier)].parent;
+      if (carrier < 0)
+        names += (names.empty() ? "" : ", ") + armature.bones[static_cast<std::size_t>(*below)].name + " from " +
+                 armature.bones[static_cast<std::size_t>(*above)].name;
+    }
+  return names.empty() ? "" : "bones of limbs do not hang from the bone above them and stay behind: " + names;
+}
+
 std::vector<int> bones_of_joints(const BodyFrames& frames, const JointAngles& angles) {
   std::vector<int> all;
   for (const auto& [joint, motions] : angles) {

@@ -32,6 +32,10 @@ JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles);
 // begins or ends further out lacks nothing.
 std::string lacking_within_limbs(const BodyFrames& frames, const JointAngles& angles);
 
+// A line that names limbs' bones that do not hang from the bone above them, and so do not go with it; empty where all
+// do.
+std::string limbs_apart(const Armature& armature, const BodyFrames& frames);
+
 // The bones that the joints of `angles` turn.
 std::vector<int> bones_of_joints(const BodyFrames& frames, const JointAngles& angles);
 

@@ -92,6 +92,7 @@ Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest&
     warnings.emplace_back(
         "the rig's feet point to its back: if left and right are exchanged in its bones' names, the pose is wrong: "
         "exchange them, or mirror volume and rig");
+  if (const std::string apart = limbs_apart(armature, frames); !apart.empty()) warnings.push_back(apart);
   JointAngles angles;
   if (!request.name.empty()) {
     const std::string where = "--pose-name " + request.name.substr(0, 60);

@@ -11,9 +11,10 @@ namespace limber {
 namespace {
 
 constexpr BodyPart kFingers[] = {BodyPart::Index, BodyPart::Middle, BodyPart::Ring, BodyPart::Little};
-constexpr double kCurled = 0.5;  // sine of 30 degrees, summed along the finger: what tells the plane of its curl
+constexpr double kCurled = 0.5;  // sine of 30 degrees, summed along the finger: it tells the plane
 constexpr double kAskew = 0.8;   // cosine of 37 degrees: a finger curled further aside is crooked, not curled
-constexpr double kSided = 0.26;  // sine of 15 degrees, summed along all fingers: what tells a left hand from a right one
+constexpr double kSided =
+    0.26;  // sine of 15 degrees, summed along all fingers: what tells a left hand from a right one
 
 glm::dvec3 unit(const glm::dvec3& v) {
   const double length = glm::length(v);

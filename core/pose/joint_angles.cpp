@@ -163,7 +163,8 @@ std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words;
   bool within = false;
   for (char c : text) {
-    const bool upper = c >= 'A' && c <= 'Z', part = upper || (static_cast<unsigned char>(c) > ' ' && c != '-' && c != '_');
+    const bool upper = c >= 'A' && c <= 'Z',
+               part = upper || (static_cast<unsigned char>(c) > ' ' && c != '-' && c != '_');
     if (part && !within) words.emplace_back();
     if (part) words.back() += upper ? static_cast<char>(c - 'A' + 'a') : c;
     within = part;

@@ -420,6 +420,15 @@ TEST_CASE("body poses: joints that a named pose has to leave out in the middle o
   CHECK(warnings[0].find("right hip") == std::string::npos);
 }
 
+TEST_CASE("body poses: a shank that does not hang from its thigh is told") {
+  Armature rig = body_rig();
+  rig.bones[static_cast<std::size_t>(require_bone(rig, "RightShank"))].parent = 0;
+  std::vector<std::string> warnings;
+  with_request(rig, rest_pose(rig), {"", {"left hip flexion=30"}}, warnings);
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0].find("RightShank from RightThigh") != std::string::npos);
+}
+
 TEST_CASE("body poses: the rigs that come with the program, hinges and all, take the poses") {
   for (const char* rig : {"adult", "child"})
     check_poses({kAnatomistsNames, read_armature(std::string(LIMBER_SOURCE_DIR "/assets/rigs/") + rig + ".json")});
