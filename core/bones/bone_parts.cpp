@@ -13,6 +13,7 @@
 
 #include "core/bones/named_bones.h"
 #include "core/bones/bone_watershed.h"
+#include "core/bones/joint_cuts.h"
 
 namespace limber {
 
@@ -111,8 +112,8 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
 class Pieces {
  public:
   //   may_follow  rig bones that the basin of a voxel may follow; none means any
-  Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging, const std::vector<std::int32_t>& basin, double voxel,
-         const auto& may_follow)
+  Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging, const std::vector<std::int32_t>& basin,
+         const std::vector<BeyondJoint>& beyond, double voxel, const auto& may_follow)
       : bones_(hugging.bone_count()), surface_(static_cast<float>(voxel / 2)) {
     const auto members = members_of(basin);
     cluster_.resize(members.size());
@@ -134,6 +135,12 @@ class Pieces {
       if (const std::vector<int>& allowed = may_follow(members[p].front()); !allowed.empty())
         for (int b = 0; b < bones_; ++b)
           if (std::find(allowed.begin(), allowed.end(), b) == allowed.end()) cluster.distance[b] += kForbidden;
+    }
+    std::map<std::pair<std::int32_t, int>, std::int64_t> beyond_count;
+    for (const BeyondJoint& b : beyond) ++beyond_count[{basin[b.voxel], b.bone}];
+    for (const auto& [where, count] : beyond_count) {
+      Cluster& cluster = cluster_[where.first];
+      cluster.distance[where.second] *= static_cast<float>(1 + kBeyondJoint * std::min(1.0, double(count) / double(cluster.voxels)));
     }
     for (std::int32_t i = 0; i < graph.size(); ++i)
       for (std::int32_t n : graph.neighbour[i]) {
@@ -213,6 +220,7 @@ class Pieces {
   // A pass this much lower than the summit is a joint, not a waist. Marrow runs through a bone and never across a joint,
   // so its raised passes tell a condyle's own shaft from the bone it rolls on also where voxels are coarse.
   static constexpr float kWeakestContact = 0.35f;
+  static constexpr double kBeyondJoint = 4;  // how much further off a bone counts that lies beyond a joint
   static constexpr float kForbidden = 1e6f;  // mm: further than any bone
   static constexpr double kFar = 3, kSmall = 4;  // times the distance of the piece along a bone; so much smaller than it
 
@@ -425,9 +433,10 @@ Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named) {
 
 // The rig bone of every voxel by shape: a watershed, whose basins join to the pieces that move as one.
 //   group       #graph, into `candidates`
-std::vector<int> bones_by_shape(const BoneGraph& graph, const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds,
+std::vector<int> bones_by_shape(BoneGraph graph, const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds,
                                 const Armature& armature, const Hugging& hugging, const std::vector<std::int32_t>& group,
                                 const std::vector<std::vector<int>>& candidates, Progress& progress) {
+  const std::vector<BeyondJoint> beyond = cut_at_joints(graph, volume, kinds, armature, group, candidates, progress);
   // Marrow raises the ground: two cores are two summits however thin the shells between them.
   const std::vector<float> depth = bone_depth(graph, volume.grid.spacing);
   std::vector<float> height = depth;
@@ -445,7 +454,7 @@ std::vector<int> bones_by_shape(const BoneGraph& graph, const LabelVolume& volum
   }
   progress.update("bones", 0.8);
 
-  Pieces pieces(graph, height, hugging, basin, voxel, [&](std::int32_t i) -> const std::vector<int>& { return candidates[group[i]]; });
+  Pieces pieces(graph, height, hugging, basin, beyond, voxel, [&](std::int32_t i) -> const std::vector<int>& { return candidates[group[i]]; });
   pieces.join();
   pieces.settle(armature);
   const std::vector<int> of_basin = bones_of_basins(graph, tissue, volume, basin, pieces);
@@ -489,10 +498,10 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   const Hugging hugging(armature, volume.grid);
   const NamedBones named = assign_named_bones(graph, volume, kinds, armature, labels);
   std::vector<int> bone = named.bone;
-  if (const Unsettled unsettled = unsettled_part(graph, named); !unsettled.from.empty()) {
+  if (Unsettled unsettled = unsettled_part(graph, named); !unsettled.from.empty()) {
     std::vector<std::int32_t> group;
     for (const std::int32_t i : unsettled.from) group.push_back(named.group[i]);
-    const std::vector<int> found = bones_by_shape(unsettled.graph, volume, tissue, kinds, armature, hugging, group, named.candidates, progress);
+    const std::vector<int> found = bones_by_shape(std::move(unsettled.graph), volume, tissue, kinds, armature, hugging, group, named.candidates, progress);
     for (std::size_t k = 0; k < found.size(); ++k) bone[unsettled.from[k]] = found[k];
   }
   gather_parts(graph, hugging, bone, result);

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Cuts connected bone tissue apart where rig bones meet. In a coarse scan the bones of a limb touch along whole joint surfaces,
+// and in a hand held closed also along their sides; a watershed runs across such contacts. For each joint of the rig the shaft
+// on either side of it is found, and where bone tissue connects the two, it is cut along the surface of least area between
+// them [Boykov & Kolmogorov 2003: cut metrics measured on a voxel grid]. The area counts more away from the joint, and more
+// through marrow than through the shells of bone, so that of several necks the one at the joint is cut. Bones that do
+// not touch have a cut of no area, and nothing is changed.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/bones/bone_watershed.h"
+#include "core/rig/armature.h"
+
+namespace limber {
+
+// A voxel that lies beyond a joint, seen from a rig bone: it is not of that bone.
+struct BeyondJoint {
+  std::int32_t voxel;  // of the graph
+  int bone;
+};
+
+// Removes the graph's connections across the cuts: both sides see kNotBone. Returns for the voxels around each joint which of
+// its two bones they cannot be of.
+//   group       #graph, into `candidates`
+//   candidates  the rig bones that a group may follow; none means any
+std::vector<BeyondJoint> cut_at_joints(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
+                   const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates, Progress& progress = no_progress());
+
+}  // namespace limber

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The minimum cut of a graph of voxels between a source and a sink [Boykov & Kolmogorov 2004: two search trees that meet].
+// Capacities are whole numbers, so the result does not depend on rounding.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace limber {
+
+struct CutGraph {
+  std::vector<std::array<std::int32_t, 26>> neighbour;  // #n; -1 for none. Edge k of i leads to j, whose edge 25 - k leads back to i
+  std::vector<std::array<std::int32_t, 26>> capacity;   // #n; the same in both directions
+  std::vector<std::int32_t> terminal;                   // #n; what flows in from the source, or out to the sink where negative
+};
+
+// #n, 1 on the source's side of a minimum cut. What no flow reaches from the source lies on the sink's side.
+// The sum of the positive terminals must stay below 2^62.
+std::vector<std::uint8_t> min_cut(CutGraph graph);
+
+}  // namespace limber
