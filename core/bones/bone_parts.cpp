@@ -19,6 +19,7 @@ namespace limber {
 
 namespace {
 
+constexpr double kOther = 1;
 constexpr double kWiggleVoxels = 0.6;  // what rounding to voxels makes of the smooth ridge of a thick tube
 constexpr std::int64_t kMostDistances = 16'000'000;  // basins x rig bones: 64 MB
 
@@ -137,7 +138,14 @@ class Pieces {
           if (std::find(allowed.begin(), allowed.end(), b) == allowed.end()) cluster.distance[b] += kForbidden;
     }
     std::map<std::pair<std::int32_t, int>, std::int64_t> beyond_count;
-    for (const BeyondJoint& b : beyond) ++beyond_count[{basin[b.voxel], b.bone}];
+    std::map<std::tuple<std::int32_t, int, int>, std::int64_t> for_other;
+    for (const BeyondJoint& b : beyond) ++beyond_count[{basin[b.voxel], b.bone}], ++for_other[{basin[b.voxel], b.bone, b.other}];
+    for (const auto& [where, count] : for_other) {
+      const auto [p, from, to] = where;
+      Cluster& cluster = cluster_[p];
+      const double share = std::min(1.0, double(count) / double(cluster.voxels));
+      if (cluster.distance[from] < cluster.distance[to]) cluster.distance[to] += static_cast<float>(kOther * share * (cluster.distance[from] - cluster.distance[to]));
+    }
     for (const auto& [where, count] : beyond_count) {
       Cluster& cluster = cluster_[where.first];
       cluster.distance[where.second] *= static_cast<float>(1 + kBeyondJoint * std::min(1.0, double(count) / double(cluster.voxels)));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -18,7 +19,10 @@ constexpr double kReachAside = 0.3;  // of the longer one's: how far in any dire
 constexpr double kShaft = 0.2;      // of the shorter one's: from there on what lies along a rig bone is surely that bone
 constexpr double kShaftWidth = 0.1;  // of it: what lies along a rig bone, beyond what lies nearest to it
 constexpr double kFarAside = 0.35;  // of a bone's length: nothing so far from a rig bone is its shaft
-constexpr double kAway = 30;        // area counts as much more where the shafts begin, and four times that twice as far away
+constexpr double kAway = 8;         // area counts as much more where the shafts begin, and four times that twice as far away
+constexpr double kSide = 0.6;       // of the shorter bone's length: how far apart bones may run that touch side by side
+constexpr double kSideShaft = 0.5;  // of the distance to the other bone: what lies nearer to its own is surely of it
+constexpr double kCoarse = 0.04;
 constexpr double kMarrow = 4;       // times that area counts through marrow
 constexpr double kBall = 0.02;      // of the bone's length: the smallest radius of the ball at its head
 constexpr double kLargestBall = 0.1;
@@ -62,17 +66,12 @@ class JointCuts {
   JointCuts(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature, const std::vector<std::int32_t>& group,
             const std::vector<std::vector<int>>& candidates)
       : graph_(graph), volume_(volume), kinds_(kinds), bones_(armature.bones), group_(group), candidates_(candidates), world_from_voxel_(world_from_voxel(volume.grid)),
-        area_(areas_of_edges(volume.grid.spacing)), local_(graph.size(), -1) {
-    for (const Bone& bone : bones_) {
-      Bone inner = bone;
-      inner.head = glm::mix(bone.head, bone.tail, 0.1);
-      inner.tail = glm::mix(bone.head, bone.tail, 0.9);
-      inner_.push_back(inner);
-    }
+        area_(areas_of_edges(volume.grid.spacing)), depth_(bone_depth(graph, volume.grid.spacing)), local_(graph.size(), -1) {
     std::vector<std::string> names;
     std::vector<int> parents;
     for (const Bone& bone : bones_) names.push_back(bone.name), parents.push_back(bone.parent);
     for (const auto& role : joint_roles(names, parents)) is_ball_.push_back(role && (role->part == BodyPart::Thigh || role->part == BodyPart::UpperArm));
+    find_nearest();
   }
 
   // Where a bone meets its parent.
@@ -81,91 +80,129 @@ class JointCuts {
     const Bone &p = bones_[parent], &c = bones_[child];
     const double shorter = std::min(length_of(p), length_of(c)), longer = std::max(length_of(p), length_of(c));
     if (shorter <= 0) return;
-    const glm::dvec3 joint = c.head;
-    const glm::dvec3 on_parent = p.head + along_bone(p, joint) / length_of(p) * (p.tail - p.head);
-    glm::dvec3 normal = glm::normalize(c.tail - c.head);
-    if (glm::distance(on_parent, joint) < 0.1 * shorter) {
-      const bool at_tail = glm::distance(joint, p.tail) <= glm::distance(joint, p.head);
-      const glm::dvec3 bisecting = normal + glm::normalize(at_tail ? p.tail - p.head : p.head - p.tail);
-      if (glm::length(bisecting) > 0.3) normal = glm::normalize(bisecting);
-    }
-    const double reach = kReach * shorter;
-    gather(parent, child, joint, std::max(reach, kReachAside * longer), [&](const glm::dvec3& at) { return std::abs(glm::dot(at - joint, normal)) <= reach; });
-    find_core(0, parent, joint, kShaft * shorter, kShaftWidth * shorter);
-    find_core(1, child, joint, kShaft * shorter, kShaftWidth * shorter);
+    const glm::dvec3 joint = c.head, normal = normal_of_joint(p, c);
+    const double reach = kReach * shorter, reach_aside = std::max(reach, kReachAside * longer);
+    clear_domain();
+    for (int which = 0; which < 2; ++which)
+      for (const std::int32_t i : along_[which ? child : parent])
+        if (const glm::dvec3 at = world(i); glm::distance(at, joint) <= reach_aside && std::abs(glm::dot(at - joint, normal)) <= reach) add(i, which);
+    for (int which = 0; which < 2; ++which) find_shaft(which, which ? child : parent, joint, kShaft * shorter, kShaftWidth * shorter);
     const double ball = is_ball_[child] ? depth_at(joint, kLargestBall * length_of(c)) : 0;
     if (ball > kBall * length_of(c)) {
       for (Voxel& v : domain_)
-        if (glm::distance(world(v.at), joint) < kBallCore * ball) v.core = 1;
-      if (is_connected()) cut([&](const glm::dvec3& at) { return (glm::distance(at, joint) - ball) / (kBallWidth * ball); });
+        if (glm::distance(world(v.at), joint) < kBallCore * ball) v.shaft = 1;
+      cut([&](std::int32_t, const glm::dvec3& at) { return (glm::distance(at, joint) - ball) / (kBallWidth * ball); });
     } else {
-      if (is_connected()) cut([&](const glm::dvec3& at) { return glm::dot(at - joint, normal) / (kShaft * shorter); });
+      const double coarse = std::max({volume_.grid.spacing.x, volume_.grid.spacing.y, volume_.grid.spacing.z}) / (kCoarse * shorter), scale = std::sqrt(1 + coarse * coarse) / (kShaft * shorter);
+      cut([&](std::int32_t, const glm::dvec3& at) { return glm::dot(at - joint, normal) * scale; });
     }
     tell_sides(parent, child);
+  }
+
+  // Where bones that have no joint lie side by side, as fingers do that are pushed together.
+  void cut_sides() {
+    std::map<std::pair<int, int>, std::vector<std::int32_t>> between;
+    for (std::int32_t i = 0; i < graph_.size(); ++i) {
+      const auto [a, b] = std::minmax(near_[i].bone[0], near_[i].bone[1]);
+      if (b < 0 || a < 0 || bones_[a].parent == b || bones_[b].parent == a) continue;
+      if (near_[i].distance[0] + near_[i].distance[1] <= kSide * std::min(length_of(bones_[a]), length_of(bones_[b]))) between[{a, b}].push_back(i);
+    }
+    for (const auto& [pair, voxels] : between) {
+      clear_domain();
+      for (const std::int32_t i : voxels) add(i, near_[i].bone[0] == pair.second);
+      for (Voxel& v : domain_)
+        if (v.is_allowed && near_[v.at].distance[0] < kSideShaft * near_[v.at].distance[1]) v.shaft = v.nearest;
+      cut([&](std::int32_t i, const glm::dvec3&) { return (near_[i].distance[1] - near_[i].distance[0]) / (near_[i].distance[1] + near_[i].distance[0]); });
+    }
   }
 
   std::vector<BeyondJoint> beyond() && { return std::move(beyond_); }
 
  private:
+  // The two rig bones that lie nearest to a voxel.
+  struct Near {
+    std::array<int, 2> bone{-1, -1};
+    std::array<float, 2> distance{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};  // mm
+  };
   struct Voxel {
     std::int32_t at;  // in the graph
-    std::array<double, 2> distance;
-    int nearest;  // 0 or 1
-    bool is_allowed;  // to follow the nearest
-    int core;  // 0, 1 or -1
+    int nearest;      // 0 or 1 of the two bones that are cut apart
+    bool is_allowed;  // to follow that bone
+    int shaft;        // 0, 1 or -1
   };
 
-  void gather(int a, int b, const glm::dvec3& centre, double radius, const auto& is_inside) {
-    for (const Voxel& v : domain_) local_[v.at] = -1;
-    domain_.clear();
-    std::vector<int> others;
-    for (int other = 0; other < std::ssize(bones_); ++other)
-      if (other != a && other != b && distance_to_bone(inner_[other], centre) < 2 * radius) others.push_back(other);
+  void find_nearest() {
+    std::vector<Bone> inner = bones_;  // bones share the point where they meet: away from it the direction decides
+    for (Bone& bone : inner) bone.head = glm::mix(bone.head, bone.tail, 0.1), bone.tail = glm::mix(bone.head, bone.tail, 8.0 / 9);
+    near_.resize(graph_.size());
+    along_.resize(bones_.size());
     for (std::int32_t i = 0; i < graph_.size(); ++i) {
       const glm::dvec3 at = world(i);
-      if (glm::distance(at, centre) > radius || !is_inside(at)) continue;
-      Voxel voxel{i, {distance_to_bone(inner_[a], at), distance_to_bone(inner_[b], at)}, 0, true, -1};
-      voxel.nearest = voxel.distance[1] < voxel.distance[0];
-      double elsewhere = std::numeric_limits<double>::max();
-      for (int other : others) elsewhere = std::min(elsewhere, distance_to_bone(inner_[other], at));
-      if (elsewhere < voxel.distance[voxel.nearest]) continue;
-      const std::vector<int>& allowed = candidates_[group_[i]];
-      voxel.is_allowed = allowed.empty() || std::find(allowed.begin(), allowed.end(), voxel.nearest ? b : a) != allowed.end();
-      local_[i] = static_cast<std::int32_t>(domain_.size());
-      domain_.push_back(voxel);
+      Near& near = near_[i];
+      for (int b = 0; b < std::ssize(inner); ++b) {
+        const float d = static_cast<float>(distance_to_bone(inner[b], at));
+        if (d < near.distance[0]) {
+          near = {{b, near.bone[0]}, {d, near.distance[0]}};
+        } else if (d < near.distance[1]) {
+          near.bone[1] = b;
+          near.distance[1] = d;
+        }
+      }
+      along_[near.bone[0]].push_back(i);
     }
   }
 
-  // What hangs on one core cannot be of the other core's bone.
-  void tell_sides(int a, int b) {
-    for (int which = 0; which < 2; ++which)
-      for (const std::int32_t i : reached_from(which)) beyond_.push_back({domain_[i].at, which ? a : b});
+  // The direction from the parent to the child across the plane that halves the angle between them, or the child's own where it
+  // springs from the parent's side.
+  static glm::dvec3 normal_of_joint(const Bone& parent, const Bone& child) {
+    const glm::dvec3 along = glm::normalize(child.tail - child.head), of_parent = glm::normalize(parent.tail - parent.head);
+    const glm::dvec3 on_parent = parent.head + along_bone(parent, child.head) * of_parent;
+    if (glm::distance(on_parent, child.head) >= 0.1 * std::min(length_of(parent), length_of(child))) return along;
+    const bool at_tail = glm::distance(child.head, parent.tail) <= glm::distance(child.head, parent.head);
+    const glm::dvec3 halving = along + (at_tail ? of_parent : -of_parent);
+    return glm::length(halving) > 0.3 ? glm::normalize(halving) : along;
   }
 
-  // The shaft of one of the two bones: what lies nearest to it, in each of several slices along it, and no further away from
-  // the joint than `beginning`.
-  void find_core(int which, int bone, const glm::dvec3& joint, double beginning, double width) {
+  void clear_domain() {
+    for (const Voxel& v : domain_) local_[v.at] = -1;
+    domain_.clear();
+  }
+  void add(std::int32_t i, int nearest) {
+    const std::vector<int>& allowed = candidates_[group_[i]];
+    local_[i] = static_cast<std::int32_t>(domain_.size());
+    domain_.push_back({i, nearest, allowed.empty() || std::find(allowed.begin(), allowed.end(), near_[i].bone[0]) != allowed.end(), -1});
+  }
+
+  // What hangs on the shaft of one of the two bones cannot be of the other.
+  void tell_sides(int a, int b) {
+    for (int which = 0; which < 2; ++which)
+      for (const std::int32_t i : reached_from(which)) beyond_.push_back({domain_[i].at, which ? a : b, which ? b : a});
+  }
+
+  // The shaft of one of the two bones: what lies nearest to it, in each of several slices along it, and no nearer to the
+  // joint than `beginning`.
+  void find_shaft(int which, int bone, const glm::dvec3& joint, double beginning, double width) {
     constexpr int kSlices = 16;
     const double length = length_of(bones_[bone]), at_joint = along_bone(bones_[bone], joint);
-    std::array<double, kSlices + 1> nearest;
-    nearest.fill(std::numeric_limits<double>::max());
+    std::array<float, kSlices + 1> nearest;
+    nearest.fill(std::numeric_limits<float>::max());
     auto slice_of = [&](const Voxel& voxel) {
       if (voxel.nearest != which || !voxel.is_allowed) return -1;
       const double along = along_bone(bones_[bone], world(voxel.at));
       return std::abs(along - at_joint) >= beginning ? static_cast<int>(along / length * kSlices) : -1;
     };
     for (const Voxel& voxel : domain_)
-      if (const int s = slice_of(voxel); s >= 0) nearest[s] = std::min(nearest[s], voxel.distance[which]);
+      if (const int s = slice_of(voxel); s >= 0) nearest[s] = std::min(nearest[s], near_[voxel.at].distance[0]);
     for (Voxel& voxel : domain_)
-      if (const int s = slice_of(voxel); s >= 0 && voxel.distance[which] <= nearest[s] + width && nearest[s] < kFarAside * length) voxel.core = which;
+      if (const int s = slice_of(voxel); s >= 0 && near_[voxel.at].distance[0] <= nearest[s] + width && nearest[s] < kFarAside * length) voxel.shaft = which;
   }
 
-  // Voxels of the domain connected with a core.
+  // Voxels of the domain connected with a shaft.
   std::vector<std::int32_t> reached_from(int which) const {
     std::vector<std::int32_t> front;
     std::vector<std::uint8_t> seen(domain_.size(), 0);
     for (std::int32_t i = 0; i < std::ssize(domain_); ++i)
-      if (domain_[i].core == which) front.push_back(i), seen[i] = 1;
+      if (domain_[i].shaft == which) front.push_back(i), seen[i] = 1;
     for (std::size_t k = 0; k < front.size(); ++k)
       for (const std::int32_t n : graph_.neighbour[domain_[front[k]].at]) {
         const std::int32_t m = n >= 0 ? local_[n] : -1;
@@ -175,32 +212,32 @@ class JointCuts {
   }
   bool is_connected() const {
     const std::vector<std::int32_t> reached = reached_from(0);
-    return std::any_of(reached.begin(), reached.end(), [&](std::int32_t i) { return domain_[i].core == 1; });
+    return std::any_of(reached.begin(), reached.end(), [&](std::int32_t i) { return domain_[i].shaft == 1; });
   }
 
-  //   away  how far a place lies from the surface where the two ought to part; 1 at the beginning of the shafts
+  //   away  (voxel, world) how far a place lies from the surface where the two ought to part; 1 where the shafts begin
   void cut(const auto& away) {
+    if (!is_connected()) return;
     CutGraph cut;
     cut.neighbour.resize(domain_.size());
     cut.capacity.resize(domain_.size());
     cut.terminal.resize(domain_.size());
     for (std::int32_t i = 0; i < std::ssize(domain_); ++i) {
-      cut.terminal[i] = domain_[i].core == 0 ? kHard : domain_[i].core == 1 ? -kHard : 0;
+      cut.terminal[i] = domain_[i].shaft == 0 ? kHard : domain_[i].shaft == 1 ? -kHard : 0;
       for (int k = 0; k < 26; ++k) {
         const std::int32_t n = graph_.neighbour[domain_[i].at][k];
         const std::int32_t m = cut.neighbour[i][k] = n >= 0 ? local_[n] : -1;
         if (m < i) continue;
-        const double off = away((world(domain_[i].at) + world(n)) / 2.0);
-        double cost = area_[k] * (1 + kAway * off * off);
+        const double off = away(domain_[i].at, (world(domain_[i].at) + world(n)) / 2.0);
+        double cost = area_[k] * (1 + kAway * off * off) * (depth_[domain_[i].at] + depth_[n]) / 2;
         if (is_marrow(domain_[i].at) && is_marrow(n)) cost *= kMarrow;
         cut.capacity[i][k] = cut.capacity[m][25 - k] = static_cast<std::int32_t>(std::clamp(1000 * cost, 1.0, double(kHard)));
       }
     }
     const std::vector<std::uint8_t> side = min_cut(std::move(cut));
-    severed_ = 0;
     for (std::int32_t i = 0; i < std::ssize(domain_); ++i)
       for (std::int32_t& n : graph_.neighbour[domain_[i].at])
-        if (n >= 0 && local_[n] >= 0 && side[local_[n]] != side[i]) n = kNotBone, ++severed_;
+        if (n >= 0 && local_[n] >= 0 && side[local_[n]] != side[i]) n = kNotBone;
   }
 
   // Distance in mm from a point to the nearest voxel that is not bone, at most `most`.
@@ -225,12 +262,13 @@ class JointCuts {
   const std::vector<std::vector<int>>& candidates_;
   AffineTransform world_from_voxel_;
   std::array<double, 26> area_;
-  std::vector<Bone> inner_;
+  std::vector<Near> near_;                        // #graph
+  std::vector<std::vector<std::int32_t>> along_;  // by rig bone: the voxels nearest to it
   std::vector<bool> is_ball_;  // by rig bone: its head is the centre of a ball
+  std::vector<float> depth_;  // mm
   std::vector<std::int32_t> local_;  // #graph, in `domain_` or -1
   std::vector<Voxel> domain_;
   std::vector<BeyondJoint> beyond_;
-  int severed_ = 0;
 };
 }  // namespace
 
@@ -241,6 +279,7 @@ std::vector<BeyondJoint> cut_at_joints(BoneGraph& graph, const LabelVolume& volu
     progress.update("bones", 0.4);
     if (armature.bones[child].parent >= 0) cuts.cut_joint(child);
   }
+  cuts.cut_sides();
   return std::move(cuts).beyond();
 }
 }  // namespace limber

@@ -16,10 +16,10 @@
 
 namespace limber {
 
-// A voxel that lies beyond a joint, seen from a rig bone: it is not of that bone.
+// A voxel that lies beyond a joint, seen from a rig bone: it is not of that bone, and may well be of the other one.
 struct BeyondJoint {
   std::int32_t voxel;  // of the graph
-  int bone;
+  int bone, other;
 };
 
 // Removes the graph's connections across the cuts: both sides see kNotBone. Returns for the voxels around each joint which of

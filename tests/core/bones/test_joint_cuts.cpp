@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Bodies of one bone label whose bones touch, with known truth: every voxel is of the bone whose surface it lies deepest in.
+#include "core/bones/joint_cuts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <doctest/doctest.h>
+
+#include "core/bones/bone_parts.h"
+#include "tests/core/skin/small_body.h"
+
+using namespace limber;
+using namespace limber::test;
+
+namespace {
+// A shaft with a knob at either end.
+struct Dumbbell {
+  glm::dvec3 from, to;
+  double shaft, knob;  // radii, mm
+  int rig_bone;
+};
+
+// How far outside a bone a place lies, mm. The knobs reach a third of their radius beyond the ends, into the next bone.
+double outside_of(const Dumbbell& bone, const glm::dvec3& at) {
+  const glm::dvec3 along = glm::normalize(bone.to - bone.from), inset = 2.0 / 3 * bone.knob * along;
+  const double length = glm::length(bone.to - bone.from), t = std::clamp(glm::dot(at - bone.from, along), 0.0, length);
+  return std::min({glm::distance(at, bone.from + t * along) - bone.shaft, glm::distance(at, bone.from + inset) - bone.knob,
+                   glm::distance(at, bone.to - inset) - bone.knob});
+}
+
+struct FusedBody {
+  SmallBody body;
+  std::vector<int> truth;  // by voxel: rig bone, -1 for no bone
+};
+FusedBody fused(const std::vector<Dumbbell>& bones, const Armature& rig, const glm::ivec3& size, const glm::dvec3& spacing) {
+  FusedBody made;
+  made.body.volume.grid.size = size;
+  made.body.volume.grid.spacing = spacing;
+  made.body.volume.voxels.assign(made.body.volume.grid.voxel_count(), kMuscle);
+  made.body.tissues = muscle_and_bone();
+  made.body.armature = rig;
+  made.truth.assign(made.body.volume.grid.voxel_count(), -1);
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) {
+        double deepest = 0;
+        for (const Dumbbell& bone : bones)
+          if (const double d = outside_of(bone, glm::dvec3(x, y, z) * spacing); d < deepest) deepest = d, made.truth[made.body.volume.grid.index({x, y, z})] = bone.rig_bone;
+        if (deepest < 0) made.body.volume.at({x, y, z}) = kBone;
+      }
+  return made;
+}
+
+// The largest share of a rig bone's true voxels that follow another one.
+double worst_share(const FusedBody& made) {
+  const TissueVoxels tissue(made.body.volume);
+  const BoneParts parts = split_bones(made.body.volume, tissue, made.body.tissues, made.body.armature);
+  std::map<int, std::pair<std::int64_t, std::int64_t>> wrong_of;
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    const int true_bone = made.truth[made.body.volume.grid.index(v)];
+    REQUIRE((parts.part_of[place] > 0) == (true_bone >= 0));
+    if (true_bone < 0) return;
+    auto& [wrong, all] = wrong_of[true_bone];
+    wrong += parts.parts[parts.part_of[place] - 1].bone != true_bone;
+    ++all;
+  });
+  double worst = 0;
+  for (const auto& [bone, count] : wrong_of) {
+    MESSAGE(made.body.armature.bones[bone].name, ": ", count.first, " of ", count.second, " voxels follow another rig bone");
+    worst = std::max(worst, double(count.first) / double(count.second));
+  }
+  return worst;
+}
+
+// Thigh and shank along z, 2 x 2 x 8 mm; the rig's knee is `off` mm from where the bones touch.
+FusedBody coarse_leg(const glm::dvec3& off) {
+  const glm::dvec3 hip(50, 50, 396), knee(50, 50, 204), ankle(50, 50, 12);
+  Armature rig;
+  rig.bones = {bone_between("Thigh", -1, hip, knee + off), bone_between("Shank", 0, knee + off, ankle)};
+  return fused({{hip, knee, 13, 32, 0}, {knee, ankle, 12, 30, 1}}, rig, {51, 51, 52}, {2, 2, 8});
+}
+
+// A finger of three bones along points, 1 mm.
+std::vector<Dumbbell> finger(const std::vector<glm::dvec3>& joints, int first_bone) {
+  std::vector<Dumbbell> bones;
+  for (std::size_t k = 0; k + 1 < joints.size(); ++k) bones.push_back({joints[k], joints[k + 1], 3.5, 5.5, first_bone + static_cast<int>(k)});
+  return bones;
+}
+void add_chain(Armature& rig, const std::string& name, const std::vector<glm::dvec3>& joints) {
+  for (std::size_t k = 0; k + 1 < joints.size(); ++k)
+    rig.bones.push_back(bone_between((name + std::to_string(k)).c_str(), k == 0 ? -1 : static_cast<int>(rig.bones.size()) - 1, joints[k], joints[k + 1]));
+}
+}  // namespace
+
+TEST_CASE("joint cuts: femur and tibia that touch broadly on 8 mm slices are cut at the knee") {
+  CHECK(worst_share(coarse_leg({0, 0, 0})) < 0.01);
+}
+
+TEST_CASE("joint cuts: a rig's knee 5 mm off moves the cut by one 8 mm slice at most") {
+  for (const glm::dvec3& off : {glm::dvec3(0, 0, 5), glm::dvec3(0, 0, -5), glm::dvec3(5, 0, 0), glm::dvec3(3, 3, 3)}) CHECK(worst_share(coarse_leg(off)) < 0.065);
+}
+
+TEST_CASE("joint cuts: a curled finger whose joints are closed is cut at each of them") {
+  const std::vector<glm::dvec3> joints = {{20, 12, 90}, {20, 12, 50}, {20, 40, 32}, {20, 60, 50}};
+  Armature rig;
+  add_chain(rig, "Finger", joints);
+  CHECK(worst_share(fused(finger(joints, 0), rig, {40, 75, 102}, {1, 1, 1})) < 0.02);
+}
+
+TEST_CASE("joint cuts: finger joints 2 mm off along the finger move the cuts by less than that") {
+  const std::vector<glm::dvec3> joints = {{20, 20, 110}, {20, 20, 66}, {20, 20, 38}, {20, 20, 12}};
+  std::vector<glm::dvec3> off = joints;
+  off[1].z += 2;
+  off[2].z -= 2;
+  Armature rig;
+  add_chain(rig, "Finger", off);
+  CHECK(worst_share(fused(finger(joints, 0), rig, {40, 40, 122}, {1, 1, 1})) < 0.05);  // two layers of voxels are 0.08
+}
+
+TEST_CASE("joint cuts: two fingers grown together side by side are cut between them") {
+  const std::vector<glm::dvec3> first = {{20, 20, 110}, {20, 20, 66}, {20, 20, 38}, {20, 20, 12}}, second = {{30, 20, 112}, {30, 20, 70}, {30, 20, 40}, {30, 20, 10}};
+  Armature rig;
+  add_chain(rig, "Index", first);
+  add_chain(rig, "Middle", second);
+  std::vector<Dumbbell> bones = finger(first, 0), others = finger(second, 3);
+  bones.insert(bones.end(), others.begin(), others.end());
+  CHECK(worst_share(fused(bones, rig, {50, 40, 124}, {1, 1, 1})) < 0.03);
+}
+
+TEST_CASE("joint cuts: bow legs whose knees touch are four bones") {
+  const glm::dvec3 left_hip(40, 60, 390), left_knee(92, 60, 200), left_ankle(40, 60, 10), right_hip(196, 60, 390), right_knee(144, 60, 200), right_ankle(196, 60, 10);
+  Armature rig;
+  add_chain(rig, "Left", {left_hip, left_knee, left_ankle});
+  add_chain(rig, "Right", {right_hip, right_knee, right_ankle});
+  const std::vector<Dumbbell> bones = {{left_hip, left_knee, 13, 29, 0}, {left_knee, left_ankle, 12, 28, 1}, {right_hip, right_knee, 13, 29, 2}, {right_knee, right_ankle, 12, 28, 3}};
+  CHECK(worst_share(fused(bones, rig, {59, 30, 100}, {4, 4, 4})) < 0.01);
+}
+
+TEST_CASE("joint cuts: a bridge as thick as the shafts between two bones side by side is cut in its middle") {
+  const glm::dvec3 a(20, 20, 110), b(20, 20, 60), c(20, 20, 10), d(44, 20, 110), e(44, 20, 60), f(44, 20, 10);
+  Armature rig;
+  add_chain(rig, "One", {a, b, c});
+  add_chain(rig, "Two", {d, e, f});
+  std::vector<Dumbbell> bones = {{a, b, 4, 7, 0}, {b, c, 4, 7, 1}, {d, e, 4, 7, 2}, {e, f, 4, 7, 3}};
+  bones.push_back({glm::dvec3(20, 20, 35), glm::dvec3(32, 20, 35), 3.5, 3.5, 1});  // the bridge, half of either
+  bones.push_back({glm::dvec3(44, 20, 35), glm::dvec3(32, 20, 35), 3.5, 3.5, 3});
+  CHECK(worst_share(fused(bones, rig, {64, 40, 122}, {1, 1, 1})) < 0.02);
+}
+
+TEST_CASE("joint cuts: bones that do not touch keep every connection") {
+  const SmallBody body = two_bone_bar(12, 40, 6);
+  const TissueVoxels tissue(body.volume);
+  const std::vector<TissueKind> kinds = body.tissues.kinds();
+  BoneGraph graph = gather_bone(body.volume, tissue, kinds);
+  const auto before = graph.neighbour;
+  const auto beyond = cut_at_joints(graph, body.volume, kinds, body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
+  CHECK(graph.neighbour == before);
+  CHECK(std::any_of(beyond.begin(), beyond.end(), [](const BeyondJoint& b) { return b.bone == 0 && b.other == 1; }));
+  for (const BeyondJoint& b : beyond) CHECK((graph.voxel[b.voxel].z < 22) == (b.other == 0));
+}
