@@ -19,7 +19,6 @@ namespace limber {
 
 namespace {
 
-constexpr double kOther = 1;
 constexpr double kWiggleVoxels = 0.6;  // what rounding to voxels makes of the smooth ridge of a thick tube
 constexpr std::int64_t kMostDistances = 16'000'000;  // basins x rig bones: 64 MB
 
@@ -112,6 +111,7 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
 // bone than it would be alone.
 class Pieces {
  public:
+  //   beyond      which voxels lie beyond a joint
   //   may_follow  rig bones that the basin of a voxel may follow; none means any
   Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging, const std::vector<std::int32_t>& basin,
          const std::vector<BeyondJoint>& beyond, double voxel, const auto& may_follow)
@@ -137,19 +137,7 @@ class Pieces {
         for (int b = 0; b < bones_; ++b)
           if (std::find(allowed.begin(), allowed.end(), b) == allowed.end()) cluster.distance[b] += kForbidden;
     }
-    std::map<std::pair<std::int32_t, int>, std::int64_t> beyond_count;
-    std::map<std::tuple<std::int32_t, int, int>, std::int64_t> for_other;
-    for (const BeyondJoint& b : beyond) ++beyond_count[{basin[b.voxel], b.bone}], ++for_other[{basin[b.voxel], b.bone, b.other}];
-    for (const auto& [where, count] : for_other) {
-      const auto [p, from, to] = where;
-      Cluster& cluster = cluster_[p];
-      const double share = std::min(1.0, double(count) / double(cluster.voxels));
-      if (cluster.distance[from] < cluster.distance[to]) cluster.distance[to] += static_cast<float>(kOther * share * (cluster.distance[from] - cluster.distance[to]));
-    }
-    for (const auto& [where, count] : beyond_count) {
-      Cluster& cluster = cluster_[where.first];
-      cluster.distance[where.second] *= static_cast<float>(1 + kBeyondJoint * std::min(1.0, double(count) / double(cluster.voxels)));
-    }
+    move_beyond_joints(basin, beyond);
     for (std::int32_t i = 0; i < graph.size(); ++i)
       for (std::int32_t n : graph.neighbour[i]) {
         if (n <= i || basin[n] == basin[i]) continue;
@@ -271,6 +259,22 @@ class Pieces {
       if (all) return spring;
     }
     return nearest;
+  }
+
+  // What lies beyond a joint is as far from the bone there as it seemed to be from the one before the joint, and further from that.
+  void move_beyond_joints(const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond) {
+    std::map<std::tuple<std::int32_t, int, int>, std::int64_t> voxels;  // by basin, bone before and bone beyond the joint
+    for (const BeyondJoint& b : beyond) ++voxels[{basin[b.voxel], b.bone, b.other}];
+    auto share_of = [&](std::int32_t p, std::int64_t count) { return std::min(1.0, double(count) / double(cluster_[p].voxels)); };
+    for (const auto& [where, count] : voxels) {
+      const auto [p, before, other] = where;
+      std::vector<float>& distance = cluster_[p].distance;
+      if (distance[before] < distance[other]) distance[other] += static_cast<float>(share_of(p, count) * (distance[before] - distance[other]));
+    }
+    std::map<std::pair<std::int32_t, int>, std::int64_t> before_joint;
+    for (const auto& [where, count] : voxels) before_joint[{std::get<0>(where), std::get<1>(where)}] += count;
+    for (const auto& [where, count] : before_joint)
+      cluster_[where.first].distance[where.second] *= static_cast<float>(1 + kBeyondJoint * share_of(where.first, count));
   }
 
   void touch(std::int32_t a, std::int32_t b, float pass) {
@@ -439,15 +443,18 @@ Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named) {
   return part;
 }
 
-// The rig bone of every voxel by shape: a watershed, whose basins join to the pieces that move as one.
+struct ShapeBones {
+  std::vector<int> bone;  // #graph
+  std::vector<BroadCut> broad_cuts;
+};
+// The rig bone of every voxel by shape: bones that touch are cut at the rig's joints, then a watershed, whose basins join to the pieces that move as one.
 //   group       #graph, into `candidates`
-std::vector<int> bones_by_shape(BoneGraph graph, const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds,
+ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds,
                                 const Armature& armature, const Hugging& hugging, const std::vector<std::int32_t>& group,
                                 const std::vector<std::vector<int>>& candidates, Progress& progress) {
-  const std::vector<BeyondJoint> beyond = cut_at_joints(graph, volume, kinds, armature, group, candidates, progress);
+  JointCuts cuts = cut_at_joints(graph, volume, kinds, armature, group, candidates, progress);
   // Marrow raises the ground: two cores are two summits however thin the shells between them.
-  const std::vector<float> depth = bone_depth(graph, volume.grid.spacing);
-  std::vector<float> height = depth;
+  std::vector<float> height = cuts.depth;
   for (std::int64_t i = 0; i < graph.size(); ++i)
     if (kinds[volume.at(graph.voxel[i])] == TissueKind::Marrow) height[i] *= 2;
   progress.update("bones", 0.6);
@@ -462,11 +469,12 @@ std::vector<int> bones_by_shape(BoneGraph graph, const LabelVolume& volume, cons
   }
   progress.update("bones", 0.8);
 
-  Pieces pieces(graph, height, hugging, basin, beyond, voxel, [&](std::int32_t i) -> const std::vector<int>& { return candidates[group[i]]; });
+  Pieces pieces(graph, height, hugging, basin, cuts.beyond, voxel, [&](std::int32_t i) -> const std::vector<int>& { return candidates[group[i]]; });
   pieces.join();
   pieces.settle(armature);
   const std::vector<int> of_basin = bones_of_basins(graph, tissue, volume, basin, pieces);
-  std::vector<int> bone(graph.size());
+  ShapeBones found{std::vector<int>(graph.size()), std::move(cuts.broad)};
+  std::vector<int>& bone = found.bone;
   for (std::int64_t i = 0; i < graph.size(); ++i) {
     bone[i] = of_basin[basin[i]];
     // What touched nothing of its own took what lay nearest, which its name may forbid.
@@ -474,7 +482,7 @@ std::vector<int> bones_by_shape(BoneGraph graph, const LabelVolume& volume, cons
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), bone[i]) == allowed.end())
       bone[i] = *std::min_element(allowed.begin(), allowed.end(), [&](int a, int b) { return hugging.distance(a, graph.voxel[i]) < hugging.distance(b, graph.voxel[i]); });
   }
-  return bone;
+  return found;
 }
 
 std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const LabelVolume& volume, const NamedBones& named, const std::vector<int>& bone,
@@ -509,8 +517,9 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   if (Unsettled unsettled = unsettled_part(graph, named); !unsettled.from.empty()) {
     std::vector<std::int32_t> group;
     for (const std::int32_t i : unsettled.from) group.push_back(named.group[i]);
-    const std::vector<int> found = bones_by_shape(std::move(unsettled.graph), volume, tissue, kinds, armature, hugging, group, named.candidates, progress);
-    for (std::size_t k = 0; k < found.size(); ++k) bone[unsettled.from[k]] = found[k];
+    ShapeBones found = bones_by_shape(std::move(unsettled.graph), volume, tissue, kinds, armature, hugging, group, named.candidates, progress);
+    for (std::size_t k = 0; k < found.bone.size(); ++k) bone[unsettled.from[k]] = found.bone[k];
+    result.broad_cuts = std::move(found.broad_cuts);
   }
   gather_parts(graph, hugging, bone, result);
   result.identities = identities_of(graph, volume, named, bone, labels);
@@ -525,6 +534,12 @@ std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable&
     if (!identity.is_substitute || !tissue) continue;
     lines.push_back("the rig has no bone for \"" + tissue->name.substr(0, 80) + "\": it follows " + armature.bones[identity.bone].name +
                     "; say another with --bone-map");
+  }
+  if (const std::vector<BroadCut>& cuts = parts.broad_cuts; !cuts.empty()) {
+    const BroadCut& broadest = *std::max_element(cuts.begin(), cuts.end(), [](const BroadCut& a, const BroadCut& b) { return a.area < b.area; });
+    const std::string others = cuts.size() == 1 ? "" : " and at " + std::to_string(cuts.size() - 1) + " other joint" + (cuts.size() == 2 ? "" : "s");
+    lines.push_back("bones of one label touch more broadly than they are thick between " + armature.bones[broadest.bone].name + " and " + armature.bones[broadest.other].name +
+                    others + ": where they are cut apart may be a voxel or two off; give them labels of their own where that matters");
   }
   return lines;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The bone tissue of a volume, separated into its bones. By label all bones of a limb are often one connected blob
 // (joints are thinner than a voxel), so the blob is split by a watershed that grows from the marrow cores, or without
-// marrow from the deepest points of the bone's distance map; each part goes to the rig bone it hugs. A bone is never
+// marrow from the deepest points of the bone's distance map; each part goes to the rig bone it hugs. Before, bones that touch in
+// a joint or side by side are cut apart there (core/bones/joint_cuts.h). A bone is never
 // cut by a plane of the skin map: that puts 1004 voxels of the paper's arm on the wrong bone.
 //
 // Where labels say which bone of the body they are, that counts before any shape (core/bones/bone_identity.h). A label of several
@@ -14,6 +15,7 @@
 
 #include "core/base/progress.h"
 #include "core/bones/bone_identity.h"
+#include "core/bones/joint_cuts.h"
 #include "core/rig/armature.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/tissue_voxels.h"
@@ -38,12 +40,15 @@ struct BoneParts {
     std::int64_t voxel_count;
   };
   std::vector<Identity> identities;  // by label, then bone
+
+  std::vector<BroadCut> broad_cuts;  // bones in one label that touch too broadly to say where one ends
 };
 
 BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                       const Armature& armature, Progress& progress = no_progress(), const BoneMap& map = {});
 
-// One line for each label that follows a rig bone only because the rig has none for it.
+// One line for each label that follows a rig bone only because the rig has none for it, and one for the bones that touch so
+// broadly that the place of the cut between them is not sure.
 std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable& tissues, const Armature& armature);
 
 }  // namespace limber

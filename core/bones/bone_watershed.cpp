@@ -96,8 +96,7 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
   return graph;
 }
 
-std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing) {
-  std::vector<float> depth(graph.size(), std::numeric_limits<float>::max());
+void lower_depth(const BoneGraph& graph, const glm::dvec3& spacing, const std::vector<std::int32_t>& at_borders, std::vector<float>& depth) {
   std::vector<glm::ivec3> offset(graph.size(), glm::ivec3(0));
   using Entry = std::pair<float, std::int32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
@@ -108,7 +107,7 @@ std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing)
     offset[i] = to_border;
     front.push({distance, i});
   };
-  for (std::int32_t i = 0; i < graph.size(); ++i)
+  for (const std::int32_t i : at_borders)
     for (int k = 0; k < 26; ++k)
       if (graph.neighbour[i][k] == kNotBone) offer(i, kOffsets[k]);
   while (!front.empty()) {
@@ -118,6 +117,13 @@ std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing)
     for (int k = 0; k < 26; ++k)
       if (graph.neighbour[i][k] >= 0) offer(graph.neighbour[i][k], offset[i] - kOffsets[k]);
   }
+}
+
+std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing) {
+  std::vector<float> depth(graph.size(), std::numeric_limits<float>::max());
+  std::vector<std::int32_t> all(graph.size());
+  std::iota(all.begin(), all.end(), 0);
+  lower_depth(graph, spacing, all, depth);
   for (float& d : depth)
     if (d == std::numeric_limits<float>::max()) d = 0;
   return depth;

@@ -26,6 +26,8 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
 
 // Distance in mm of every bone voxel to the nearest voxel that is not its bone. Beyond the grid the bone goes on.
 std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing);
+// The same where connections of the graph were removed since: `at_borders` are the voxels that lost some.
+void lower_depth(const BoneGraph& graph, const glm::dvec3& spacing, const std::vector<std::int32_t>& at_borders, std::vector<float>& depth);
 
 // The basin of every voxel, numbered from 0: a summit of `height` and what slopes up to it. Where two meet, the lower one is a
 // mere wiggle of the higher when the pass between them is nearly as high as its summit; then they are one.

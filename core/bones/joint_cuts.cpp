@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/parallel.h"
 #include "core/bones/min_cut.h"
 #include "core/rig/joint_names.h"
 
@@ -19,10 +20,12 @@ constexpr double kReachAside = 0.3;  // of the longer one's: how far in any dire
 constexpr double kShaft = 0.2;      // of the shorter one's: from there on what lies along a rig bone is surely that bone
 constexpr double kShaftWidth = 0.1;  // of it: what lies along a rig bone, beyond what lies nearest to it
 constexpr double kFarAside = 0.35;  // of a bone's length: nothing so far from a rig bone is its shaft
+constexpr double kCoarse = 0.04;    // of the shorter bone's length: with voxels of this size the place of the joint counts twice as much
 constexpr double kAway = 8;         // area counts as much more where the shafts begin, and four times that twice as far away
 constexpr double kSide = 0.6;       // of the shorter bone's length: how far apart bones may run that touch side by side
 constexpr double kSideShaft = 0.5;  // of the distance to the other bone: what lies nearer to its own is surely of it
-constexpr double kCoarse = 0.04;
+constexpr double kBroad = 1.5;      // times the thinner bone's cross-section: from there on a cut is not sure. Bones that touch at 1 to 3 mm
+                                    // though their joints are open stay below it
 constexpr double kMarrow = 4;       // times that area counts through marrow
 constexpr double kBall = 0.02;      // of the bone's length: the smallest radius of the ball at its head
 constexpr double kLargestBall = 0.1;
@@ -61,12 +64,12 @@ double along_bone(const Bone& bone, const glm::dvec3& p) {
   return length > 0 ? std::clamp(glm::dot(p - bone.head, (bone.tail - bone.head) / length), 0.0, length) : 0;
 }
 
-class JointCuts {
+class JointCutter {
  public:
-  JointCuts(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature, const std::vector<std::int32_t>& group,
+  JointCutter(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature, const std::vector<std::int32_t>& group,
             const std::vector<std::vector<int>>& candidates)
       : graph_(graph), volume_(volume), kinds_(kinds), bones_(armature.bones), group_(group), candidates_(candidates), world_from_voxel_(world_from_voxel(volume.grid)),
-        area_(areas_of_edges(volume.grid.spacing)), depth_(bone_depth(graph, volume.grid.spacing)), local_(graph.size(), -1) {
+        area_(areas_of_edges(volume.grid.spacing)), local_(graph.size(), -1) {
     std::vector<std::string> names;
     std::vector<int> parents;
     for (const Bone& bone : bones_) names.push_back(bone.name), parents.push_back(bone.parent);
@@ -93,9 +96,13 @@ class JointCuts {
         if (glm::distance(world(v.at), joint) < kBallCore * ball) v.shaft = 1;
       cut([&](std::int32_t, const glm::dvec3& at) { return (glm::distance(at, joint) - ball) / (kBallWidth * ball); });
     } else {
-      const double coarse = std::max({volume_.grid.spacing.x, volume_.grid.spacing.y, volume_.grid.spacing.z}) / (kCoarse * shorter), scale = std::sqrt(1 + coarse * coarse) / (kShaft * shorter);
+      const glm::dvec3& spacing = volume_.grid.spacing;
+      const double coarse = std::max({spacing.x, spacing.y, spacing.z}) / (kCoarse * shorter);
+      const double scale = std::sqrt(1 + coarse * coarse) / (kShaft * shorter);
       cut([&](std::int32_t, const glm::dvec3& at) { return glm::dot(at - joint, normal) * scale; });
     }
+    const double shaft = (kReach - kShaft) * shorter;  // mm of it that lie in the domain
+    if (cut_area_ > 0 && cut_area_ >= kBroad * std::min(volume_along(parent, 0, joint, kShaft * shorter), volume_along(child, 1, joint, kShaft * shorter)) / shaft) broad_.push_back({parent, child, cut_area_});
     tell_sides(parent, child);
   }
 
@@ -116,13 +123,28 @@ class JointCuts {
     }
   }
 
-  std::vector<BeyondJoint> beyond() && { return std::move(beyond_); }
+  JointCuts cuts() && {
+    if (depth_.empty())
+      depth_ = bone_depth(graph_, volume_.grid.spacing);
+    else
+      lower_depth(graph_, volume_.grid.spacing, at_cuts_, depth_);
+    return {std::move(beyond_), std::move(broad_), std::move(depth_)};
+  }
 
  private:
   // The two rig bones that lie nearest to a voxel.
   struct Near {
     std::array<int, 2> bone{-1, -1};
     std::array<float, 2> distance{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};  // mm
+    void take(int b, float d) {
+      if (d < distance[0]) {
+        bone = {b, bone[0]};
+        distance = {d, distance[0]};
+      } else if (d < distance[1]) {
+        bone[1] = b;
+        distance[1] = d;
+      }
+    }
   };
   struct Voxel {
     std::int32_t at;  // in the graph
@@ -135,21 +157,14 @@ class JointCuts {
     std::vector<Bone> inner = bones_;  // bones share the point where they meet: away from it the direction decides
     for (Bone& bone : inner) bone.head = glm::mix(bone.head, bone.tail, 0.1), bone.tail = glm::mix(bone.head, bone.tail, 8.0 / 9);
     near_.resize(graph_.size());
-    along_.resize(bones_.size());
-    for (std::int32_t i = 0; i < graph_.size(); ++i) {
-      const glm::dvec3 at = world(i);
-      Near& near = near_[i];
-      for (int b = 0; b < std::ssize(inner); ++b) {
-        const float d = static_cast<float>(distance_to_bone(inner[b], at));
-        if (d < near.distance[0]) {
-          near = {{b, near.bone[0]}, {d, near.distance[0]}};
-        } else if (d < near.distance[1]) {
-          near.bone[1] = b;
-          near.distance[1] = d;
-        }
+    parallel_for(graph_.size(), 4096, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) {
+        const glm::dvec3 at = world(static_cast<std::int32_t>(i));
+        for (int b = 0; b < std::ssize(inner); ++b) near_[i].take(b, static_cast<float>(distance_to_bone(inner[b], at)));
       }
-      along_[near.bone[0]].push_back(i);
-    }
+    });
+    along_.resize(bones_.size());
+    for (std::int32_t i = 0; i < graph_.size(); ++i) along_[near_[i].bone[0]].push_back(i);
   }
 
   // The direction from the parent to the child across the plane that halves the angle between them, or the child's own where it
@@ -197,6 +212,16 @@ class JointCuts {
       if (const int s = slice_of(voxel); s >= 0 && near_[voxel.at].distance[0] <= nearest[s] + width && nearest[s] < kFarAside * length) voxel.shaft = which;
   }
 
+  // Of the bone tissue beside one of the two bones, no nearer to the joint than `beginning`; mm^3.
+  double volume_along(int bone, int which, const glm::dvec3& joint, double beginning) const {
+    const double at_joint = along_bone(bones_[bone], joint);
+    const auto voxels = std::count_if(domain_.begin(), domain_.end(), [&](const Voxel& v) {
+      return v.nearest == which && std::abs(along_bone(bones_[bone], world(v.at)) - at_joint) >= beginning;
+    });
+    const glm::dvec3& spacing = volume_.grid.spacing;
+    return double(voxels) * spacing.x * spacing.y * spacing.z;
+  }
+
   // Voxels of the domain connected with a shaft.
   std::vector<std::int32_t> reached_from(int which) const {
     std::vector<std::int32_t> front;
@@ -217,7 +242,9 @@ class JointCuts {
 
   //   away  (voxel, world) how far a place lies from the surface where the two ought to part; 1 where the shafts begin
   void cut(const auto& away) {
+    cut_area_ = 0;
     if (!is_connected()) return;
+    if (depth_.empty()) depth_ = bone_depth(graph_, volume_.grid.spacing);
     CutGraph cut;
     cut.neighbour.resize(domain_.size());
     cut.capacity.resize(domain_.size());
@@ -235,9 +262,17 @@ class JointCuts {
       }
     }
     const std::vector<std::uint8_t> side = min_cut(std::move(cut));
-    for (std::int32_t i = 0; i < std::ssize(domain_); ++i)
-      for (std::int32_t& n : graph_.neighbour[domain_[i].at])
-        if (n >= 0 && local_[n] >= 0 && side[local_[n]] != side[i]) n = kNotBone;
+    for (std::int32_t i = 0; i < std::ssize(domain_); ++i) {
+      bool is_cut = false;
+      for (int k = 0; k < 26; ++k) {
+        std::int32_t& n = graph_.neighbour[domain_[i].at][k];
+        if (n < 0 || local_[n] < 0 || side[local_[n]] == side[i]) continue;
+        n = kNotBone;
+        is_cut = true;
+        cut_area_ += area_[k] / 2;  // the neighbour counts the other half
+      }
+      if (is_cut) at_cuts_.push_back(domain_[i].at);
+    }
   }
 
   // Distance in mm from a point to the nearest voxel that is not bone, at most `most`.
@@ -265,21 +300,24 @@ class JointCuts {
   std::vector<Near> near_;                        // #graph
   std::vector<std::vector<std::int32_t>> along_;  // by rig bone: the voxels nearest to it
   std::vector<bool> is_ball_;  // by rig bone: its head is the centre of a ball
-  std::vector<float> depth_;  // mm
+  std::vector<float> depth_;  // #graph, mm, before the cuts; found when the first cut needs it
   std::vector<std::int32_t> local_;  // #graph, in `domain_` or -1
   std::vector<Voxel> domain_;
   std::vector<BeyondJoint> beyond_;
+  std::vector<BroadCut> broad_;
+  double cut_area_ = 0;  // of the last cut, mm^2
+  std::vector<std::int32_t> at_cuts_;  // voxels that lost connections
 };
 }  // namespace
 
-std::vector<BeyondJoint> cut_at_joints(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
+JointCuts cut_at_joints(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
                    const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates, Progress& progress) {
-  JointCuts cuts(graph, volume, kinds, armature, group, candidates);
+  JointCutter cutter(graph, volume, kinds, armature, group, candidates);
   for (int child = 0; child < std::ssize(armature.bones); ++child) {
     progress.update("bones", 0.4);
-    if (armature.bones[child].parent >= 0) cuts.cut_joint(child);
+    if (armature.bones[child].parent >= 0) cutter.cut_joint(child);
   }
-  cuts.cut_sides();
-  return std::move(cuts).beyond();
+  cutter.cut_sides();
+  return std::move(cutter).cuts();
 }
 }  // namespace limber

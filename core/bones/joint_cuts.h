@@ -22,11 +22,23 @@ struct BeyondJoint {
   int bone, other;
 };
 
-// Removes the graph's connections across the cuts: both sides see kNotBone. Returns for the voxels around each joint which of
-// its two bones they cannot be of.
+// Two rig bones whose tissue touched, where it was cut apart, in half again the area of the thinner one's cross-section or more: no
+// neck says where one bone ends.
+struct BroadCut {
+  int bone, other;
+  double area;  // mm^2
+};
+
+struct JointCuts {
+  std::vector<BeyondJoint> beyond;
+  std::vector<BroadCut> broad;
+  std::vector<float> depth;  // of the graph after the cuts, as bone_depth() says it
+};
+
+// Removes the graph's connections across the cuts: both sides see kNotBone.
 //   group       #graph, into `candidates`
 //   candidates  the rig bones that a group may follow; none means any
-std::vector<BeyondJoint> cut_at_joints(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
+JointCuts cut_at_joints(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
                    const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates, Progress& progress = no_progress());
 
 }  // namespace limber

@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/base/parallel.h"
 #include "core/bones/bone_parts.h"
 #include "tests/core/skin/small_body.h"
 
@@ -155,8 +156,52 @@ TEST_CASE("joint cuts: bones that do not touch keep every connection") {
   const std::vector<TissueKind> kinds = body.tissues.kinds();
   BoneGraph graph = gather_bone(body.volume, tissue, kinds);
   const auto before = graph.neighbour;
-  const auto beyond = cut_at_joints(graph, body.volume, kinds, body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
+  const auto [beyond, broad, depth] = cut_at_joints(graph, body.volume, kinds, body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
   CHECK(graph.neighbour == before);
+  CHECK(broad.empty());
+  CHECK(depth == bone_depth(graph, body.volume.grid.spacing));
   CHECK(std::any_of(beyond.begin(), beyond.end(), [](const BeyondJoint& b) { return b.bone == 0 && b.other == 1; }));
   for (const BeyondJoint& b : beyond) CHECK((graph.voxel[b.voxel].z < 22) == (b.other == 0));
+}
+
+TEST_CASE("joint cuts: bones that touch more broadly than they are thick are told, those with a neck are not") {
+  auto lines_of = [](const SmallBody& body) {
+    return unsure_bones(split_bones(body.volume, TissueVoxels(body.volume), body.tissues, body.armature), body.tissues, body.armature);
+  };
+  const auto lines = lines_of(coarse_leg({0, 0, 0}).body);
+  REQUIRE(lines.size() == 1);
+  CHECK(lines[0].find("between Thigh and Shank") != std::string::npos);
+
+  const glm::dvec3 top(20, 20, 110), joint(20, 20, 60), bottom(20, 20, 10);
+  Armature rig;
+  add_chain(rig, "Bone", {top, joint, bottom});
+  CHECK(lines_of(fused({{top, joint, 6, 6, 0}, {joint, bottom, 6, 6, 1}}, rig, {40, 40, 122}, {1, 1, 1}).body).empty());
+}
+
+TEST_CASE("joint cuts: depths after a cut are those of the graph that was cut") {
+  const SmallBody body = coarse_leg({0, 0, 0}).body;
+  const std::vector<TissueKind> kinds = body.tissues.kinds();
+  BoneGraph graph = gather_bone(body.volume, TissueVoxels(body.volume), kinds);
+  const auto before = graph.neighbour;
+  const JointCuts cuts = cut_at_joints(graph, body.volume, kinds, body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
+  CHECK(graph.neighbour != before);
+  const std::vector<float> depth = bone_depth(graph, body.volume.grid.spacing);
+  double worst = 0;
+  for (std::size_t i = 0; i < depth.size(); ++i) worst = std::max(worst, double(std::abs(depth[i] - cuts.depth[i])));
+  CHECK(worst < 0.5);  // mm; the distances are carried from voxel to voxel and may be a little long in either
+}
+
+TEST_CASE("joint cuts: one, two and four threads cut alike") {
+  const FusedBody made = coarse_leg({0, 0, 0});
+  const std::vector<TissueKind> kinds = made.body.tissues.kinds();
+  const BoneGraph graph = gather_bone(made.body.volume, TissueVoxels(made.body.volume), kinds);
+  auto cut_with = [&](int threads) {
+    const ThreadCount count(threads);
+    BoneGraph cut = graph;
+    cut_at_joints(cut, made.body.volume, kinds, made.body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
+    return cut.neighbour;
+  };
+  const auto one = cut_with(1);
+  CHECK(cut_with(2) == one);
+  CHECK(cut_with(4) == one);
 }
