@@ -89,6 +89,7 @@ class JointCutter {
     for (int which = 0; which < 2; ++which)
       for (const std::int32_t i : along_[which ? child : parent])
         if (const glm::dvec3 at = world(i); glm::distance(at, joint) <= reach_aside && std::abs(glm::dot(at - joint, normal)) <= reach) add(i, which);
+    if (domain_.empty()) return;
     for (int which = 0; which < 2; ++which) find_shaft(which, which ? child : parent, joint, kShaft * shorter, kShaftWidth * shorter);
     const double ball = is_ball_[child] ? depth_at(joint, kLargestBall * length_of(c)) : 0;
     if (ball > kBall * length_of(c)) {
@@ -164,7 +165,8 @@ class JointCutter {
       }
     });
     along_.resize(bones_.size());
-    for (std::int32_t i = 0; i < graph_.size(); ++i) along_[near_[i].bone[0]].push_back(i);
+    for (std::int32_t i = 0; i < graph_.size(); ++i)
+      if (near_[i].bone[0] >= 0) along_[near_[i].bone[0]].push_back(i);  // none where the rig is too far away for numbers
   }
 
   // The direction from the parent to the child across the plane that halves the angle between them, or the child's own where it
@@ -278,7 +280,9 @@ class JointCutter {
   // Distance in mm from a point to the nearest voxel that is not bone, at most `most`.
   double depth_at(const glm::dvec3& point, double most) const {
     const glm::dvec3 centre = voxel_from_world(volume_.grid) * point;
-    const glm::ivec3 low(glm::floor(centre - most / volume_.grid.spacing)), high(glm::ceil(centre + most / volume_.grid.spacing));
+    const glm::dvec3 first(-1), last(volume_.grid.size);  // the air around the grid included
+    const glm::ivec3 low(glm::clamp(glm::floor(centre - most / volume_.grid.spacing), first, last));
+    const glm::ivec3 high(glm::clamp(glm::ceil(centre + most / volume_.grid.spacing), first, last));
     double nearest = most;
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)
