@@ -271,6 +271,13 @@ std::string_view to_string(FoundBy found_by) {
   return "";
 }
 
+std::vector<int> bones_of_region(BoneRegion region, BodySide side, const Armature& armature) {
+  const RigRegions rig(armature);
+  if (!rig.is_recognised()) return {};
+  const auto found = rig.find(region, AnatomicalName{}, side);
+  return found.is_substitute ? std::vector<int>() : found.bones;
+}
+
 std::map<Label, LabelBones> bones_of_labels(const TissueTable& tissues, const Armature& armature, const BoneMap& map) {
   const RigRegions rig(armature);
   std::map<Label, LabelBones> found;

@@ -41,4 +41,8 @@ struct LabelBones {
 // throws Error where the map names a rig bone or a label that is not there
 std::map<Label, LabelBones> bones_of_labels(const TissueTable& tissues, const Armature& armature, const BoneMap& map = {});
 
+// The rig bones of a region of the body on one side, or where the rig has none of it, the next towards the trunk. None where the
+// rig's names say nothing of it.
+std::vector<int> bones_of_region(BoneRegion region, BodySide side, const Armature& armature);
+
 }  // namespace limber

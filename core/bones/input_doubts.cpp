@@ -10,16 +10,18 @@
 #include <vector>
 
 #include "core/bones/bone_identity.h"
+#include "core/volume/neighbour_changes.h"
 
 namespace limber {
 
 namespace {
-// Atlases of a body have up to some 500 labels and differ at a tenth of their faces; a CT has 250 values and more and differs at nine tenths.
-constexpr int kManyLabels = 64;
-constexpr double kMostlyDiffers = 0.5;
 // A rig that fits has nine tenths of its length in tissue; a hand's rig runs along thin fingers and has less.
 constexpr double kMostlyOutside = 0.5, kFitsMuchBetter = 0.3;
 constexpr int kPoints = 32;  // asked along each bone
+constexpr double kShaftRadius = 0.1;  // of a rig bone's length
+// Of a label's voxels, that lie along the middle of a bone it does not belong to: none in a good body, a sixth where half the femur is
+// called tibia.
+constexpr double kMisplaced = 0.1;
 
 struct Extent {
   glm::dvec3 low{0}, high{0};  // world, mm, of the grid
@@ -43,12 +45,12 @@ Armature moved(Armature armature, const Move& move) {
 }
 
 std::optional<std::string> doubt_about_grey(const LabelVolume& volume, const TissueTable& tissues) {
-  if (std::ssize(tissues.tissues) < kManyLabels) return std::nullopt;
-  const double share = share_of_differing_neighbours(volume);
-  if (share < kMostlyDiffers) return std::nullopt;
+  NeighbourChanges changes(volume.grid.size.x);
+  changes.add(volume.voxels.data(), volume.voxels.size());
+  if (!changes.looks_grey(tissues.tissues.size())) return std::nullopt;
   char text[200];
   std::snprintf(text, sizeof text, "this looks like a grey image, not a label volume: it has %d values, and %.0f %% of neighbouring voxels differ; give the labels, and the image with --with",
-                int(tissues.tissues.size()), 100 * share);
+                int(tissues.tissues.size()), 100 * changes.share());
   return text;
 }
 
@@ -90,17 +92,10 @@ std::map<Label, glm::dvec3> centres_of(const LabelVolume& volume, const std::set
 
 // The rig bones of one region on both sides, the named one first; none where the rig does not tell its sides apart.
 std::optional<std::array<std::vector<int>, 2>> both_sides(BoneRegion region, BodySide side, const Armature& armature) {
-  static const std::array<const char*, 15> kWord = {"skull", "atlas", "rib", "lumbar", "spine", "pelvis", "scapula", "humerus", "ulna", "wrist", "thumb", "femur", "tibia", "talus", "toe"};
-  TissueTable asked;
-  asked.tissues.resize(2);
-  for (int k = 0; k < 2; ++k) {
-    asked.tissues[k].label = static_cast<Label>(k + 1);
-    asked.tissues[k].kind = TissueKind::Bone;
-    asked.tissues[k].name = ((side == BodySide::Left) == (k == 0) ? "left " : "right ") + std::string(kWord[static_cast<int>(region)]);
-  }
-  const auto bones = bones_of_labels(asked, armature);
-  if (!bones.contains(1) || !bones.contains(2) || bones.at(1).candidates[0] == bones.at(2).candidates[0]) return std::nullopt;
-  return std::array{bones.at(1).candidates[0], bones.at(2).candidates[0]};
+  const BodySide other = side == BodySide::Left ? BodySide::Right : BodySide::Left;
+  std::array bones{bones_of_region(region, side, armature), bones_of_region(region, other, armature)};
+  if (bones[0].empty() || bones[1].empty() || bones[0] == bones[1]) return std::nullopt;
+  return bones;
 }
 
 // Labels that say their side, against the rig's bones of that side and of the other.
@@ -135,6 +130,77 @@ std::optional<std::string> doubt_about_sides(const LabelVolume& volume, const Ti
   return "left and right are swapped between rig and labels: \"" + example + "\" lies at the rig's other side, and so do most; mirror the rig or correct the labels' names";
 }
 
+// Where no label says its side, the axes do: x grows to the left.
+std::optional<std::string> doubt_about_axes(const TissueTable& tissues, const Armature& armature) {
+  for (const Tissue& tissue : tissues.tissues)
+    if (is_bone(tissue.kind) && anatomical_name(tissue.name).side != BodySide::Middle) return std::nullopt;
+  int agree = 0, disagree = 0;
+  for (const BoneRegion region : {BoneRegion::UpperArm, BoneRegion::Forearm, BoneRegion::Thigh, BoneRegion::Shank}) {
+    const auto bones = both_sides(region, BodySide::Left, armature);
+    if (!bones) continue;
+    const auto x = [&](int side) { return armature.bones[(*bones)[side].front()].head.x; };
+    (x(0) > x(1) ? agree : disagree) += 1;
+  }
+  if (disagree < 2 || agree > 0) return std::nullopt;
+  return "the rig's left bones lie at the body's right: x grows to the left in Limber's axes, which are LPS; mirror the rig, or negate its x and y if it is in RAS axes";
+}
+
+// Whether a point lies along the middle of the bone, away from its joints.
+bool is_along(const Bone& bone, const glm::dvec3& p) {
+  const glm::dvec3 axis = bone.tail - bone.head;
+  const double length = glm::length(axis);
+  if (!(length > 0)) return false;
+  const double share = glm::dot(p - bone.head, axis) / (length * length);
+  return share > 0.25 && share < 0.75 && distance_to_bone(bone, p) < kShaftRadius * length;
+}
+
+// Labels of one limb bone, and the rig bones that they may follow.
+std::map<Label, std::vector<int>> single_limb_bones(const TissueTable& tissues, const Armature& armature) {
+  std::map<Label, std::vector<int>> own;
+  for (const auto& [label, bones] : bones_of_labels(tissues, armature)) {
+    const AnatomicalName name = anatomical_name(tissues.find(label)->name);
+    if (!bones.single || name.regions.size() != 1 || bones.is_substitute) continue;
+    const BoneRegion region = *name.regions.begin();
+    if (region != BoneRegion::UpperArm && region != BoneRegion::Forearm && region != BoneRegion::Thigh && region != BoneRegion::Shank) continue;
+    for (const auto& side : bones.candidates) own[label].insert(own[label].end(), side.begin(), side.end());
+  }
+  return own;
+}
+
+// A label of one bone, a good part of which lies along another bone of the limb.
+std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature) {
+  const std::map<Label, std::vector<int>> own = single_limb_bones(tissues, armature);
+  if (own.empty()) return std::nullopt;
+  std::vector<const std::vector<int>*> asked(65536, nullptr);
+  for (const auto& [label, bones] : own) asked[label] = &bones;
+  std::map<Label, std::map<int, std::int64_t>> elsewhere;
+  std::map<Label, std::int64_t> voxels;
+  const AffineTransform to_world = world_from_voxel(volume.grid);
+  std::int64_t at = 0;
+  for (int z = 0; z < volume.grid.size.z; ++z)
+    for (int y = 0; y < volume.grid.size.y; ++y)
+      for (int x = 0; x < volume.grid.size.x; ++x, ++at) {
+        const Label label = volume.voxels[at];
+        if (!asked[label]) continue;
+        ++voxels[label];
+        const glm::dvec3 p = to_world * glm::dvec3(x, y, z);
+        for (int b = 0; b < std::ssize(armature.bones); ++b)
+          if (is_along(armature.bones[b], p) && std::find(asked[label]->begin(), asked[label]->end(), b) == asked[label]->end()) {
+            ++elsewhere[label][b];
+            break;
+          }
+      }
+  for (const auto& [label, bones] : elsewhere)
+    for (const auto& [bone, count] : bones)
+      if (double(count) > kMisplaced * double(voxels[label])) {
+        char share[16];
+        std::snprintf(share, sizeof share, "%.0f %%", 100 * double(count) / double(voxels[label]));
+        return std::string(share) + " of the label \"" + tissues.find(label)->name.substr(0, 60) + "\" lie along the middle of " + armature.bones[bone].name +
+               ", another bone: correct the labels, or say with --bone-map which bone it follows";
+      }
+  return std::nullopt;
+}
+
 // The limb that a region belongs to; the trunk and the head belong to every rig.
 int limb_of(BoneRegion region) {
   using enum BoneRegion;
@@ -162,17 +228,6 @@ std::optional<std::string> doubt_about_limb(const TissueTable& tissues, const Ar
 }
 }  // namespace
 
-double share_of_differing_neighbours(const LabelVolume& volume) {
-  std::int64_t pairs = 0, differing = 0;
-  const std::int64_t row = volume.grid.size.x;
-  for (std::int64_t at = 0; at + 1 < std::ssize(volume.voxels); ++at) {
-    if ((at + 1) % row == 0 || volume.voxels[at] == 0 || volume.voxels[at + 1] == 0) continue;
-    ++pairs;
-    differing += volume.voxels[at] != volume.voxels[at + 1];
-  }
-  return pairs ? double(differing) / double(pairs) : 0;
-}
-
 double share_in_tissue(const LabelVolume& volume, const Armature& armature) {
   const AffineTransform from_world = voxel_from_world(volume.grid);
   double length = 0, inside = 0;
@@ -195,9 +250,13 @@ std::vector<std::string> input_doubts(const LabelVolume& volume, const TissueTab
     if (doubt) doubts.push_back(std::move(*doubt));
   };
   add(doubt_about_grey(volume, tissues));
-  add(doubt_about_place(volume, armature));
-  add(doubt_about_sides(volume, tissues, armature));
-  add(doubt_about_limb(tissues, armature));
+  const auto place = doubt_about_place(volume, armature), sides = doubt_about_sides(volume, tissues, armature), limb = doubt_about_limb(tissues, armature);
+  add(place);
+  add(sides);
+  add(limb);
+  if (place || sides || limb) return doubts;
+  add(doubt_about_axes(tissues, armature));
+  add(doubt_about_labels(volume, tissues, armature));
   return doubts;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds inputs that do not belong together before anything is computed from them: a grey image read as labels, a rig that lies
-// beside the body or mirrored, a rig whose left is the body's right, a rig of another limb. Each doubt is one sentence that says
-// what was seen and what to do.
+// beside the body or mirrored, a rig whose left is the body's right, a rig of another limb, a label of one bone that lies along
+// another. Each doubt is one sentence that says what was seen and what to do.
 #pragma once
 
 #include <string>
@@ -11,9 +11,6 @@
 #include "core/volume/tissue_table.h"
 
 namespace limber {
-
-// Share of face neighbours along x, both tissue, whose labels differ, [0, 1]. Label volumes have a few percent, grey images most.
-double share_of_differing_neighbours(const LabelVolume& volume);
 
 // Share of the rig's length that lies in tissue, [0, 1]; joints, a tenth at either end of a bone, do not count.
 double share_in_tissue(const LabelVolume& volume, const Armature& armature);

@@ -12,6 +12,7 @@
 #include "core/volume/dicom.h"
 #include "core/volume/header_text.h"
 #include "core/volume/label_decoder.h"
+#include "core/volume/neighbour_changes.h"
 #include "core/volume/voxel_source.h"
 
 namespace limber {
@@ -143,15 +144,12 @@ VolumeSummary summarize_volume(const Path& path) {
   LabelDecoder decoder;
   std::vector<Label> labels(kChunkVoxels);
   std::vector<std::int64_t> count_of(65536);
-  std::int64_t tissue_voxels = 0, changes = 0;
+  NeighbourChanges changes(header.grid.size.x);
   for_chunks(opened, no_progress(), [&](const void* chunk, std::size_t count, std::int64_t) {
     if (summary.is_label &&
         decoder.decode(chunk, count, header.voxel_type, header.slope, header.intercept, labels.data()) == LabelDecoder::Problem::None) {
-      for (std::size_t i = 0; i < count; ++i) {
-        ++count_of[labels[i]];
-        tissue_voxels += labels[i] != 0;
-        changes += i > 0 && labels[i] != labels[i - 1];
-      }
+      for (std::size_t i = 0; i < count; ++i) ++count_of[labels[i]];
+      changes.add(labels.data(), count);
     } else {
       summary.is_label = false;
     }
@@ -165,8 +163,8 @@ VolumeSummary summarize_volume(const Path& path) {
     });
   });
   append(summary.warnings, opened.voxels->finish());
-  // A label reaches over several voxels; the grey values of two neighbours are mostly not the same.
-  summary.looks_grey = !summary.is_label || 2 * changes > tissue_voxels;
+  const auto kinds = std::count_if(count_of.begin() + 1, count_of.end(), [](std::int64_t voxels) { return voxels > 0; });
+  summary.looks_grey = !summary.is_label || changes.looks_grey(static_cast<std::size_t>(kinds));
   if (!summary.is_label) return summary;
 
   bool tissue = false;
