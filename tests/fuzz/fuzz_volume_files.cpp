@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/volume/vector_volume_io.h"
 #include "core/volume/volume_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -21,6 +22,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
       limber::summarize_volume(path);
       limber::read_volume(path);
+    } catch (const limber::Error&) {
+    }
+    try {
+      limber::read_vector_volume(path);
     } catch (const limber::Error&) {
     }
   }
