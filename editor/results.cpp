@@ -100,7 +100,7 @@ std::array<glm::dvec3, 2> in_grid(const std::array<glm::dvec3, 2>& box, const Gr
 
 ResultFacts facts_of_report(const std::string& text) {
   ResultFacts facts;
-  facts.gates = quality_gates(text);
+  facts.gates = all_gates(text);
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return facts;
   facts.seconds = method_seconds(text);
@@ -135,7 +135,9 @@ std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_pt
   if (found != known.end()) return found->facts;
   ResultFacts facts = facts_of_report(result->report);
   // Reports may be without their joints; what the result was made from is at hand.
-  if (result->from_armature && result->from_pose) facts.gates.back() = judge_joint_limits(*result->from_armature, *result->from_pose);
+  if (result->from_armature && result->from_pose)
+    for (QualityGate& gate : facts.gates)
+      if (gate.id == "limits") gate = judge_joint_limits(*result->from_armature, *result->from_pose);
   known.push_back({result, std::make_shared<const ResultFacts>(std::move(facts))});
   return known.back().facts;
 }
@@ -148,7 +150,7 @@ std::string text_of_report(const std::string& name, const ResultFacts& facts) {
     text += std::string(line) + "\n";
   };
   for (const QualityGate& gate : facts.gates)
-    add("%-8s %-26s %18s  %s", gate.state == GateState::Passed ? "passed" : gate.state == GateState::Failed ? "FAILED" : "-", gate.name.c_str(), gate.state == GateState::NotMeasured ? "not measured" : gate.figure.c_str(), gate.worst.c_str());
+    add("%-8s %-26s %18s  %s", gate.state == GateState::Passed ? "passed" : gate.state == GateState::Failed ? "FAILED" : "-", gate.name.c_str(), gate.state == GateState::NotMeasured ? "not checked" : gate.figure.c_str(), gate.worst.c_str());
   text += "\n";
   add("%-32s %12s %12s %10s %12s", "tissue", "cm3 at rest", "cm3 posed", "change %", "overlap");
   for (const ResultTissue& tissue : facts.tissues) {

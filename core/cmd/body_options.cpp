@@ -51,7 +51,8 @@ Body read_body(const BodyOptions& options, Progress& progress) {
   else
     guess_bones(body, options.volume);
   if (!options.bone_map.empty()) body.bone_map = read_bone_map(options.bone_map);
-  warn(input_doubts(body.file.volume, body.tissues, body.rig));
+  body.doubts = input_doubts(body.file.volume, body.tissues, body.rig);
+  warn(body.doubts);
   return body;
 }
 

@@ -24,6 +24,7 @@ struct Body {
   TissueTable tissues;
   Armature rig;
   BoneMap bone_map;  // which rig bones labels follow, where the user says
+  std::vector<std::string> doubts;  // of files that do not belong together [input_doubts.h]
 };
 
 // `options` must live as long as the command.

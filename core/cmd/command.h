@@ -2,7 +2,7 @@
 // The command line's subcommands: one file each, one function each, gathered in run.cpp. A function adds its
 // subcommand with its options to the app and sets a callback that does the work; errors are thrown, never printed there.
 // Exit codes: 0 done, 1 the input or the request is wrong, 2 usage, 3 cancelled, 4 a pose that could not be reached: outputs are
-// written, of the last place on the way to it.
+// written, of the last place on the way to it; 5 with --strict, a gate of the result failed: outputs are written as without.
 #pragma once
 
 #include <string>
@@ -38,12 +38,16 @@ int run(CLI::App& app, int argc, char** argv);
 
 // Thrown once everything is written, where exit code 0 would say too much.
 struct PoseNotReached {};
+struct GateFailed {};
 
 // Throws Error when two of the outputs are the same file; "" is none.
 void check_distinct(const std::vector<std::string>& outputs);
 
 // The text without control characters, which could break a message into two.
 std::string one_line(std::string text);
+
+// One line each on stderr: "limber: gate failed: ...".
+void tell_failed_gates(const std::vector<std::string>& sentences);
 
 // A description of a file on stdout: as JSON, or as text.
 void print_description(const std::string& json, bool as_json);

@@ -45,6 +45,11 @@ void warn(const std::vector<std::string>& lines) {
   for (const auto& line : lines) warn(line);
 }
 
+void tell_failed_gates(const std::vector<std::string>& sentences) {
+  if (!sentences.empty() && ::isatty(STDERR_FILENO)) std::fputs(kErase, stderr);
+  for (const std::string& sentence : sentences) std::fprintf(stderr, "limber: gate failed: %s\n", one_line(sentence).c_str());
+}
+
 CommandProgress::CommandProgress(const std::string& mode)
     : mode_(mode == "json" ? Mode::Json : ::isatty(STDERR_FILENO) ? Mode::Bar : Mode::Silent) {
   std::signal(SIGINT, on_interrupt);

@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber report BEFORE AFTER [--tissues T] [--json]
+// limber report BEFORE AFTER [--tissues T] [--field F.nrrd [--rig RIG [--bone-map FILE] POSE-OPTIONS]] [--strict] [--json]
 #include "core/report/report.h"
 
 #include <iostream>
 #include <memory>
 
+#include "core/bones/input_doubts.h"
 #include "core/cmd/command.h"
+#include "core/cmd/pose_options.h"
 #include "core/report/dice.h"
+#include "core/rig/armature_io.h"
+#include "core/volume/vector_volume_io.h"
 #include "core/volume/volume_io.h"
 
 namespace limber::cmd {
 
 namespace {
+constexpr double kSamePlaceMm = 1e-3;
+
 // The labels of `file` as `table` numbers them, matched by what they are called in files; values that `table` lacks are
 // added to it.
 void renumber(VolumeFile& file, TissueTable& table) {
@@ -33,9 +39,46 @@ void renumber(VolumeFile& file, TissueTable& table) {
 }
 
 struct Options {
-  std::string before, after, tissues;
-  bool json = false;
+  std::string before, after, tissues, field, rig, bone_map;
+  PoseOptions pose;
+  bool json = false, strict = false;
 };
+
+void note(Report& report, const std::vector<std::string>& warnings) {
+  warn(warnings);
+  report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
+}
+
+VectorVolume read_field(const std::string& path, const LabelVolume& after, Report& report) {
+  VectorVolume field = read_vector_volume(path);
+  report.inputs.push_back(describe_input(path));
+  note(report, field.warnings);
+  if (field.grid.size != after.grid.size || glm::distance(field.grid.origin, after.grid.origin) > kSamePlaceMm || glm::distance(field.grid.spacing, after.grid.spacing) > kSamePlaceMm)
+    throw Error("the field lies on another grid than the posed volume", path, "give the field that was written with this volume");
+  return field;
+}
+
+// What the field, the rig and the pose add to the comparison of two volumes.
+void measure_with_field(const Options& options, const LabelVolume& before, const LabelVolume& after, const TissueTable& tissues, Report& report) {
+  JudgedPose judged{.rest = before, .posed = after, .tissues = tissues};
+  const VectorVolume field = read_field(options.field, after, report);
+  judged.displacement = {field.voxels.data(), field.voxels.size()};
+  ArmatureFile rig;
+  BoneMap map;
+  if (!options.rig.empty()) {
+    rig = read_armature_file(options.rig);
+    report.inputs.push_back(describe_input(options.rig));
+    note(report, rig.warnings);
+    report.doubts = input_doubts(before, tissues, rig.armature);
+    note(report, *report.doubts);
+    const Pose pose = read_pose_options(options.pose, rig.armature);
+    report.joints = turned_joints(rig.armature, pose);
+    judged.armature = &rig.armature;
+    judged.asked = judged.applied = posed_from_rest(rig.armature, pose);
+    if (!options.bone_map.empty()) map = read_bone_map(options.bone_map);
+  }
+  measure_body(judged, map, report);
+}
 
 void run(const Options& options) {
   const Stopwatch total;
@@ -52,19 +95,22 @@ void run(const Options& options) {
   const TissueTable tissues = merge_tissue_tables(before.tissues, user ? &*user : nullptr);
   report.seconds.read = total.seconds();
   for (const VolumeFile* file : {&before, &after})
-    for (const std::string& warning : file->warnings) {
-      warn(warning);
-      report.warnings.push_back(warning);
-    }
+    note(report, file->warnings);
 
   report.metrics = compare(before.volume, after.volume, tissues);
+  if (!options.field.empty()) measure_with_field(options, before.volume, after.volume, tissues, report);
+  else measure_body({.rest = before.volume, .posed = after.volume, .tissues = tissues}, {}, report);
   if (before.volume.grid == after.volume.grid) report.dice = dice_by_label(before.volume, after.volume);
   progress.update("report", 1);
   report.seconds.total = total.seconds();
+  judge(report);
   if (options.json)
     std::cout << to_json(report);
   else
     print_report(std::cout, report);
+  if (!options.strict) return;
+  tell_failed_gates(failed_gates(report));
+  if (!failed_gates(report).empty()) throw GateFailed();
 }
 }  // namespace
 
@@ -74,6 +120,11 @@ void add_report(CLI::App& app) {
   command->add_option("BEFORE", options->before, "label volume")->required();
   command->add_option("AFTER", options->after, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table: names, kinds, densities");
+  auto* field = command->add_option("--field", options->field, "the displacement at each voxel of AFTER, as `limber resample --field` writes it: also judges what was exposed")->type_name("F.nrrd");
+  auto* rig = command->add_option("--rig", options->rig, "with --field: also judges bones, limbs and bands; say the pose as for resample")->needs(field);
+  command->add_option("--bone-map", options->bone_map, "as for resample")->type_name("FILE")->needs(rig);
+  add_pose_options(*command, options->pose);
+  command->add_flag("--strict", options->strict, "exit code 5 when a gate fails");
   command->add_flag("--json", options->json, "print the report as JSON (schema limber-report/1)");
   command->callback([options] { run(*options); });
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS [--method lbs|dqs|mix|fem] [--fit-joints]
 //        [--contact] [--quality draft|normal|fine] [--mesher lattice|tetgen] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2]
-//        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--threads N] [--progress json]
+//        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--strict] [--threads N] [--progress json]
 #include "core/resample/resample.h"
 
 #include <cstdlib>
@@ -42,7 +42,7 @@ struct Options {
   std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
-  bool nearest = false, mass_exact = false, fit_joints = false, contact = false;
+  bool nearest = false, mass_exact = false, fit_joints = false, contact = false, strict = false;
 };
 
 // IN=OUT, of what a pose takes along.
@@ -309,8 +309,26 @@ std::vector<Landmark> posed_landmarks(const Landmarks& landmarks, const Options&
   return there;
 }
 
-// Everything of one pose that is posed now.
-void finish(const Options& options, const Body& body, const Pose& pose, const Landmarks& landmarks, Posed& posed, Report& report, const Stopwatch& total) {
+// What the volumes and the map between them tell, judged.
+//   asked  #bones, posed from rest, of the pose and the rig as they were given
+void measure(const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked, Posed& posed, Report& report) {
+  report.doubts = body.doubts;
+  report.metrics = compare(body.file.volume, posed.volume, body.tissues);
+  const JudgedPose judged{body.file.volume, posed.volume, body.tissues, {posed.displacement.data(), posed.displacement.size()}, &body.rig, asked,
+                          posed_from_rest(body.rig, posed.shape ? posed.shape->pose : pose)};
+  measure_body(judged, body.bone_map, report);
+  report.deform = std::move(posed.report);
+}
+
+// Weights from a file may be older than the rig, or painted by another program.
+void note_foreign_weights(const Body& body, const Pose& pose, const Landmarks& landmarks, const Posed& posed, Report& report) {
+  const auto motions = bone_motions(landmarks.weights.bones(), body.rig, posed.shape ? posed.shape->pose : pose);
+  note(report, astray_bones(whole_bones(body.file.volume, landmarks.tissue, body.tissues, body.rig, landmarks.weights, motions, body.bone_map)));
+}
+
+// Everything of one pose that is posed now. False where a gate of the body failed.
+bool finish(const Options& options, const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked, const Landmarks& landmarks, Posed& posed,
+            Report& report, const Stopwatch& total) {
   if (!options.mesh_out.empty() && !posed.shape)
     throw Error("the pose bends nothing, so there is no mesh", options.mesh_out, "leave --mesh-out out, or give a pose");
   report.seconds.mesh = posed.report.seconds_mesh;
@@ -321,12 +339,7 @@ void finish(const Options& options, const Body& body, const Pose& pose, const La
   note_shape(report, posed.report, pose, options.contact);
   if (posed.report.mass_exact) note_masses(report, *posed.report.mass_exact, body.tissues);
 
-  // Weights from a file may be older than the rig, or painted by another program.
-  if (!options.report.empty() || !options.weights.empty()) {
-    const auto motions = bone_motions(landmarks.weights.bones(), body.rig, posed.shape ? posed.shape->pose : pose);
-    report.whole_bones = whole_bones(body.file.volume, landmarks.tissue, body.tissues, body.rig, landmarks.weights, motions, body.bone_map);
-    note(report, astray_bones(report.whole_bones));
-  }
+  if (!options.weights.empty()) note_foreign_weights(body, pose, landmarks, posed, report);
 
   Outputs outputs;
   const Stopwatch writing;
@@ -336,17 +349,19 @@ void finish(const Options& options, const Body& body, const Pose& pose, const La
     outputs.write(to, [&] { write_landmarks(posed_landmarks(landmarks, options, body, pose, posed.shape.get()), to); });
   }
   report.seconds.write = writing.seconds();
-  if (!options.report.empty()) {
+  if (!options.report.empty() || options.strict) {
     const Stopwatch comparing;
-    report.metrics = compare(body.file.volume, posed.volume, body.tissues);
+    measure(body, pose, asked, posed, report);
     describe(report, options, body.rig, pose);
-    report.deform = std::move(posed.report);
     report.seconds.report = comparing.seconds();
     report.seconds.total = total.seconds();
+    judge(report);
     outputs.write(options.report, [&] { write_report(report, options.report); });
-    print_report(std::cout, report);
+    if (!options.report.empty()) print_report(std::cout, report);
+    tell_failed_gates(failed_gates(report));
   }
   outputs.complete();
+  return failed_gates(report).empty();
 }
 
 void run(const Options& options) {
@@ -382,6 +397,8 @@ void run(const Options& options) {
   set_seams(tissue, options.seams, body, parts, progress);
   if (options.weights.empty()) note(report, unsure_bones(parts, body.tissues, body.rig));
   const SkinWeights weights = weights_of(body, tissue, parts, options, report, progress);
+  std::vector<std::vector<RigidTransform>> asked;  // fitting changes rig and pose
+  for (const Pose& pose : poses) asked.push_back(posed_from_rest(body.rig, pose));
   if (options.fit_joints) {
     FittedPose fitted = fit_joints(body.file.volume, tissue, parts, body.rig, poses[0], progress);
     note(report, fitted.warnings);
@@ -391,24 +408,25 @@ void run(const Options& options) {
   report.seconds.weights = weighting.seconds();
 
   const ResampleSettings settings{.nearest = options.nearest, .mass_exact = options.mass_exact, .mass_limit_percent = options.mass_limit, .spacing = options.spacing,
-                                  .displacement = !options.field.empty(), .jacobian = !options.jacobian.empty(),
+                                  .displacement = !options.field.empty() || !options.report.empty() || options.strict, .jacobian = !options.jacobian.empty(),
                                   .overlap = !options.overlap.empty(),
                                   .grey = grey ? &*grey : nullptr,
                                   .seams = tissue.shared_seams()};
   SolveProgress solve(progress, options, weights.bones(), body.rig, poses[0]);
-  bool all_reached = true;
+  bool all_reached = true, all_passed = true;
   std::optional<CommandProgress::LeavesAtOnce> nothing_is_being_written(std::in_place);
   resample_sequence(body.file.volume, body.tissues, body.rig, weights, poses, method_of(options, solve), settings, [&](std::size_t place, Posed posed) {
     nothing_is_being_written.reset();
     if (posed.shape && frames.empty()) solve.end(*posed.shape);
     all_reached &= !posed.report.solve || posed.report.solve->converged;
     Report of_pose = report;
-    finish(frames.empty() ? options : of_frame(options, frames[place]), body, poses[place], {landmarks, tissue, weights}, posed, of_pose, total);
+    all_passed &= finish(frames.empty() ? options : of_frame(options, frames[place]), body, poses[place], asked[place], {landmarks, tissue, weights}, posed, of_pose, total);
     if (place + 1 == poses.size()) return;
     solve.aim_at(poses[place + 1]);
     nothing_is_being_written.emplace();
   }, progress);
   if (!all_reached) throw PoseNotReached();
+  if (options.strict && !all_passed) throw GateFailed();
 }
 
 }  // namespace
@@ -431,6 +449,7 @@ void add_resample(CLI::App& app) {
   command->add_flag("--fit-joints", options->fit_joints, "first move each bent joint so that its bones do not collide");
   command->add_option("-o,--output", options->output, "the posed volume")->required();
   command->add_option("--report", options->report, "what changed: JSON there, a table on stdout");
+  command->add_flag("--strict", options->strict, "exit code 5 when a gate fails: measures the result as for --report, writes everything all the same");
   command->add_option("--spacing", options->spacing, "of the output, mm (default: as the input)")->check(CLI::Range(1e-9, 1e6));
   command->add_flag("--nearest", options->nearest, "labels of the nearest rest voxel");
   auto* mass_exact = command->add_flag("--mass-exact", options->mass_exact, "soft tissues get their rest volumes: borders between them move by the fewest and least sure voxels");

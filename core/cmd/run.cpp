@@ -10,7 +10,14 @@
 
 namespace limber::cmd {
 
+namespace {
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done; 1 the input or the request is wrong, one line says what, where and what to do; 2 usage; 3 cancelled; "
+    "4 finite elements could not reach the pose, the outputs hold the way to it; 5 with --strict, a gate failed, the outputs are written.";
+}  // namespace
+
 void add_commands(CLI::App& app) {
+  app.footer(kExitCodes);
   app.set_version_flag("--version", LIMBER_VERSION);
   add_convert(app);
   add_export_gltf(app);
@@ -40,6 +47,8 @@ int run(CLI::App& app, int argc, char** argv) {
     return 3;
   } catch (const PoseNotReached&) {
     return 4;
+  } catch (const GateFailed&) {
+    return 5;
   } catch (const Error& error) {
     std::fprintf(stderr, "limber: %s\n", one_line(error.what()).c_str());
     return 1;

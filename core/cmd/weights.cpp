@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber weights VOLUME --rig RIG [--tissues T] [--bones L,L] [--method heat|geodesic|rigid] [--seams FILE|none] -o W.nrrd [--bender-dir DIR]
+// limber weights VOLUME --rig RIG [--tissues T] [--bones L,L] [--method heat|geodesic|rigid] [--seams FILE|none] -o W.nrrd [--bender-dir DIR] [--strict]
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -9,6 +9,8 @@
 #include "core/cmd/command.h"
 #include "core/cmd/seam_options.h"
 #include "core/bones/bone_parts.h"
+#include "core/report/report.h"
+#include "core/report/whole_bones.h"
 #include "core/skin/geodesic.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/rigid.h"
@@ -20,6 +22,7 @@ namespace {
 struct Options {
   BodyOptions body;
   std::string method = "heat", output, bender_folder, seams;
+  bool strict = false;
   RunOptions run;
 };
 
@@ -43,6 +46,19 @@ void print_identities(const BoneParts& parts, const TissueTable& tissues, const 
     std::printf("%-44.44s %-20s %10lld   %s%s\n", name.c_str(), armature.bones[identity.bone].name.c_str(), static_cast<long long>(identity.voxel_count),
                 std::string(to_string(identity.found_by)).c_str(), identity.is_substitute ? ", not sure" : "");
   }
+}
+
+// The gates that weights can be judged by before any pose: whether the inputs belong together, and each named bone follows its own
+// rig bone.
+std::vector<std::string> failed_gates_of(const Body& body, const TissueVoxels& tissue, const SkinWeights& weights) {
+  Report report;
+  report.doubts = body.doubts;
+  const std::vector<RigidTransform> at_rest(weights.bones().size());
+  report.posed_bones.whole = whole_bones(body.file.volume, tissue, body.tissues, body.rig, weights, at_rest, body.bone_map);
+  judge(report);
+  std::erase_if(report.gates, [](const QualityGate& gate) { return gate.id != "inputs" && gate.id != "follows"; });
+  for (const QualityGate& gate : report.gates) std::printf("%-11s %s\n", gate.state == GateState::Failed ? "FAILED" : std::string(to_string(gate.state)).c_str(), gate.sentence.c_str());
+  return failed_gates(report);
 }
 
 void make_weights(const Options& options) {
@@ -72,6 +88,10 @@ void make_weights(const Options& options) {
   print_table(parts, rig);
   print_identities(parts, body.tissues, rig);
   if (options.method == "heat") std::printf("heat: residual %.1e in %d iterations\n", report.residual, report.iterations);
+  if (!options.strict) return;
+  const std::vector<std::string> failed = failed_gates_of(body, tissue, weights);
+  tell_failed_gates(failed);
+  if (!failed.empty()) throw GateFailed();
 }
 }  // namespace
 
@@ -83,6 +103,7 @@ void add_weights(CLI::App& app) {
   add_seam_option(*command, options->seams);
   command->add_option("-o,--output", options->output, "W.nrrd")->required();
   command->add_option("--bender-dir", options->bender_folder, "also write weight_NN.mha, one a bone, into this folder");
+  command->add_flag("--strict", options->strict, "exit code 5 when the inputs do not belong together, or a named bone follows another's rig bone");
   add_run_options(*command, options->run);
   command->callback([options] { make_weights(*options); });
 }

@@ -12,6 +12,7 @@
 namespace limber {
 
 namespace {
+constexpr double kSameVoxel = 0.01;  // of a voxel's volume
 constexpr int kLabels = std::numeric_limits<Label>::max() + 1;
 
 // Sets of runs that belong together; a set's voxels and label stand at its root.
@@ -162,7 +163,7 @@ double skin_share(const LabelCensus& census, const TissueTable& tissues) {
 }  // namespace
 
 LabelCensus take_census(const LabelVolume& volume, std::int64_t smallest) {
-  LabelCensus census{std::vector<std::int64_t>(kLabels), std::vector<int>(kLabels), std::vector<std::int64_t>(kLabels)};
+  LabelCensus census{std::vector<std::int64_t>(kLabels), std::vector<int>(kLabels), std::vector<int>(kLabels), std::vector<std::int64_t>(kLabels)};
   const glm::ivec3 size = volume.grid.size;
   Components components;
   components.add(0);
@@ -186,6 +187,7 @@ LabelCensus take_census(const LabelVolume& volume, std::int64_t smallest) {
     const Label label = components.label(set);
     census.voxels[label] += components.voxels(set);
     census.components[label] += components.voxels(set) >= smallest;
+    census.half_components[label] += 2 * components.voxels(set) >= smallest;
     if (label == 0 && set != kOutside) census.enclosed_air_voxels += components.voxels(set);
   }
   return census;
@@ -205,6 +207,7 @@ VolumeMetrics compare(const LabelVolume& before, const LabelVolume& after, const
     TissueChange change{.label = static_cast<Label>(label)};
     change.file_value = tissue ? tissue->file_value : label;
     change.name = tissue ? tissue->name : "label " + std::to_string(label);
+    change.kind = tissue ? tissue->kind : TissueKind::Unknown;
     change.voxels_before = voxels[0];
     change.voxels_after = voxels[1];
     change.mm3_before = voxels[0] * mm3[0];
@@ -215,6 +218,7 @@ VolumeMetrics compare(const LabelVolume& before, const LabelVolume& after, const
     change.mass_change_percent = percent_change(change.mass_before, change.mass_after);
     change.components_before = census[0].components[label];
     change.components_after = census[1].components[label];
+    if (std::abs(mm3[1] / mm3[0] - 1) < kSameVoxel) change.torn_parts = std::max(0, census[1].components[label] - census[0].half_components[label]);
     metrics.has_skin |= tissue && tissue->kind == TissueKind::Skin;
     metrics.voxels_before += change.voxels_before;
     metrics.voxels_after += change.voxels_after;

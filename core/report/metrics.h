@@ -7,6 +7,7 @@
 // runs and a few bytes per place where a component begins.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace limber {
 struct LabelCensus {
   std::vector<std::int64_t> voxels;          // [65536] by label
   std::vector<int> components;               // [65536] 26-connected, of `smallest` voxels or more
+  std::vector<int> half_components;          // [65536] the same of half as many
   std::vector<std::int64_t> surface_voxels;  // [65536] tissue voxels with a face towards air or the grid's outside
   std::int64_t enclosed_air_voxels = 0;      // air that no path of air (6-connected) joins to the grid's border
 };
@@ -28,11 +30,15 @@ struct TissueChange {
   Label label;
   double file_value = 0;  // what the label is called in files
   std::string name;
+  TissueKind kind = TissueKind::Unknown;
   std::int64_t voxels_before = 0, voxels_after = 0;
   double mm3_before = 0, mm3_after = 0;
   double mass_before = 0, mass_after = 0;  // g
   double volume_change_percent = 0, mass_change_percent = 0;
   int components_before = 0, components_after = 0;  // 26-connected, of 50 voxels or more
+  // Pieces of 50 voxels or more beyond those that had half as many before: a piece that grew by a voxel is no tear. None where the
+  // two volumes have voxels of different size.
+  std::optional<int> torn_parts;
 };
 
 struct VolumeMetrics {

@@ -29,6 +29,7 @@ Json tissue_rows(const Report& report) {
   for (const TissueChange& tissue : report.metrics->tissues) {
     Json row{{"label", whole(tissue.file_value)},
              {"name", tissue.name},
+             {"kind", std::string(to_string(tissue.kind))},
              {"voxels_before", tissue.voxels_before},
              {"voxels_after", tissue.voxels_after},
              {"mm3_before", tissue.mm3_before},
@@ -42,6 +43,7 @@ Json tissue_rows(const Report& report) {
     }
     row["components_before"] = tissue.components_before;
     row["components_after"] = tissue.components_after;
+    if (tissue.torn_parts) row["torn_parts"] = *tissue.torn_parts;
     if (report.deform) row["overlap_voxels"] = overlap_of(report, tissue.label);
     if (!report.dice.empty()) row["dice"] = report.dice[tissue.label];
     rows.push_back(row);
@@ -126,6 +128,58 @@ Json joint_of(const TurnedJoint& joint) {
   return row;
 }
 
+Json worst_of(const WorstPlace& worst) {
+  Json row{{"voxels", worst.voxels}, {"place", vector_of(worst.place)}};
+  if (!worst.near.empty()) row["near"] = worst.near;
+  return row;
+}
+
+Json exposure_of(const Report& report, const Exposure& exposure) {
+  Json row{{"voxels", exposure.voxels}, {"surface_voxels", exposure.surface_voxels}, {"percent", exposure.percent()}, {"deeper_than_mm", exposure.deeper_than_mm}};
+  for (const auto& [label, voxels] : exposure.by_label) {
+    std::string name = "label " + key_of(report, label);
+    if (report.metrics)
+      for (const TissueChange& tissue : report.metrics->tissues)
+        if (tissue.label == label) name = tissue.name;
+    row["by_label"].push_back({{"label", Json::parse(key_of(report, label))}, {"name", name}, {"voxels", voxels}});
+  }
+  if (exposure.worst) row["worst"] = worst_of(*exposure.worst);
+  return row;
+}
+
+Json whole_bone_of(const WholeBone& bone) {
+  Json row{{"label", bone.file_value}, {"name", bone.name}, {"belongs_to", bone.belongs_to}, {"voxels", bone.voxels}, {"wrong_voxels", bone.wrong_voxels}, {"residual_mm", bone.residual_mm}};
+  if (!bone.went_with.empty()) row["went_with"] = bone.went_with;
+  return row;
+}
+
+Json band_of(const Band& band) {
+  Json row{{"voxels", band.voxels}, {"mm3", band.mm3}, {"stretch", band.stretch}, {"place", vector_of(band.place)}};
+  if (!band.between[1].empty()) row["between"] = band.between;
+  return row;
+}
+
+Json gate_of(const QualityGate& gate) {
+  Json row{{"id", gate.id}, {"name", gate.name}, {"state", std::string(to_string(gate.state))}, {"limit", gate.limit}, {"sentence", gate.sentence}, {"strict", gate.strict}};
+  if (!gate.figure.empty()) row["figure"] = gate.figure;
+  if (!gate.worst.empty()) row["worst"] = gate.worst;
+  return row;
+}
+
+// What was measured of the pose itself.
+void add_body(const Report& report, Json& json) {
+  if (report.doubts) json["doubts"] = *report.doubts;
+  for (const WholeBone& bone : report.posed_bones.whole) json["whole_bones"].push_back(whole_bone_of(bone));
+  for (const LimbDirection& limb : report.posed_bones.limbs)
+    json["limbs"].push_back({{"bone", limb.bone}, {"direction_off_degrees", limb.direction_degrees}, {"orientation_off_degrees", limb.orientation_degrees}, {"voxels", limb.voxels},
+                             {"measured_from", limb.by_name ? "named bones" : "bone tissue around the middle of its axis"}});
+  if (report.exposure) json["exposure"] = exposure_of(report, *report.exposure);
+  if (report.air_pocket) json["air_pocket"] = worst_of(*report.air_pocket);
+  if (!report.bands) return;
+  json["bands"] = Json::array();
+  for (const Band& band : *report.bands) json["bands"].push_back(band_of(band));
+}
+
 Json seconds_of(const StageSeconds& seconds) {
   Json row = Json::object();
   auto add = [&](const char* stage, const std::optional<double>& value) {
@@ -203,6 +257,24 @@ std::vector<TurnedJoint> turned_joints(const Armature& rig, const Pose& pose) {
   return joints;
 }
 
+void measure_body(const JudgedPose& pose, const BoneMap& map, Report& report) {
+  if (report.metrics && report.metrics->trapped_air_voxels > 0) report.air_pocket = largest_air_pocket(pose);
+  if (!pose.knows_field()) return;
+  report.exposure = measure_exposure(pose);
+  if (!pose.armature) return;
+  report.posed_bones = measure_posed_bones(pose, map);
+  report.bands = find_bands(pose);
+}
+
+void judge(Report& report) { report.gates = all_gates(to_json(report)); }
+
+std::vector<std::string> failed_gates(const Report& report) {
+  std::vector<std::string> sentences;
+  for (const QualityGate& gate : report.gates)
+    if (gate.strict && gate.state == GateState::Failed) sentences.push_back(gate.sentence);
+  return sentences;
+}
+
 InputFile describe_input(const Path& path) { return {path.string(), sha256_of_file(path)}; }
 
 double peak_memory_mb() {
@@ -230,15 +302,12 @@ std::string to_json(const Report& report) {
   if (report.deform && !report.deform->bones.empty())
     for (const auto& bone : report.deform->bones)
       json["bones"].push_back({{"name", bone.name}, {"rigid_residual_mm", bone.rigid_residual_mm}});
-  for (const WholeBone& bone : report.whole_bones) {
-    Json row{{"label", bone.file_value}, {"name", bone.name}, {"belongs_to", bone.belongs_to}, {"voxels", bone.voxels}, {"wrong_voxels", bone.wrong_voxels}, {"residual_mm", bone.residual_mm}};
-    if (!bone.went_with.empty()) row["went_with"] = bone.went_with;
-    json["whole_bones"].push_back(std::move(row));
-  }
+  add_body(report, json);
   if (report.deform && report.deform->mass_exact) json["mass_exact"] = mass_exact_of(report, *report.deform->mass_exact);
   if (report.deform && report.deform->mesh) json["mesh"] = mesh_of(report, *report.deform->mesh);
   if (report.deform && report.deform->solve) json["solve"] = solve_of(*report.deform->solve);
   if (!report.warnings.empty()) json["warnings"] = report.warnings;
+  for (const QualityGate& gate : report.gates) json["gates"].push_back(gate_of(gate));
   // A name that is not UTF-8 must not cost the report.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -275,13 +344,6 @@ void print_report(std::ostream& out, const Report& report) {
     if (!deform.bones.empty())
       out << line("bone parts of %zu rig bones are rigid within %.4f mm", deform.bones.size(), worst);
   }
-  if (!report.whole_bones.empty()) {
-    std::int64_t astray = 0;
-    double worst = 0;
-    for (const WholeBone& bone : report.whole_bones) astray += bone.wrong_voxels, worst = std::max(worst, bone.residual_mm);
-    out << line("%zu named bones: %lld voxels follow a wrong rig bone, whole bones are rigid within %.2f mm", report.whole_bones.size(),
-                static_cast<long long>(astray), worst);
-  }
   if (report.deform && report.deform->mesh) {
     const MeshReport& mesh = *report.deform->mesh;
     out << line("mesh of %lld tets, %lld inverted, least det F %.3f, %.2f %% of soft tets below 0.2", static_cast<long long>(mesh.tets),
@@ -303,6 +365,9 @@ void print_report(std::ostream& out, const Report& report) {
     out << "\n";
   }
   out << line("peak memory %.0f MB", peak_memory_mb());
+  if (!report.gates.empty()) out << "\n";
+  for (const QualityGate& gate : report.gates)
+    out << line("%-11s %s", gate.state == GateState::Failed ? "FAILED" : std::string(to_string(gate.state)).c_str(), gate.sentence.c_str());
 }
 
 }  // namespace limber

@@ -13,8 +13,11 @@
 
 #include "core/base/file.h"
 #include "core/pose/pose.h"
+#include "core/report/bands.h"
+#include "core/report/exposure.h"
 #include "core/report/metrics.h"
-#include "core/report/whole_bones.h"
+#include "core/report/posed_bones.h"
+#include "core/report/quality_gates.h"
 #include "core/resample/resample.h"
 
 namespace limber {
@@ -51,11 +54,24 @@ struct Report {
   std::vector<TurnedJoint> joints;
   StageSeconds seconds;
   std::optional<VolumeMetrics> metrics;
-  std::vector<WholeBone> whole_bones;  // of labels that name a bone, or none
+  std::optional<std::vector<std::string>> doubts;  // of inputs that do not belong together [input_doubts.h]; none where nobody asked
+  PosedBones posed_bones;
+  std::optional<Exposure> exposure;
+  std::optional<WorstPlace> air_pocket;  // the largest, where the pose closed air in
+  std::optional<std::vector<Band>> bands;
   std::vector<double> dice;  // by label [dice.h], or empty
   std::optional<DeformReport> deform;
   std::vector<std::string> warnings;
+  std::vector<QualityGate> gates;
 };
+
+// Everything that is measured of the pose itself: exposure, bones, limbs and bands where it knows the displacement (and the rig),
+// and the largest pocket of air where `report.metrics` say that air was closed in.
+void measure_body(const JudgedPose& pose, const BoneMap& map, Report& report);
+// Judges the report by itself, into report.gates [quality_gates.h].
+void judge(Report& report);
+// The sentences of strict gates that failed.
+std::vector<std::string> failed_gates(const Report& report);
 
 std::string to_json(const Report& report);
 void write_report(const Report& report, const Path& path);

@@ -21,24 +21,34 @@ std::string formatted(const char* format, double value) {
   return buffer;
 }
 
+QualityGate unmeasured(const char* id, const char* name, const char* meaning, const char* limit) {
+  QualityGate gate;
+  gate.id = id, gate.name = name, gate.meaning = meaning, gate.limit = limit;
+  gate.sentence = "Not checked: no solve by finite elements has figures for it.";
+  gate.strict = true;
+  return gate;
+}
+
 QualityGate judge_reached(const Json& report) {
-  QualityGate gate{"reached", "Pose reached", GateState::NotMeasured, "", "", "How much of the pose a solve by finite elements came to, and whether it settled there."};
+  QualityGate gate = unmeasured("reached", "Pose reached", "How much of the pose a solve by finite elements came to, and whether it settled there.", "all of it");
   const Json solve = part(report, "solve");
   if (!solve.contains("reached") || !solve["reached"].is_number() || !solve.contains("converged") || !solve["converged"].is_boolean()) return gate;
   const double reached = solve["reached"];
   const bool converged = solve["converged"];
   gate.state = converged ? GateState::Passed : GateState::Failed;
   gate.figure = formatted("%.0f %%", std::floor(100 * reached)) + (converged || reached < 1 ? "" : ", not settled");
+  gate.sentence = "The solve came to " + gate.figure + " of the pose.";
   return gate;
 }
 
 QualityGate judge_gap(const Json& report) {
-  QualityGate gate{"gap", "Gap", GateState::NotMeasured, "", "", "The least air between skins that came near each other in a solve; not measured where none did."};
+  QualityGate gate = unmeasured("gap", "Gap", "The least air between skins that came near each other in a solve; not measured where none did.", "more than 0 mm");
   const Json mesh = part(report, "mesh");
   if (!mesh.contains("min_gap_mm") || !mesh["min_gap_mm"].is_number()) return gate;
   const double gap_mm = mesh["min_gap_mm"];
   gate.state = gap_mm > 0 ? GateState::Passed : GateState::Failed;
   gate.figure = formatted("%.3f mm", gap_mm);
+  gate.sentence = "The least air between skins that touch is " + gate.figure + ".";
   return gate;
 }
 

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/report/solve_gates.h"
 
 namespace limber {
 
@@ -55,9 +54,7 @@ void read_solve(const Json& json, CellResult& result) {
 }  // namespace
 
 std::vector<QualityGate> gates_of(const std::string& report, const QualityLimits& limits) {
-  std::vector<QualityGate> gates = quality_gates(report, limits);
-  for (QualityGate& gate : solve_gates(report)) gates.push_back(std::move(gate));
-  return gates;
+  return all_gates(report, limits);
 }
 
 CellResult read_result(const Study& study, const CellOutcome& outcome) {

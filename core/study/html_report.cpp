@@ -393,6 +393,13 @@ class Page {
     }
     html_ += "<p>A gate is a figure with a limit. ✓ it keeps to it; ✗ it does not; – there is nothing to judge. A failed gate is a finding about the technique in that pose, not a mistake of the run.</p>\n";
     const std::vector<QualityGate> kinds = gates_of("", study_.gates);
+    const std::size_t of_body = body_gates("").size();
+    gate_tables("Gates of the body", kinds, 0, of_body);
+    gate_tables("Gates", kinds, of_body, kinds.size());
+  }
+  // Those from `first` to `end`, one table a spacing.
+  void gate_tables(const std::string& title, const std::vector<QualityGate>& all, std::size_t first, std::size_t end) {
+    const std::vector<QualityGate> kinds(all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(end));
     std::string meanings;
     for (const QualityGate& gate : kinds) meanings += " <b>" + escaped(gate.name) + ":</b> " + escaped(gate.meaning);
     for (int s = 0; s < std::ssize(study_.spacings); ++s) {
@@ -406,14 +413,14 @@ class Page {
           if (t == 0) rows += "<th class=\"row pose\" rowspan=\"" + std::to_string(techniques()) + "\">" + escaped(study_.poses[p].name) + "</th>";
           rows += "<th class=\"row\">" + marked_name(t) + "</th>";
           if (const CellResult* one = cell(s, p, t))
-            for (const QualityGate& gate : one->gates) rows += gate_cell(gate);
+            for (std::size_t g = first; g < end; ++g) rows += gate_cell(one->gates[g]);
           else
             rows += "<td class=\"bad failed\" colspan=\"" + std::to_string(kinds.size()) + "\">" + failure_of(s, p, t) + "</td>";
           rows += "</tr>";
         }
         rows += "</tbody>";
       }
-      table(rows, "Gates at " + spacing_text(study_.spacings[s]) + "." + (s ? "" : meanings), "gates");
+      table(rows, title + " at " + spacing_text(study_.spacings[s]) + "." + (s ? "" : meanings), "gates");
     }
   }
   std::string failure_of(int spacing, int pose, int technique) const {

@@ -31,13 +31,13 @@ void draw_gate(Editor& editor, Column& column, const QualityGate& gate) {
   const bool failed = gate.state == GateState::Failed, measured = gate.state != GateState::NotMeasured;
   const Colour colour = failed ? theme.error : measured ? theme.ok : theme.text2;
   put_icon(look.fonts.regular, colour, Rect{{row.low.x + look.px(8), row.low.y}, {row.low.x + look.px(26), row.high.y}}, failed ? icon::kFail : measured ? icon::kOk : icon::kRemove);
-  const std::string figure = measured ? gate.figure : "not measured";
+  const std::string figure = measured ? gate.figure : "not checked";
   ImFont* font = measured ? look.fonts.mono : look.fonts.small;
   const float right = row.high.x - look.px(10), left = right - text_size(font, figure).x - 1;
   put_text(editor, look.fonts.regular, theme.text, Rect{{row.low.x + look.px(32), row.low.y}, {left - look.px(8), row.high.y}}, gate.name);
   put_text(editor, font, failed ? theme.error : theme.text2, Rect{{left, row.low.y}, {right, row.high.y}}, figure, Align::Right);
   if (pressed.hovered)
-    tooltip(editor, row, gate.name + (failed ? ": failed" : measured ? ": passed" : ": not measured"), gate.meaning + (gate.worst.empty() ? "" : "\n" + gate.worst + ". A click chooses it."));
+    tooltip(editor, row, gate.name + (failed ? ": failed" : measured ? ": passed" : ": not checked"), gate.sentence + "\n" + gate.meaning + (gate.worst.empty() ? "" : "\n" + gate.worst + ". A click chooses it."));
   if (pressed.clicked && !gate.worst.empty()) go_to_worst(editor, gate);
 }
 
@@ -69,7 +69,10 @@ void draw_gates(Editor& editor, Column& column) {
       const Rect row = column.row(26);
       put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(14), row.low.y}, row.high}, "No result to judge");
     } else {
-      for (const QualityGate& gate : facts_of(editor, result)->gates) draw_gate(editor, column, gate);
+      // What failed comes first.
+      for (const GateState state : {GateState::Failed, GateState::Passed, GateState::NotMeasured})
+        for (const QualityGate& gate : facts_of(editor, result)->gates)
+          if (gate.state == state) draw_gate(editor, column, gate);
     }
     column.space(4);
   }

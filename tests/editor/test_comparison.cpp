@@ -238,11 +238,11 @@ TEST_CASE("results: gates, changes and provenance are read from the report of th
   test.editor->open_sections["Provenance"] = true;
   for (const char* folded : {"Outliner", "Tissues", "Running", "Resample"}) test.editor->open_sections[folded] = false;
   test.play("click One/row\n wait-idle");
-  for (const char* text : {"-10.00 %", "0.250 mm", "7 voxels", "not measured", "within", "9.8", "fine", "rig.json", "0123456789abcdef", "3.25 s", "123 MB"}) {
+  for (const char* text : {"-10.00 %", "0.250 mm", "7 voxels", "not checked", "within", "9.8", "fine", "rig.json", "0123456789abcdef", "3.25 s", "123 MB"}) {
     INFO(std::string(text));
     CHECK(test.fact(std::string("text:") + text) == "shown");
   }
-  test.play("click \"Bones rigid\"");
+  test.play("click \"Bone parts rigid\"");
   CHECK(test.editor->selection.bone == 1);
   test.play("click \"Each tissue within 1 %\"");
   CHECK(test.editor->selection.tissue == 143);

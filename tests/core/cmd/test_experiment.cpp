@@ -89,7 +89,7 @@ TEST_CASE("experiment: a study gives tables and one self-contained page, and kil
     seen.insert(cell["pose"].get<std::string>() + " " + cell["method"].get<std::string>());
     CHECK(cell["spacing_mm"] == 8);
     CHECK(cell["report"]["schema"] == "limber-report/1");
-    CHECK(cell["gates"].size() == 9);
+    CHECK(cell["gates"].size() == 20);
     for (const json& input : cell["report"]["inputs"]) CHECK_FALSE(input["path"].get<std::string>().starts_with("/"));
     if (cell["pose"] == "+0") {
       CHECK(cell["report"]["total"]["volume_change_percent"] == 0);

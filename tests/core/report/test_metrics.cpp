@@ -46,7 +46,7 @@ std::int64_t flood(const LabelVolume& volume, std::vector<char>& seen, const glm
 }
 
 LabelCensus census_by_flooding(const LabelVolume& volume, std::int64_t smallest) {
-  LabelCensus census{std::vector<std::int64_t>(65536), std::vector<int>(65536), std::vector<std::int64_t>(65536)};
+  LabelCensus census{std::vector<std::int64_t>(65536), std::vector<int>(65536), std::vector<int>(65536), std::vector<std::int64_t>(65536)};
   std::vector<char> seen(volume.voxels.size());
   const glm::ivec3 size = volume.grid.size;
   for (int z = 0; z < size.z; ++z)
@@ -67,6 +67,7 @@ LabelCensus census_by_flooding(const LabelVolume& volume, std::int64_t smallest)
         bool border = false;
         const std::int64_t voxels = flood(volume, seen, v, label ? 26 : 6, &border);
         if (label && voxels >= smallest) ++census.components[label];
+        if (label && 2 * voxels >= smallest) ++census.half_components[label];
         if (!label && !border) census.enclosed_air_voxels += voxels;
       }
   return census;
@@ -97,7 +98,7 @@ TEST_CASE("metrics: voxels, components, surface and enclosed air equal what floo
           CHECK(census.enclosed_air_voxels == truth.enclosed_air_voxels);
           bool equal = true;
           for (int label = 1; label < 65536; ++label)
-            equal &= census.components[label] == truth.components[label] && census.voxels[label] == truth.voxels[label];
+            equal &= census.components[label] == truth.components[label] && census.half_components[label] == truth.half_components[label] && census.voxels[label] == truth.voxels[label];
           CHECK(equal);
         }
       }

@@ -12,9 +12,8 @@ using namespace limber;
 namespace {
 
 QualityGate gate(const std::string& report, const std::string& id) {
-  for (const auto& gates : {quality_gates(report), solve_gates(report)})
-    for (const QualityGate& one : gates)
-      if (one.id == id) return one;
+  for (const QualityGate& one : all_gates(report))
+    if (one.id == id) return one;
   FAIL("no gate " << id);
   return {};
 }
@@ -24,11 +23,13 @@ QualityGate gate(const std::string& report, const std::string& id) {
 TEST_CASE("quality gates: what a report has no figures for is neither passed nor failed") {
   for (const char* report : {"", "no report", "[1, 2]", "{}", R"({"tissues": 3, "bones": {"a": 1}, "mesh": [], "total": null, "joints": "x"})"}) {
     INFO(std::string(report));
-    auto gates = quality_gates(report);
-    CHECK(gates.size() == 7);
-    for (const QualityGate& one : solve_gates(report)) gates.push_back(one);
-    CHECK(gates.size() == 9);
-    for (const QualityGate& one : gates) {
+    CHECK(body_gates(report).size() == 11);
+    CHECK(quality_gates(report).size() == 7);
+    CHECK(solve_gates(report).size() == 2);
+    CHECK(all_gates(report).size() == 20);
+    for (const QualityGate& one : all_gates(report)) {
+      CHECK(one.sentence.starts_with("Not checked: "));
+      CHECK(to_string(one.state) == "not checked");
       CHECK(one.state == GateState::NotMeasured);
       CHECK(one.figure.empty());
       CHECK_FALSE(one.name.empty());
@@ -56,6 +57,19 @@ TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
     const char *id, *passing, *failing, *figure;
   };
   const Case kCases[] = {
+      {"inputs", R"({"doubts": []})", R"({"doubts": ["the rig lies outside the body"]})", "1 doubt"},
+      {"whole", R"({"whole_bones": [{"name": "Left femur", "residual_mm": 0.049}]})", R"({"whole_bones": [{"name": "Left femur", "residual_mm": 82}, {"name": "Rib", "residual_mm": 0}]})", "82.000 mm"},
+      {"follows", R"({"whole_bones": [{"name": "Left femur", "voxels": 1000, "wrong_voxels": 1}]})",
+       R"({"whole_bones": [{"name": "Left femur", "voxels": 1000, "wrong_voxels": 2, "went_with": "Pelvis", "belongs_to": "LeftThigh"}]})", "0.20 %"},
+      {"directions", R"({"limbs": [{"bone": "LeftThigh", "direction_off_degrees": 0.99}]})", R"({"limbs": [{"bone": "LeftThigh", "direction_off_degrees": 1.01}]})", "1.01\u00b0"},
+      {"exposed", R"({"exposure": {"voxels": 9, "percent": 0.09, "by_label": [{"name": "muscle", "voxels": 9}]}})", R"({"exposure": {"voxels": 11, "percent": 0.11}})", "0.11 %"},
+      {"trapped", R"({"total": {"trapped_air_voxels": 50}})", R"({"total": {"trapped_air_voxels": 51}})", "51 voxels"},
+      {"organs", R"({"tissues": [{"name": "Bladder", "kind": "organ", "voxels_before": 200, "volume_change_percent": -9.9}, {"name": "Duct", "kind": "organ", "voxels_before": 199, "volume_change_percent": -90}]})",
+       R"({"tissues": [{"name": "Bladder", "kind": "organ", "voxels_before": 200, "volume_change_percent": -10.1}]})", "-10.1 %"},
+      {"lost", R"({"tissues": [{"name": "Testis", "voxels_before": 200, "volume_change_percent": -50}]})", R"({"tissues": [{"name": "Testis", "voxels_before": 200, "volume_change_percent": -98}]})", "2 %"},
+      {"torn", R"({"tissues": [{"name": "Muscle", "torn_parts": 0}]})", R"({"tissues": [{"name": "Muscle", "torn_parts": 1, "components_before": 1, "components_after": 2}]})", "1 part"},
+      {"bands", R"({"bands": []})", R"({"bands": [{"voxels": 300, "stretch": 8.1, "place": [1, 2, 3], "between": ["LeftThigh", "LeftHand"]}]})", "1 band"},
+      {"volume", R"({"total": {"volume_change_percent": -2}})", R"({"total": {"volume_change_percent": 2.1}})", "+2.10 %"},
       {"bones", R"({"bones": [{"name": "Fore", "rigid_residual_mm": 0.05}]})", R"({"bones": [{"name": "Up", "rigid_residual_mm": 0}, {"name": "Fore", "rigid_residual_mm": 0.051}]})", "0.051 mm"},
       {"skin", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.8681}})", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.866}})", "86.6 %"},
       {"islands", R"({"total": {"new_hole_voxels": 0}, "tissues": [{"name": "Fat", "components_before": 5, "components_after": 4}]})",
@@ -75,6 +89,10 @@ TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
     CHECK_FALSE(gate(one.passing, one.id).figure.empty());
     CHECK(gate(one.failing, one.id).state == GateState::Failed);
     CHECK(gate(one.failing, one.id).figure == one.figure);
+    for (const char* report : {one.passing, one.failing}) {
+      CHECK(gate(report, one.id).sentence.ends_with("."));
+      CHECK_FALSE(gate(report, one.id).sentence.starts_with("Not checked"));
+    }
   }
 }
 

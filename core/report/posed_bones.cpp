@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/report/posed_bones.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "core/base/parallel.h"
+#include "core/bones/named_bones.h"
+
+namespace limber {
+
+namespace {
+constexpr std::size_t kFewest = 30;                       // voxels that tell how a limb turned
+constexpr double kShaftBegin = 0.25, kShaftEnd = 0.75;    // of a rig bone's axis: away from the joints, where bones meet
+constexpr double kShaftRadius = 0.15;                     // of the rig bone's length
+
+struct Moved {
+  glm::dvec3 rest, posed;  // world, mm
+};
+using MovedVoxels = std::vector<Moved>;
+
+struct BoneVoxel {
+  std::int32_t at_rest;  // place in the graph
+  Moved moved;
+};
+
+// The posed voxels of bone whose tissue was a voxel of the same label at rest, in the order of the posed grid.
+std::vector<BoneVoxel> posed_bone_voxels(const JudgedPose& pose, const BoneGraph& graph, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds) {
+  std::vector<std::int32_t> in_graph(static_cast<std::size_t>(tissue.size()), -1);
+  for (std::int32_t i = 0; i < graph.size(); ++i) in_graph[graph.place[i]] = i;
+  const AffineTransform to_rest = voxel_from_world(pose.rest.grid);
+  const glm::ivec3 size = pose.posed.grid.size;
+  std::vector<std::vector<BoneVoxel>> slices(size.z);
+  parallel_for(size.z, 1, [&](std::int64_t z, std::int64_t) {
+    std::int64_t at = pose.posed.grid.index({0, 0, int(z)});
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x, ++at) {
+        const Label label = pose.posed.voxels[at];
+        if (label == 0 || !is_bone(kinds[label])) continue;
+        const Moved moved{pose.rest_place({x, y, z}), pose.posed_place({x, y, z})};
+        const glm::ivec3 rest(glm::floor(to_rest * moved.rest + 0.5));
+        if (pose.rest.at_or_air(rest) == label) slices[z].push_back({in_graph[tissue.index_of(rest)], moved});
+      }
+  });
+  std::vector<BoneVoxel> all;
+  for (const auto& slice : slices) all.insert(all.end(), slice.begin(), slice.end());
+  return all;
+}
+
+double largest_residual(const MovedVoxels& voxels, const RigidTransform& motion) {
+  double worst = 0;
+  for (const Moved& one : voxels) worst = std::max(worst, glm::distance(motion * one.rest, one.posed));
+  return worst;
+}
+
+RigidTransform best_motion(const MovedVoxels& voxels) {
+  std::vector<glm::dvec3> rest, posed;
+  for (const Moved& one : voxels) rest.push_back(one.rest), posed.push_back(one.posed);
+  return best_rigid_motion(rest, posed);
+}
+
+// Of the bones that it may follow, the one that takes most voxels to where they went.
+int best_bone(const MovedVoxels& voxels, const std::vector<int>& allowed, const std::vector<RigidTransform>& motions, double within) {
+  int best = allowed.front();
+  std::int64_t most = -1;
+  for (const int bone : allowed) {
+    const std::int64_t right = std::count_if(voxels.begin(), voxels.end(), [&](const Moved& one) { return glm::distance(motions[bone] * one.rest, one.posed) <= within; });
+    if (right > most) most = right, best = bone;
+  }
+  return best;
+}
+
+// The rig bone whose motion comes nearest to most of the voxels.
+int followed_bone(const MovedVoxels& voxels, const std::vector<RigidTransform>& motions) {
+  std::vector<std::int64_t> votes(motions.size(), 0);
+  for (const Moved& one : voxels) {
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t b = 0; b < motions.size(); ++b)
+      if (const double off = glm::distance(motions[b] * one.rest, one.posed); off < least - 1e-6) least = off, best = b;
+    ++votes[best];
+  }
+  return static_cast<int>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+}
+
+// One bone of the body: the voxels of a label on one side, and the rig bones that its name allows.
+WholeBone judge(const MovedVoxels& voxels, const std::vector<int>& allowed, bool single, const JudgedPose& pose, double within) {
+  WholeBone bone;
+  const int own = best_bone(voxels, allowed, pose.applied, within);
+  MovedVoxels wrong;
+  for (const Moved& one : voxels) {
+    const auto goes_with = [&](int b) { return glm::distance(pose.applied[b] * one.rest, one.posed) <= within; };
+    if (!(single ? goes_with(own) : std::any_of(allowed.begin(), allowed.end(), goes_with))) wrong.push_back(one);
+  }
+  bone.belongs_to = pose.armature->bones[own].name;
+  bone.voxels = std::ssize(voxels);
+  bone.wrong_voxels = std::ssize(wrong);
+  if (!wrong.empty()) bone.went_with = pose.armature->bones[followed_bone(wrong, pose.applied)].name;
+  if (single) bone.residual_mm = largest_residual(voxels, best_motion(voxels));
+  return bone;
+}
+
+bool moves(const RigidTransform& motion) { return motion.rotation != glm::dquat(1, 0, 0, 0); }
+
+double degrees_between(const glm::dvec3& a, const glm::dvec3& b) { return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b))); }
+
+LimbDirection direction_of(int bone, const MovedVoxels& voxels, bool by_name, const JudgedPose& pose) {
+  const glm::dquat asked = pose.asked[bone].rotation, reached = best_motion(voxels).rotation;
+  const glm::dvec3 along = pose.armature->bones[bone].tail - pose.armature->bones[bone].head;
+  glm::dquat off = reached * glm::conjugate(asked);
+  if (off.w < 0) off = -off;
+  LimbDirection limb{.bone = pose.armature->bones[bone].name};
+  limb.direction_degrees = degrees_between(asked * along, reached * along);
+  limb.orientation_degrees = glm::degrees(2 * std::atan2(glm::length(glm::dvec3(off.x, off.y, off.z)), off.w));
+  limb.voxels = std::ssize(voxels);
+  limb.by_name = by_name;
+  return limb;
+}
+
+// Whether a point lies around the middle of the bone's axis, and nearer to it than to any other.
+bool is_at_shaft(const Armature& armature, int bone, const glm::dvec3& p) {
+  const Bone& own = armature.bones[bone];
+  const glm::dvec3 axis = own.tail - own.head;
+  const double length = glm::length(axis);
+  if (!(length > 0)) return false;
+  const double along = glm::dot(p - own.head, axis) / (length * length), away = distance_to_bone(own, p);
+  if (along < kShaftBegin || along > kShaftEnd || away > kShaftRadius * length) return false;
+  return std::all_of(armature.bones.begin(), armature.bones.end(), [&](const Bone& other) { return distance_to_bone(other, p) >= away; });
+}
+
+std::vector<LimbDirection> limb_directions(const JudgedPose& pose, const std::vector<BoneVoxel>& bone, const std::vector<MovedVoxels>& named) {
+  std::vector<LimbDirection> limbs;
+  for (int b = 0; b < std::ssize(pose.armature->bones); ++b) {
+    if (!moves(pose.asked[b])) continue;
+    const bool by_name = named[b].size() >= kFewest;
+    MovedVoxels shaft;
+    if (!by_name)
+      for (const BoneVoxel& one : bone)
+        if (is_at_shaft(*pose.armature, b, one.moved.rest)) shaft.push_back(one.moved);
+    const MovedVoxels& voxels = by_name ? named[b] : shaft;
+    if (voxels.size() >= kFewest) limbs.push_back(direction_of(b, voxels, by_name, pose));
+  }
+  return limbs;
+}
+}  // namespace
+
+PosedBones measure_posed_bones(const JudgedPose& pose, const BoneMap& map) {
+  const std::vector<TissueKind> kinds = pose.tissues.kinds();
+  const TissueVoxels tissue(pose.rest);
+  const BoneGraph graph = gather_bone(pose.rest, tissue, kinds);
+  const std::vector<BoneVoxel> bone = posed_bone_voxels(pose, graph, tissue, kinds);
+  std::vector<MovedVoxels> of_rig_bone(pose.armature->bones.size());
+  PosedBones found;
+  if (const std::map<Label, LabelBones> labels = bones_of_labels(pose.tissues, *pose.armature, map); !labels.empty()) {
+    const NamedBones named = assign_named_bones(graph, pose.rest, kinds, *pose.armature, labels);
+    std::map<std::pair<Label, std::int32_t>, MovedVoxels> members;
+    for (const BoneVoxel& one : bone)
+      if (const Label label = pose.rest.at(graph.voxel[one.at_rest]); labels.contains(label)) members[{label, named.group[one.at_rest]}].push_back(one.moved);
+    const double within = std::max({pose.rest.grid.spacing.x, pose.rest.grid.spacing.y, pose.rest.grid.spacing.z});
+    for (const auto& [key, voxels] : members) {
+      const auto& [label, group] = key;
+      const bool single = labels.at(label).single;
+      if (named.candidates[group].empty()) continue;
+      WholeBone whole = judge(voxels, named.candidates[group], single, pose, within);
+      whole.label = label;
+      whole.file_value = pose.tissues.find(label)->file_value;
+      whole.name = pose.tissues.find(label)->name;
+      if (single) {
+        MovedVoxels& all = of_rig_bone[*pose.armature->find(whole.belongs_to)];
+        all.insert(all.end(), voxels.begin(), voxels.end());
+      }
+      found.whole.push_back(std::move(whole));
+    }
+  }
+  found.limbs = limb_directions(pose, bone, of_rig_bone);
+  return found;
+}
+
+}  // namespace limber

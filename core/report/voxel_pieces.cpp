@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/report/voxel_pieces.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace limber {
+
+namespace {
+std::int64_t root_of(std::vector<std::int64_t>& parent, std::int64_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+}  // namespace
+
+std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels) {
+  std::vector<std::int64_t> parent(voxels.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto join = [&](std::int64_t a, std::int64_t b) {
+    a = root_of(parent, a), b = root_of(parent, b);
+    parent[std::max(a, b)] = std::min(a, b);
+  };
+  // Each voxel with those before it in four rows and beside it; a row's three neighbours stand together in the list.
+  constexpr int kRows[4][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}};  // y, z
+  std::array<std::size_t, 4> next{};
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    const glm::ivec3 v = voxel_of_index(grid, voxels[i]);
+    if (i > 0 && v.x > 0 && voxels[i - 1] == voxels[i] - 1) join(i, i - 1);
+    for (int r = 0; r < 4; ++r) {
+      const int y = v.y + kRows[r][0], z = v.z + kRows[r][1];
+      if (y < 0 || z < 0 || y >= grid.size.y) continue;
+      const std::int64_t first = grid.index({std::max(v.x - 1, 0), y, z}), last = grid.index({std::min(v.x + 1, grid.size.x - 1), y, z});
+      while (next[r] < voxels.size() && voxels[next[r]] < first) ++next[r];
+      for (std::size_t k = next[r]; k < voxels.size() && voxels[k] <= last; ++k) join(i, k);
+    }
+  }
+  std::vector<std::vector<std::int64_t>> pieces;
+  std::vector<std::int64_t> place(voxels.size(), -1);
+  for (std::int64_t i = 0; i < std::ssize(voxels); ++i) {
+    std::int64_t& piece = place[root_of(parent, i)];
+    if (piece < 0) piece = std::ssize(pieces), pieces.emplace_back();
+    pieces[piece].push_back(i);
+  }
+  std::stable_sort(pieces.begin(), pieces.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return pieces;
+}
+
+glm::ivec3 middle_voxel(const Grid& grid, const std::vector<std::int64_t>& voxels, const std::vector<std::int64_t>& piece) {
+  glm::dvec3 middle(0);
+  for (const std::int64_t i : piece) middle += glm::dvec3(voxel_of_index(grid, voxels[i]));
+  middle /= double(piece.size());
+  double least = std::numeric_limits<double>::infinity();
+  glm::ivec3 nearest(0);
+  for (const std::int64_t i : piece) {
+    const glm::ivec3 v = voxel_of_index(grid, voxels[i]);
+    const glm::dvec3 d = glm::dvec3(v) - middle;
+    if (glm::dot(d, d) < least) least = glm::dot(d, d), nearest = v;
+  }
+  return nearest;
+}
+
+}  // namespace limber
