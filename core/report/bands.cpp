@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "core/base/parallel.h"
-#include "core/report/exposure.h"
 #include "core/report/voxel_pieces.h"
 
 namespace limber {
@@ -28,11 +27,10 @@ bool same_motion(const RigidTransform& a, const RigidTransform& b, const glm::dv
 }
 
 // The depth of a point below the air around the body, at least a voxel.
-double depth_at(const LabelVolume& volume, const ZeroedVector<std::uint8_t>& outside, const glm::dvec3& p) {
-  const Grid& grid = volume.grid;
+double depth_at(const Grid& grid, const OutsideAir& outside, const glm::dvec3& p) {
   const glm::ivec3 middle(glm::floor(voxel_from_world(grid) * p + 0.5));
   const double edge = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-  if (!grid.contains(middle) || outside[grid.index(middle)]) return edge;
+  if (outside.contains(middle)) return edge;
   // Ever larger boxes around it, until the nearest air in one lies within the box.
   for (double half = 8 * edge;; half *= 2) {
     const glm::ivec3 steps(glm::ceil(half / grid.spacing));
@@ -41,20 +39,19 @@ double depth_at(const LabelVolume& volume, const ZeroedVector<std::uint8_t>& out
       for (int y = -steps.y; y <= steps.y; ++y)
         for (int x = -steps.x; x <= steps.x; ++x) {
           const glm::ivec3 v = middle + glm::ivec3(x, y, z);
-          if (!grid.contains(v) || outside[grid.index(v)]) nearest = std::min(nearest, glm::length(glm::dvec3(x, y, z) * grid.spacing));
+          if (outside.contains(v)) nearest = std::min(nearest, glm::length(glm::dvec3(x, y, z) * grid.spacing));
         }
     if (nearest <= half) return std::max(nearest, edge);
   }
 }
 
 // Those that the pose turns.
-std::vector<Joint> turned_joints(const JudgedPose& pose, const BandLimits& limits) {
-  const ZeroedVector<std::uint8_t> outside = outside_air(pose.rest);
+std::vector<Joint> turned_joints(const JudgedPose& pose, const OutsideAir& outside, const BandLimits& limits) {
   std::vector<Joint> joints;
   for (int b = 0; b < std::ssize(pose.armature->bones); ++b) {
     const Bone& bone = pose.armature->bones[b];
     if (bone.parent < 0 || same_motion(pose.applied[b], pose.applied[bone.parent], bone.head)) continue;
-    Joint& joint = joints.emplace_back(Joint{bone.parent, b, bone.head, limits.joint_reach * depth_at(pose.rest, outside, bone.head), {}});
+    Joint& joint = joints.emplace_back(Joint{bone.parent, b, bone.head, limits.joint_reach * depth_at(pose.rest.grid, outside, bone.head), {}});
     const RigidTransform turn = inverse(pose.applied[bone.parent]) * pose.applied[b];
     const glm::dvec3 slid = turn * bone.head - bone.head;
     for (int k = 0; k <= kArcSteps; ++k) {
@@ -216,13 +213,13 @@ double largest_stretch(const glm::dmat3& rest_from_posed) {
   return least > 0 ? 1 / std::sqrt(least) : std::numeric_limits<double>::infinity();
 }
 
-std::vector<Band> find_bands(const JudgedPose& pose, const BandLimits& limits) {
+std::vector<Band> find_bands(const JudgedPose& pose, const AirAround& air, const BandLimits& limits) {
   std::vector<bool> is_soft(65536, true);
   is_soft[0] = false;
   for (const Tissue& tissue : pose.tissues.tissues)
     if (is_bone(tissue.kind)) is_soft[tissue.label] = false;
   const RestGradient gradient(pose, std::move(is_soft));
-  const StretchedVoxels voxels = unexplained(pose, gradient, turned_joints(pose, limits), limits);
+  const StretchedVoxels voxels = unexplained(pose, gradient, turned_joints(pose, air.rest, limits), limits);
   std::vector<Band> bands;
   for (const auto& piece : pieces_of(pose.posed.grid, voxels.at))
     if (std::ssize(piece) >= limits.least_voxels) bands.push_back(describe(pose, voxels, piece));

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/report/exposure.h"
 #include "core/report/judged_pose.h"
 
 namespace limber {
@@ -32,7 +33,7 @@ struct Band {
 };
 
 // Largest first. Needs the displacement and the rig.
-std::vector<Band> find_bands(const JudgedPose& pose, const BandLimits& limits = {});
+std::vector<Band> find_bands(const JudgedPose& pose, const AirAround& air, const BandLimits& limits = {});
 
 // The largest stretch of a map given by its gradient, rest from posed: 1 / its smallest singular value; infinity where it folds flat.
 double largest_stretch(const glm::dmat3& rest_from_posed);

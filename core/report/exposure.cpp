@@ -14,49 +14,52 @@ namespace limber {
 namespace {
 constexpr std::array<glm::ivec3, 6> kFaces = {{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
-// Fills air from seeds, a stretch along x at a time.
+// Fills air in a box from seeds, a stretch along x at a time.
 class AirFlood {
  public:
-  AirFlood(const LabelVolume& volume, ZeroedVector<std::uint8_t>& outside) : volume_(volume), outside_(outside) {}
+  AirFlood(const LabelVolume& volume, const VoxelBox& box, std::vector<std::uint8_t>& outside) : volume_(volume), box_(box), outside_(outside) {}
 
   void start(const glm::ivec3& v) {
-    if (!is_new(volume_.grid.index(v))) return;
+    if (!is_new(v)) return;
     seeds_.push_back(v);
     while (!seeds_.empty()) {
       const glm::ivec3 seed = seeds_.back();
       seeds_.pop_back();
-      fill_row(seed);
+      if (is_new(seed)) fill_row(seed);
     }
   }
 
  private:
-  bool is_new(std::int64_t at) const { return volume_.voxels[at] == 0 && !outside_[at]; }
+  bool is_new(const glm::ivec3& v) const { return volume_.at(v) == 0 && !outside_[box_.index(v)]; }
 
   void fill_row(const glm::ivec3& seed) {
-    const std::int64_t row = volume_.grid.index({0, seed.y, seed.z});
-    if (!is_new(row + seed.x)) return;
+    const int low = box_.lowest.x, high = low + box_.size.x;
     int begin = seed.x, end = seed.x + 1;
-    while (begin > 0 && is_new(row + begin - 1)) --begin;
-    while (end < volume_.grid.size.x && is_new(row + end)) ++end;
-    std::fill(outside_.begin() + row + begin, outside_.begin() + row + end, std::uint8_t{1});
+    while (begin > low && is_new({begin - 1, seed.y, seed.z})) --begin;
+    while (end < high && is_new({end, seed.y, seed.z})) ++end;
+    const auto row = outside_.begin() + box_.index({begin, seed.y, seed.z});
+    std::fill(row, row + (end - begin), std::uint8_t{1});
     for (const auto& [dy, dz] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
       const glm::ivec3 beside{begin, seed.y + dy, seed.z + dz};
-      if (volume_.grid.contains(beside)) seed_row(beside, end);
+      if (box_.contains(beside)) seed_row(beside, end);
     }
   }
 
   // One seed for each stretch of air of a row between from.x and `end`.
-  void seed_row(glm::ivec3 from, int end) {
-    const std::int64_t row = volume_.grid.index({0, from.y, from.z});
-    for (bool before = false; from.x < end; ++from.x) {
-      const bool now = is_new(row + from.x);
-      if (now && !before) seeds_.push_back(from);
+  void seed_row(const glm::ivec3& from, int end) {
+    const Label* labels = volume_.voxels.data() + volume_.grid.index(from);
+    const std::uint8_t* outside = outside_.data() + box_.index(from);
+    bool before = false;
+    for (int k = 0; k < end - from.x; ++k) {
+      const bool now = labels[k] == 0 && !outside[k];
+      if (now && !before) seeds_.push_back({from.x + k, from.y, from.z});
       before = now;
     }
   }
 
   const LabelVolume& volume_;
-  ZeroedVector<std::uint8_t>& outside_;
+  const VoxelBox& box_;
+  std::vector<std::uint8_t>& outside_;
   std::vector<glm::ivec3> seeds_;
 };
 
@@ -74,9 +77,6 @@ std::vector<glm::ivec3> ball(const glm::dvec3& spacing, double reach) {
   return steps;
 }
 
-// Beyond the grid is air.
-bool is_outside(const Grid& grid, const ZeroedVector<std::uint8_t>& outside, const glm::ivec3& v) { return !grid.contains(v) || outside[grid.index(v)]; }
-
 //   voxels  of the posed grid, ascending
 std::optional<WorstPlace> worst_of(const JudgedPose& pose, const std::vector<std::int64_t>& voxels) {
   if (voxels.empty()) return std::nullopt;
@@ -91,22 +91,24 @@ struct SurfaceOfSlice {
 };
 }  // namespace
 
-ZeroedVector<std::uint8_t> outside_air(const LabelVolume& volume) {
-  const glm::ivec3 size = volume.grid.size;
-  ZeroedVector<std::uint8_t> outside(volume.voxels.size());
-  AirFlood flood(volume, outside);
-  for (int z = 0; z < size.z; ++z)
-    for (int y = 0; y < size.y; ++y) {
-      const bool border = y == 0 || z == 0 || y == size.y - 1 || z == size.z - 1;
-      for (int x = 0; x < size.x; x += border || size.x == 1 ? 1 : size.x - 1) flood.start({x, y, z});
+OutsideAir::OutsideAir(const LabelVolume& volume) : box_(tissue_box(volume, 1)), outside_(static_cast<std::size_t>(box_.voxel_count()), 0) {
+  AirFlood flood(volume, box_, outside_);
+  const glm::ivec3 low = box_.lowest, high = box_.lowest + box_.size - 1;
+  for (int z = low.z; z <= high.z; ++z)
+    for (int y = low.y; y <= high.y; ++y) {
+      const bool border = y == low.y || z == low.z || y == high.y || z == high.z;
+      for (int x = low.x; x <= high.x; x += border || box_.size.x == 1 ? 1 : box_.size.x - 1) flood.start({x, y, z});
     }
-  return outside;
 }
 
-Exposure measure_exposure(const JudgedPose& pose) {
+AirAround air_around(const JudgedPose& pose) {
+  std::array<std::optional<OutsideAir>, 2> air;
+  parallel_for(2, 1, [&](std::int64_t which, std::int64_t) { air[which].emplace(which ? pose.posed : pose.rest); });
+  return {std::move(*air[0]), std::move(*air[1])};
+}
+
+Exposure measure_exposure(const JudgedPose& pose, const AirAround& air) {
   const Grid &rest_grid = pose.rest.grid, &grid = pose.posed.grid;
-  ZeroedVector<std::uint8_t> outside_rest, outside_posed;
-  parallel_for(2, 1, [&](std::int64_t which, std::int64_t) { (which ? outside_posed : outside_rest) = outside_air(which ? pose.posed : pose.rest); });
   const std::vector<TissueKind> kinds = pose.tissues.kinds();
   Exposure exposure;
   exposure.deeper_than_mm = glm::length(rest_grid.spacing) + std::min({rest_grid.spacing.x, rest_grid.spacing.y, rest_grid.spacing.z});
@@ -115,7 +117,7 @@ Exposure measure_exposure(const JudgedPose& pose) {
 
   const auto was_deep = [&](const glm::ivec3& v) {
     const glm::ivec3 rest(glm::floor(to_rest * pose.rest_place(v) + 0.5));
-    return std::none_of(near.begin(), near.end(), [&](const glm::ivec3& step) { return is_outside(rest_grid, outside_rest, rest + step); });
+    return std::none_of(near.begin(), near.end(), [&](const glm::ivec3& step) { return air.rest.contains(rest + step); });
   };
   std::vector<SurfaceOfSlice> slices(grid.size.z);
   parallel_for(grid.size.z, 1, [&](std::int64_t z, std::int64_t) {
@@ -124,7 +126,7 @@ Exposure measure_exposure(const JudgedPose& pose) {
       for (int x = 0; x < grid.size.x; ++x, ++at) {
         const Label label = pose.posed.voxels[at];
         const glm::ivec3 v(x, y, z);
-        if (label == 0 || std::none_of(kFaces.begin(), kFaces.end(), [&](const glm::ivec3& face) { return is_outside(grid, outside_posed, v + face); })) continue;
+        if (label == 0 || std::none_of(kFaces.begin(), kFaces.end(), [&](const glm::ivec3& face) { return air.posed.contains(v + face); })) continue;
         ++slices[z].surface_voxels;
         if (kinds[label] != TissueKind::Skin && was_deep(v)) slices[z].exposed.push_back(at);
       }
@@ -140,12 +142,14 @@ Exposure measure_exposure(const JudgedPose& pose) {
   return exposure;
 }
 
-std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose) {
-  const LabelVolume& volume = pose.posed;
-  const ZeroedVector<std::uint8_t> outside = outside_air(volume);
+std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose, const AirAround& air) {
+  const Grid& grid = pose.posed.grid;
   std::vector<std::int64_t> enclosed;
-  for (std::int64_t at = 0; at < std::ssize(volume.voxels); ++at)
-    if (volume.voxels[at] == 0 && !outside[at]) enclosed.push_back(at);
+  std::int64_t at = 0;
+  for (int z = 0; z < grid.size.z; ++z)
+    for (int y = 0; y < grid.size.y; ++y)
+      for (int x = 0; x < grid.size.x; ++x, ++at)
+        if (pose.posed.voxels[at] == 0 && !air.posed.contains({x, y, z})) enclosed.push_back(at);
   return worst_of(pose, enclosed);
 }
 

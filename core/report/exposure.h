@@ -8,10 +8,28 @@
 #include <map>
 #include <optional>
 
-#include "core/base/zeroed_vector.h"
 #include "core/report/judged_pose.h"
+#include "core/volume/distance.h"
 
 namespace limber {
+
+// The air that is connected by faces with the air around the grid.
+class OutsideAir {
+ public:
+  explicit OutsideAir(const LabelVolume& volume);
+  // Beyond the grid is air.
+  bool contains(const glm::ivec3& voxel) const { return !box_.contains(voxel) || outside_[box_.index(voxel)]; }
+
+ private:
+  VoxelBox box_;  // around all tissue
+  std::vector<std::uint8_t> outside_;
+};
+
+// Of a body at rest and posed.
+struct AirAround {
+  OutsideAir rest, posed;
+};
+AirAround air_around(const JudgedPose& pose);
 
 struct Exposure {
   std::int64_t voxels = 0;          // newly exposed
@@ -23,12 +41,9 @@ struct Exposure {
   double percent() const { return surface_voxels ? 100.0 * double(voxels) / double(surface_voxels) : 0; }
 };
 // Needs the displacement.
-Exposure measure_exposure(const JudgedPose& pose);
+Exposure measure_exposure(const JudgedPose& pose, const AirAround& air);
 
 // The largest pocket of air that posed tissue encloses; none where there is none.
-std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose);
-
-// A byte a voxel, not 0 for air that is connected by faces with the air around the grid.
-ZeroedVector<std::uint8_t> outside_air(const LabelVolume& volume);
+std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose, const AirAround& air);
 
 }  // namespace limber

@@ -19,6 +19,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr double kTear = 0.5;  // of a voxel's edge: less does not show in voxels
+
 std::optional<double> number(const Json& json, const char* key) {
   const auto found = json.is_object() ? json.find(key) : json.end();
   return found != json.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
@@ -218,13 +220,20 @@ void judge_inputs(const Json& report, const QualityLimits&, QualityGate& gate) {
   decide(gate, doubts.empty(), counted(double(doubts.size()), "doubt"), doubts.empty() ? "Volume, labels and rig belong together." : "The inputs do not belong together: " + first + ".");
 }
 
+// The edge of a rest voxel, mm, as its volume says; 0 where no tissue was measured.
+double voxel_edge(const Json& report) {
+  for (const Json& tissue : part(report, "tissues"))
+    if (const auto mm3 = number(tissue, "mm3_before"), voxels = number(tissue, "voxels_before"); mm3 && voxels && *voxels > 0) return std::cbrt(*mm3 / *voxels);
+  return 0;
+}
+
 void judge_whole(const Json& report, const QualityLimits& limits, QualityGate& gate) {
   const Json& bones = part(report, "whole_bones");
   const Json* worst = worst_row(bones, [](const Json& bone) { return number(bone, "residual_mm"); });
   if (!worst) return not_checked(gate, "no posed voxel of a label that names a bone of the rig was looked at.");
   const double residual = *number(*worst, "residual_mm");
   gate.worst = text(*worst, "name");
-  const bool passed = residual <= limits.bone_residual_mm;
+  const bool passed = residual <= std::max(limits.bone_residual_mm, kTear * voxel_edge(report));
   decide(gate, passed, formatted("%.3f mm", residual),
          passed ? "Each of " + counted(double(bones.size()), "named bone") + " moved as one, within " + formatted("%.3f mm.", residual)
                 : in_quotes(gate.worst) + " is torn or bent: its voxels lie up to " + formatted("%.1f mm", residual) + " from the bone's best rigid motion.");
@@ -347,14 +356,17 @@ void judge_bands(const Json& report, const QualityLimits&, QualityGate& gate) {
 void judge_volume(const Json& report, const QualityLimits& limits, QualityGate& gate) {
   const auto change = number(part(report, "total"), "volume_change_percent");
   if (!change) return not_checked(gate, "the volumes before and after were not compared.");
-  decide(gate, std::abs(*change) <= limits.body_percent, formatted("%+.2f %%", *change), "The whole body's volume changed by " + formatted("%+.2f %%.", *change));
+  const Json& whole = part(report, "whole_body");
+  const bool limb = whole.is_boolean() && !whole.get<bool>();
+  decide(gate, std::abs(*change) <= (limb ? limits.limb_percent : limits.body_percent), formatted("%+.2f %%", *change),
+         std::string(limb ? "The limb's" : "The whole body's") + " volume changed by " + formatted("%+.2f %%.", *change));
 }
 
 const GateRule kBodyGates[] = {
     {"inputs", "Inputs belong together", "Whether the rig lies in the body, on the right side and in the right limb, and whether the volume holds labels.",
      [](const QualityLimits&) { return std::string("no doubt"); }, true, judge_inputs},
     {"whole", "Bones whole", "Of each bone that a label names, how far its voxels lie from the bone's best rigid motion, {}.",
-     [](const QualityLimits& l) { return "at most " + formatted("%g mm", l.bone_residual_mm); }, true, judge_whole},
+     [](const QualityLimits& l) { return "at most half a voxel, or " + formatted("%g mm", l.bone_residual_mm); }, true, judge_whole},
     {"follows", "Bones follow their rig bone", "Of each bone that a label names, the share that went with another rig bone, {}.",
      [](const QualityLimits& l) { return "at most " + formatted("%g %%", l.wrong_bone_percent); }, true, judge_follows},
     {"directions", "Limbs point as asked", "The angle between where the pose asked a limb to point and where its bones point, {}.",
@@ -370,7 +382,7 @@ const GateRule kBodyGates[] = {
     {"torn", "No label torn", "Pieces of a label of 50 voxels or more that were one piece at rest, {}.", [](const QualityLimits&) { return std::string("none"); }, true, judge_torn},
     {"bands", "No bands", "Tissue that is pulled out to more than twice its length between parts that are no neighbours, {}.",
      [](const QualityLimits&) { return std::string("none"); }, true, judge_bands},
-    {"volume", "Body volume", "The volume of the whole body, changed by {}.", [](const QualityLimits& l) { return "at most " + formatted("%g %%", l.body_percent); }, true, judge_volume},
+    {"volume", "Body volume", "The volume of the whole body, changed by {}.", [](const QualityLimits& l) { return "at most " + formatted("%g %%", l.body_percent) + formatted(", of a limb alone %g %%", l.limb_percent); }, true, judge_volume},
 };
 
 const GateRule kFineGates[] = {

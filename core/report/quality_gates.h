@@ -49,6 +49,7 @@ struct QualityLimits {
   double lost_percent = 50;           // of a label's volume
   std::int64_t least_organ_voxels = 200;
   double body_percent = 2;
+  double limb_percent = 5;            // of a limb alone, of which one bent joint is a good part
 };
 
 enum class GateState { Passed, Failed, NotMeasured };

@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 
 #include "core/rig/joint_limits.h"
+#include "core/rig/joint_names.h"
 
 namespace limber {
 
@@ -128,6 +129,18 @@ Json joint_of(const TurnedJoint& joint) {
   return row;
 }
 
+bool is_whole_body(const Armature& armature) {
+  std::vector<std::string> names;
+  std::vector<int> parents;
+  for (const Bone& bone : armature.bones) names.push_back(bone.name), parents.push_back(bone.parent);
+  bool leg = false, above = false;
+  for (const auto& role : joint_roles(names, parents)) {
+    leg |= role && (role->part == BodyPart::Thigh || role->part == BodyPart::Shank);
+    above |= role && (role->part == BodyPart::UpperArm || role->part == BodyPart::Head);
+  }
+  return leg && above;
+}
+
 Json worst_of(const WorstPlace& worst) {
   Json row{{"voxels", worst.voxels}, {"place", vector_of(worst.place)}};
   if (!worst.near.empty()) row["near"] = worst.near;
@@ -169,6 +182,7 @@ Json gate_of(const QualityGate& gate) {
 // What was measured of the pose itself.
 void add_body(const Report& report, Json& json) {
   if (report.doubts) json["doubts"] = *report.doubts;
+  if (report.whole_body) json["whole_body"] = *report.whole_body;
   for (const WholeBone& bone : report.posed_bones.whole) json["whole_bones"].push_back(whole_bone_of(bone));
   for (const LimbDirection& limb : report.posed_bones.limbs)
     json["limbs"].push_back({{"bone", limb.bone}, {"direction_off_degrees", limb.direction_degrees}, {"orientation_off_degrees", limb.orientation_degrees}, {"voxels", limb.voxels},
@@ -258,12 +272,14 @@ std::vector<TurnedJoint> turned_joints(const Armature& rig, const Pose& pose) {
 }
 
 void measure_body(const JudgedPose& pose, const BoneMap& map, Report& report) {
-  if (report.metrics && report.metrics->trapped_air_voxels > 0) report.air_pocket = largest_air_pocket(pose);
+  if (pose.armature) report.whole_body = is_whole_body(*pose.armature);
+  const AirAround air = air_around(pose);
+  if (report.metrics && report.metrics->trapped_air_voxels > 0) report.air_pocket = largest_air_pocket(pose, air);
   if (!pose.knows_field()) return;
-  report.exposure = measure_exposure(pose);
+  report.exposure = measure_exposure(pose, air);
   if (!pose.armature) return;
   report.posed_bones = measure_posed_bones(pose, map);
-  report.bands = find_bands(pose);
+  report.bands = find_bands(pose, air);
 }
 
 void judge(Report& report) { report.gates = all_gates(to_json(report)); }

@@ -55,6 +55,7 @@ struct Report {
   StageSeconds seconds;
   std::optional<VolumeMetrics> metrics;
   std::optional<std::vector<std::string>> doubts;  // of inputs that do not belong together [input_doubts.h]; none where nobody asked
+  std::optional<bool> whole_body;  // whether the rig has legs, and arms or a head; none without a rig
   PosedBones posed_bones;
   std::optional<Exposure> exposure;
   std::optional<WorstPlace> air_pocket;  // the largest, where the pose closed air in
@@ -67,6 +68,7 @@ struct Report {
 
 // Everything that is measured of the pose itself: exposure, bones, limbs and bands where it knows the displacement (and the rig),
 // and the largest pocket of air where `report.metrics` say that air was closed in.
+// Says of the rig whether it is that of a whole body.
 void measure_body(const JudgedPose& pose, const BoneMap& map, Report& report);
 // Judges the report by itself, into report.gates [quality_gates.h].
 void judge(Report& report);

@@ -59,6 +59,8 @@ TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
   const Case kCases[] = {
       {"inputs", R"({"doubts": []})", R"({"doubts": ["the rig lies outside the body"]})", "1 doubt"},
       {"whole", R"({"whole_bones": [{"name": "Left femur", "residual_mm": 0.049}]})", R"({"whole_bones": [{"name": "Left femur", "residual_mm": 82}, {"name": "Rib", "residual_mm": 0}]})", "82.000 mm"},
+      {"whole", R"({"tissues": [{"mm3_before": 2700, "voxels_before": 100}], "whole_bones": [{"name": "Left femur", "residual_mm": 1.49}]})",
+       R"({"tissues": [{"mm3_before": 2700, "voxels_before": 100}], "whole_bones": [{"name": "Left femur", "residual_mm": 1.51}]})", "1.510 mm"},
       {"follows", R"({"whole_bones": [{"name": "Left femur", "voxels": 1000, "wrong_voxels": 1}]})",
        R"({"whole_bones": [{"name": "Left femur", "voxels": 1000, "wrong_voxels": 2, "went_with": "Pelvis", "belongs_to": "LeftThigh"}]})", "0.20 %"},
       {"directions", R"({"limbs": [{"bone": "LeftThigh", "direction_off_degrees": 0.99}]})", R"({"limbs": [{"bone": "LeftThigh", "direction_off_degrees": 1.01}]})", "1.01\u00b0"},
@@ -70,6 +72,7 @@ TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
       {"torn", R"({"tissues": [{"name": "Muscle", "torn_parts": 0}]})", R"({"tissues": [{"name": "Muscle", "torn_parts": 1, "components_before": 1, "components_after": 2}]})", "1 part"},
       {"bands", R"({"bands": []})", R"({"bands": [{"voxels": 300, "stretch": 8.1, "place": [1, 2, 3], "between": ["LeftThigh", "LeftHand"]}]})", "1 band"},
       {"volume", R"({"total": {"volume_change_percent": -2}})", R"({"total": {"volume_change_percent": 2.1}})", "+2.10 %"},
+      {"volume", R"({"whole_body": false, "total": {"volume_change_percent": -4.9}})", R"({"whole_body": true, "total": {"volume_change_percent": -4.9}})", "-4.90 %"},
       {"bones", R"({"bones": [{"name": "Fore", "rigid_residual_mm": 0.05}]})", R"({"bones": [{"name": "Up", "rigid_residual_mm": 0}, {"name": "Fore", "rigid_residual_mm": 0.051}]})", "0.051 mm"},
       {"skin", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.8681}})", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.866}})", "86.6 %"},
       {"islands", R"({"total": {"new_hole_voxels": 0}, "tissues": [{"name": "Fat", "components_before": 5, "components_after": 4}]})",
