@@ -144,12 +144,24 @@ Exposure measure_exposure(const JudgedPose& pose, const AirAround& air) {
 
 std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose, const AirAround& air) {
   const Grid& grid = pose.posed.grid;
+  const AffineTransform to_rest = voxel_from_world(pose.rest.grid);
+  // Air does not move, but the tissue beside it tells where it would have been at rest.
+  const auto was_enclosed = [&](const glm::ivec3& v) {
+    for (const glm::ivec3& face : kFaces) {
+      const glm::ivec3 beside = v + face;
+      if (pose.posed.at_or_air(beside) == 0) continue;
+      const glm::dvec3 moved = pose.knows_field() ? glm::dvec3(pose.displacement[grid.index(beside)]) : glm::dvec3(0);
+      const glm::ivec3 rest(glm::floor(to_rest * (pose.posed_place(v) - moved) + 0.5));
+      if (pose.rest.at_or_air(rest) == 0 && !air.rest.contains(rest)) return true;
+    }
+    return false;
+  };
   std::vector<std::int64_t> enclosed;
   std::int64_t at = 0;
   for (int z = 0; z < grid.size.z; ++z)
     for (int y = 0; y < grid.size.y; ++y)
       for (int x = 0; x < grid.size.x; ++x, ++at)
-        if (pose.posed.voxels[at] == 0 && !air.posed.contains({x, y, z})) enclosed.push_back(at);
+        if (pose.posed.voxels[at] == 0 && !air.posed.contains({x, y, z}) && !was_enclosed({x, y, z})) enclosed.push_back(at);
   return worst_of(pose, enclosed);
 }
 

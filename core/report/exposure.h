@@ -43,7 +43,8 @@ struct Exposure {
 // Needs the displacement.
 Exposure measure_exposure(const JudgedPose& pose, const AirAround& air);
 
-// The largest pocket of air that posed tissue encloses; none where there is none.
+// The largest pocket of air that posed tissue encloses and that was not enclosed at rest, as the tissue beside it tells; none where
+// there is none.
 std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose, const AirAround& air);
 
 }  // namespace limber

@@ -8,11 +8,13 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/report/voxel_pieces.h"
 
 namespace limber {
 
 namespace {
 constexpr double kSameVoxel = 0.01;  // of a voxel's volume
+constexpr int kSmallest = 50;        // voxels of a piece that counts
 constexpr int kLabels = std::numeric_limits<Label>::max() + 1;
 
 // Sets of runs that belong together; a set's voxels and label stand at its root.
@@ -153,6 +155,18 @@ void count_surface(const LabelVolume& volume, int z, const Slice& slice, std::ve
 
 double percent_change(double before, double after) { return before > 0 ? 100 * (after - before) / before : 0; }
 
+// Pieces of a label of kSmallest voxels or more beyond `before`. A grid at another angle may part what is thin by one voxel, which is
+// no tear: what lies no further apart counts as one.
+int torn_parts(const LabelVolume& after, Label label, int touching, int before) {
+  if (touching <= before) return 0;
+  std::vector<std::int64_t> voxels;
+  for (std::int64_t at = 0; at < std::ssize(after.voxels); ++at)
+    if (after.voxels[at] == label) voxels.push_back(at);
+  const auto pieces = pieces_of(after.grid, voxels, 2);
+  const auto large = std::count_if(pieces.begin(), pieces.end(), [](const auto& piece) { return std::ssize(piece) >= kSmallest; });
+  return std::max(0, static_cast<int>(large) - before);
+}
+
 double skin_share(const LabelCensus& census, const TissueTable& tissues) {
   std::int64_t surface = 0, skin = 0;
   for (std::int64_t voxels : census.surface_voxels) surface += voxels;
@@ -218,7 +232,7 @@ VolumeMetrics compare(const LabelVolume& before, const LabelVolume& after, const
     change.mass_change_percent = percent_change(change.mass_before, change.mass_after);
     change.components_before = census[0].components[label];
     change.components_after = census[1].components[label];
-    if (std::abs(mm3[1] / mm3[0] - 1) < kSameVoxel) change.torn_parts = std::max(0, census[1].components[label] - census[0].half_components[label]);
+    if (std::abs(mm3[1] / mm3[0] - 1) < kSameVoxel) change.torn_parts = torn_parts(after, static_cast<Label>(label), census[1].components[label], census[0].half_components[label]);
     metrics.has_skin |= tissue && tissue->kind == TissueKind::Skin;
     metrics.voxels_before += change.voxels_before;
     metrics.voxels_after += change.voxels_after;

@@ -289,7 +289,7 @@ void judge_trapped(const Json& report, const QualityLimits& limits, QualityGate&
   decide(gate, passed, counted(*trapped, "voxel"),
          passed ? "No more air is closed in than at rest, but for " + counted(*trapped, "voxel") + "."
                 : counted(*trapped, "voxel") + " of air are closed in that were not at rest" +
-                      (pocket.is_object() ? "; the largest pocket, " + counted(number(pocket, "voxels").value_or(0), "voxel") + ", lies" + at_place(pocket) : "") + ".");
+                      (pocket.is_object() ? "; the largest new pocket, " + counted(number(pocket, "voxels").value_or(0), "voxel") + ", lies" + at_place(pocket) : "") + ".");
 }
 
 // Of a tissue that counts: a row of the report with a change of volume, large enough at rest.

@@ -2,6 +2,7 @@
 #include "core/report/voxel_pieces.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 
@@ -14,25 +15,26 @@ std::int64_t root_of(std::vector<std::int64_t>& parent, std::int64_t i) {
 }
 }  // namespace
 
-std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels) {
+std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels, int reach) {
   std::vector<std::int64_t> parent(voxels.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto join = [&](std::int64_t a, std::int64_t b) {
     a = root_of(parent, a), b = root_of(parent, b);
     parent[std::max(a, b)] = std::min(a, b);
   };
-  // Each voxel with those before it in four rows and beside it; a row's three neighbours stand together in the list.
-  constexpr int kRows[4][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}};  // y, z
-  std::array<std::size_t, 4> next{};
+  // Each voxel with those before it in the rows around and in its own; a row's neighbours stand together in the list.
+  std::vector<std::array<int, 2>> rows;  // y, z
+  for (int z = -reach; z <= 0; ++z)
+    for (int y = -reach; y <= (z < 0 ? reach : 0); ++y) rows.push_back({y, z});
+  std::vector<std::size_t> next(rows.size(), 0);
   for (std::size_t i = 0; i < voxels.size(); ++i) {
     const glm::ivec3 v = voxel_of_index(grid, voxels[i]);
-    if (i > 0 && v.x > 0 && voxels[i - 1] == voxels[i] - 1) join(i, i - 1);
-    for (int r = 0; r < 4; ++r) {
-      const int y = v.y + kRows[r][0], z = v.z + kRows[r][1];
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const int y = v.y + rows[r][0], z = v.z + rows[r][1];
       if (y < 0 || z < 0 || y >= grid.size.y) continue;
-      const std::int64_t first = grid.index({std::max(v.x - 1, 0), y, z}), last = grid.index({std::min(v.x + 1, grid.size.x - 1), y, z});
+      const std::int64_t first = grid.index({std::max(v.x - reach, 0), y, z}), last = grid.index({std::min(v.x + reach, grid.size.x - 1), y, z});
       while (next[r] < voxels.size() && voxels[next[r]] < first) ++next[r];
-      for (std::size_t k = next[r]; k < voxels.size() && voxels[k] <= last; ++k) join(i, k);
+      for (std::size_t k = next[r]; k < i && voxels[k] <= last; ++k) join(i, k);
     }
   }
   std::vector<std::vector<std::int64_t>> pieces;

@@ -145,4 +145,18 @@ TEST_CASE("exposure: the largest pocket of air is found, and air that a channel 
   REQUIRE(pocket);
   CHECK(pocket->voxels == 3);
   CHECK(pocket->place == world_from_voxel(posed.grid) * glm::dvec3(16, 13, 15));
+
+  // What was closed in at rest already is not new, also where it went along with the tissue around it.
+  const JudgedPose twice{posed, posed, tissues};
+  CHECK_FALSE(largest_air_pocket(twice, air_around(twice)));
+  LabelVolume shifted = posed;
+  ZeroedVector<glm::vec3> moved(posed.voxels.size());
+  for (int x = 1; x < posed.grid.size.x; ++x)
+    for (int z = 0; z < posed.grid.size.z; ++z)
+      for (int y = 0; y < posed.grid.size.y; ++y) {
+        shifted.at({x, y, z}) = posed.at({x - 1, y, z});
+        if (shifted.at({x, y, z})) moved[shifted.grid.index({x, y, z})] = {2, 0, 0};
+      }
+  const JudgedPose along{posed, shifted, tissues, {moved.data(), moved.size()}};
+  CHECK_FALSE(largest_air_pocket(along, air_around(along)));
 }

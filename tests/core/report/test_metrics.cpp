@@ -161,3 +161,26 @@ TEST_CASE("metrics: air that a fold has closed off is trapped") {
   fill(after, {4, 4, 4}, {6, 6, 6}, 0);
   CHECK(compare(before, after, table()).trapped_air_voxels == 8);
 }
+
+TEST_CASE("metrics: a label that fell apart is torn, one whose piece grew by a voxel or was parted by a single voxel is not") {
+  LabelVolume whole{{.size = {30, 12, 12}}, ZeroedVector<Label>(30 * 12 * 12)};
+  fill(whole, {2, 3, 3}, {26, 8, 8}, 1);
+  const auto torn = [&](const LabelVolume& before, const LabelVolume& after) { return compare(before, after, table()).tissues.at(0).torn_parts; };
+  LabelVolume gap = whole, tear = whole;
+  fill(gap, {13, 3, 3}, {14, 8, 8}, 0);
+  fill(tear, {13, 3, 3}, {15, 8, 8}, 0);
+  CHECK(torn(whole, whole) == 0);
+  CHECK(torn(whole, gap) == 0);
+  CHECK(torn(whole, tear) == 1);
+  CHECK(torn(tear, whole) == 0);
+
+  LabelVolume speck = whole, grown = whole;
+  fill(speck, {28, 3, 3}, {29, 10, 10}, 1);
+  fill(grown, {28, 3, 3}, {29, 10, 10}, 1);
+  grown.at({28, 10, 9}) = grown.at({28, 10, 8}) = 1;
+  CHECK(torn(speck, grown) == 0);
+
+  LabelVolume finer = tear;
+  finer.grid.spacing = glm::dvec3(0.5);
+  CHECK_FALSE(torn(whole, finer));
+}

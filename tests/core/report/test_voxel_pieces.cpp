@@ -10,7 +10,7 @@
 using namespace limber;
 
 namespace {
-std::multiset<std::set<std::int64_t>> pieces_by_flooding(const Grid& grid, const std::vector<std::int64_t>& voxels) {
+std::multiset<std::set<std::int64_t>> pieces_by_flooding(const Grid& grid, const std::vector<std::int64_t>& voxels, int reach) {
   std::set<std::int64_t> left(voxels.begin(), voxels.end());
   std::multiset<std::set<std::int64_t>> pieces;
   while (!left.empty()) {
@@ -22,8 +22,9 @@ std::multiset<std::set<std::int64_t>> pieces_by_flooding(const Grid& grid, const
       open.pop_back();
       piece.insert(at);
       const glm::ivec3 v(at % grid.size.x, at / grid.size.x % grid.size.y, at / grid.size.x / grid.size.y);
-      for (int k = 0; k < 27; ++k) {
-        const glm::ivec3 n = v + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      const int wide = 2 * reach + 1;
+      for (int k = 0; k < wide * wide * wide; ++k) {
+        const glm::ivec3 n = v + glm::ivec3(k % wide, k / wide % wide, k / wide / wide) - reach;
         if (grid.contains(n) && left.erase(grid.index(n))) open.push_back(grid.index(n));
       }
     }
@@ -37,11 +38,12 @@ TEST_CASE("voxel pieces: they are what flooding from voxel to voxel finds, the l
   std::mt19937 random(11);
   for (const glm::ivec3 size : {glm::ivec3(9, 7, 8), glm::ivec3(1, 20, 3), glm::ivec3(30, 1, 1), glm::ivec3(5, 5, 1)})
     for (const double share : {0.02, 0.08, 0.3}) {
+      const int reach = share < 0.05 ? 2 : 1;
       const Grid grid{.size = size};
       std::vector<std::int64_t> voxels;
       for (std::int64_t at = 0; at < grid.voxel_count(); ++at)
         if (std::uniform_real_distribution<double>(0, 1)(random) < share) voxels.push_back(at);
-      const auto pieces = pieces_of(grid, voxels);
+      const auto pieces = pieces_of(grid, voxels, reach);
       std::multiset<std::set<std::int64_t>> found;
       for (std::size_t k = 0; k < pieces.size(); ++k) {
         CHECK((k == 0 || pieces[k - 1].size() >= pieces[k].size()));
@@ -49,7 +51,7 @@ TEST_CASE("voxel pieces: they are what flooding from voxel to voxel finds, the l
         for (const std::int64_t i : pieces[k]) piece.insert(voxels[i]);
         found.insert(piece);
       }
-      CHECK(found == pieces_by_flooding(grid, voxels));
+      CHECK(found == pieces_by_flooding(grid, voxels, reach));
     }
 }
 
