@@ -155,14 +155,16 @@ void count_surface(const LabelVolume& volume, int z, const Slice& slice, std::ve
 
 double percent_change(double before, double after) { return before > 0 ? 100 * (after - before) / before : 0; }
 
-// Pieces of a label of kSmallest voxels or more beyond `before`. A grid at another angle may part what is thin by one voxel, which is
-// no tear: what lies no further apart counts as one.
+// Pieces of a label of kSmallest voxels or more beyond `before`. A body that lies at another angle in its grid is parted by a voxel
+// where it is thin, and where thick slices bridged a gap at rest by as much as a slice; neither is a tear.
 int torn_parts(const LabelVolume& after, Label label, int touching, int before) {
   if (touching <= before) return 0;
   std::vector<std::int64_t> voxels;
   for (std::int64_t at = 0; at < std::ssize(after.voxels); ++at)
     if (after.voxels[at] == label) voxels.push_back(at);
-  const auto pieces = pieces_of(after.grid, voxels, 2);
+  const glm::dvec3& spacing = after.grid.spacing;
+  const glm::ivec3 reach = glm::ivec3(std::max({spacing.x, spacing.y, spacing.z}) / spacing + 0.5) + 1;
+  const auto pieces = pieces_of(after.grid, voxels, reach);
   const auto large = std::count_if(pieces.begin(), pieces.end(), [](const auto& piece) { return std::ssize(piece) >= kSmallest; });
   return std::max(0, static_cast<int>(large) - before);
 }

@@ -103,7 +103,8 @@ WholeBone judge(const MovedVoxels& voxels, const std::vector<int>& allowed, bool
   return bone;
 }
 
-bool moves(const RigidTransform& motion) { return motion.rotation != glm::dquat(1, 0, 0, 0); }
+// A bone that turned back, as a shank that hangs below a raised thigh, still went somewhere.
+bool moves(const RigidTransform& motion) { return motion.rotation != glm::dquat(1, 0, 0, 0) || motion.translation != glm::dvec3(0); }
 
 double degrees_between(const glm::dvec3& a, const glm::dvec3& b) { return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b))); }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -302,7 +303,7 @@ void judge_organs(const Json& report, const QualityLimits& limits, QualityGate& 
   const Json& tissues = part(report, "tissues");
   const auto of_organ = [&](const Json& tissue) -> std::optional<double> {
     const std::string kind = tissue.is_object() ? text(tissue, "kind") : "";
-    const auto change = kind == "organ" || kind == "brain" || kind == "nerve" ? change_of(tissue, limits) : std::nullopt;
+    const auto change = kind == "organ" || kind == "brain" ? change_of(tissue, limits) : std::nullopt;
     return change ? std::optional(std::abs(*change)) : std::nullopt;
   };
   const Json* worst = worst_row(tissues, of_organ);
@@ -330,7 +331,14 @@ void judge_lost(const Json& report, const QualityLimits& limits, QualityGate& ga
 }
 
 void judge_torn(const Json& report, const QualityLimits&, QualityGate& gate) {
-  const Json* worst = worst_row(part(report, "tissues"), [](const Json& tissue) { return number(tissue, "torn_parts"); });
+  // Named bones are judged by where each voxel went; thin ones may miss the middles of thick slices at another angle.
+  std::set<double> named;
+  for (const Json& bone : part(report, "whole_bones"))
+    if (const auto label = number(bone, "label")) named.insert(*label);
+  const Json* worst = worst_row(part(report, "tissues"), [&](const Json& tissue) {
+    const auto label = number(tissue, "label");
+    return label && named.contains(*label) ? std::nullopt : number(tissue, "torn_parts");
+  });
   if (!worst) return not_checked(gate, "the pieces of labels were not counted before and after, on voxels of one size.");
   const double parts = *number(*worst, "torn_parts");
   if (parts > 0) gate.worst = text(*worst, "name");
@@ -350,7 +358,7 @@ void judge_bands(const Json& report, const QualityLimits&, QualityGate& gate) {
   gate.worst = end(0);
   decide(gate, false, counted(double(bands.size()), "band"),
          "A band of " + counted(number(worst, "voxels").value_or(0), "voxel") + " is pulled out to " + formatted("%.1f times", number(worst, "stretch").value_or(0)) + " its length" +
-             (end(1).empty() ? "" : " between " + end(0) + " and " + end(1)) + at_place(worst) + "; what touches there at rest has to be parted.");
+             (end(1).empty() ? "" : " between " + end(0) + " and " + end(1)) + at_place(worst) + ", and no joint explains it: part what touches there at rest, or correct the rig's joint.");
 }
 
 void judge_volume(const Json& report, const QualityLimits& limits, QualityGate& gate) {

@@ -15,7 +15,7 @@ std::int64_t root_of(std::vector<std::int64_t>& parent, std::int64_t i) {
 }
 }  // namespace
 
-std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels, int reach) {
+std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels, const glm::ivec3& reach) {
   std::vector<std::int64_t> parent(voxels.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto join = [&](std::int64_t a, std::int64_t b) {
@@ -24,15 +24,15 @@ std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::ve
   };
   // Each voxel with those before it in the rows around and in its own; a row's neighbours stand together in the list.
   std::vector<std::array<int, 2>> rows;  // y, z
-  for (int z = -reach; z <= 0; ++z)
-    for (int y = -reach; y <= (z < 0 ? reach : 0); ++y) rows.push_back({y, z});
+  for (int z = -reach.z; z <= 0; ++z)
+    for (int y = -reach.y; y <= (z < 0 ? reach.y : 0); ++y) rows.push_back({y, z});
   std::vector<std::size_t> next(rows.size(), 0);
   for (std::size_t i = 0; i < voxels.size(); ++i) {
     const glm::ivec3 v = voxel_of_index(grid, voxels[i]);
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const int y = v.y + rows[r][0], z = v.z + rows[r][1];
       if (y < 0 || z < 0 || y >= grid.size.y) continue;
-      const std::int64_t first = grid.index({std::max(v.x - reach, 0), y, z}), last = grid.index({std::min(v.x + reach, grid.size.x - 1), y, z});
+      const std::int64_t first = grid.index({std::max(v.x - reach.x, 0), y, z}), last = grid.index({std::min(v.x + reach.x, grid.size.x - 1), y, z});
       while (next[r] < voxels.size() && voxels[next[r]] < first) ++next[r];
       for (std::size_t k = next[r]; k < i && voxels[k] <= last; ++k) join(i, k);
     }

@@ -12,8 +12,8 @@ namespace limber {
 // The pieces of voxels that meet by a face, an edge or a corner (26-connected), the largest first, of equal ones the first in the
 // list; each holds places in the list, ascending.
 //   voxels  indices into the grid, ascending, none twice
-//   reach   2 or more: voxels also belong together across a gap of one voxel less than that
-std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels, int reach = 1);
+//   reach   along each axis; with 2 or more, voxels also belong together across a gap of one voxel less than that
+std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels, const glm::ivec3& reach = glm::ivec3(1));
 
 // The voxel of a piece that lies nearest to the piece's middle.
 //   piece  places in `voxels`, at least one

@@ -99,6 +99,13 @@ TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
   }
 }
 
+TEST_CASE("quality gates: a label in pieces is torn, but for bones whose every voxel was followed") {
+  const std::string torn = R"("tissues": [{"name": "Hand bones", "label": 7, "torn_parts": 2, "components_before": 2, "components_after": 4}])";
+  CHECK(gate("{" + torn + "}", "torn").state == GateState::Failed);
+  CHECK(gate("{" + torn + R"(, "whole_bones": [{"label": 8}]})", "torn").state == GateState::Failed);
+  CHECK(gate("{" + torn + R"(, "whole_bones": [{"label": 7}]})", "torn").state == GateState::NotMeasured);
+}
+
 TEST_CASE("quality gates: a report in hand is judged as its file is, and limits of a rig as those of its report") {
   Report report;
   report.deform.emplace();

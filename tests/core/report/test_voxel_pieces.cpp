@@ -10,7 +10,7 @@
 using namespace limber;
 
 namespace {
-std::multiset<std::set<std::int64_t>> pieces_by_flooding(const Grid& grid, const std::vector<std::int64_t>& voxels, int reach) {
+std::multiset<std::set<std::int64_t>> pieces_by_flooding(const Grid& grid, const std::vector<std::int64_t>& voxels, const glm::ivec3& reach) {
   std::set<std::int64_t> left(voxels.begin(), voxels.end());
   std::multiset<std::set<std::int64_t>> pieces;
   while (!left.empty()) {
@@ -22,9 +22,9 @@ std::multiset<std::set<std::int64_t>> pieces_by_flooding(const Grid& grid, const
       open.pop_back();
       piece.insert(at);
       const glm::ivec3 v(at % grid.size.x, at / grid.size.x % grid.size.y, at / grid.size.x / grid.size.y);
-      const int wide = 2 * reach + 1;
-      for (int k = 0; k < wide * wide * wide; ++k) {
-        const glm::ivec3 n = v + glm::ivec3(k % wide, k / wide % wide, k / wide / wide) - reach;
+      const glm::ivec3 wide = 2 * reach + 1;
+      for (int k = 0; k < wide.x * wide.y * wide.z; ++k) {
+        const glm::ivec3 n = v + glm::ivec3(k % wide.x, k / wide.x % wide.y, k / wide.x / wide.y) - reach;
         if (grid.contains(n) && left.erase(grid.index(n))) open.push_back(grid.index(n));
       }
     }
@@ -38,7 +38,7 @@ TEST_CASE("voxel pieces: they are what flooding from voxel to voxel finds, the l
   std::mt19937 random(11);
   for (const glm::ivec3 size : {glm::ivec3(9, 7, 8), glm::ivec3(1, 20, 3), glm::ivec3(30, 1, 1), glm::ivec3(5, 5, 1)})
     for (const double share : {0.02, 0.08, 0.3}) {
-      const int reach = share < 0.05 ? 2 : 1;
+      const glm::ivec3 reach = share < 0.05 ? glm::ivec3(3, 2, 1) : share < 0.1 ? glm::ivec3(1, 2, 2) : glm::ivec3(1);
       const Grid grid{.size = size};
       std::vector<std::int64_t> voxels;
       for (std::int64_t at = 0; at < grid.voxel_count(); ++at)
