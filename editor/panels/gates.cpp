@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Of the result that is shown: whether it passes what a posed volume must, and where it comes from.
+#include <algorithm>
 #include <cstdio>
 
 #include "editor/gizmo.h"
@@ -41,6 +42,13 @@ void draw_gate(Editor& editor, Column& column, const QualityGate& gate) {
   if (pressed.clicked && !gate.worst.empty()) go_to_worst(editor, gate);
 }
 
+// ", 3 failed"
+std::string failures(Editor& editor, const std::shared_ptr<const Result>& result) {
+  const auto& gates = facts_of(editor, result)->gates;
+  const auto failed = std::count_if(gates.begin(), gates.end(), [](const QualityGate& gate) { return gate.state == GateState::Failed; });
+  return failed ? ", " + std::to_string(failed) + " failed" : "";
+}
+
 void draw_line(Editor& editor, Column& column, const std::string& name, const std::string& value, bool mono, const std::string& whole = "") {
   const Look& look = editor.look;
   const Rect row = column.row(22);
@@ -62,7 +70,7 @@ void draw_title(Editor& editor, Column& column, const std::string& words) {
 
 void draw_gates(Editor& editor, Column& column) {
   const auto result = chosen_result(editor);
-  if (column.begin_section("Quality gates", result ? method_name(result->method) : "")) {
+  if (column.begin_section("Quality gates", result ? method_name(result->method) + failures(editor, result) : "")) {
     const Look& look = editor.look;
     column.space(4);
     if (!result) {
