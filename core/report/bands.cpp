@@ -12,13 +12,14 @@
 namespace limber {
 
 namespace {
-constexpr double kNeighbours = 3;   // voxels that lay further apart at rest, in steps of the posed grid, were no neighbours
-constexpr int kArcSteps = 16;       // of the way between two motions of a joint
+constexpr double kNeighbours =
+    3;                         // voxels that lay further apart at rest, in steps of the posed grid, were no neighbours
+constexpr int kArcSteps = 16;  // of the way between two motions of a joint
 
 struct Joint {
   int parent, bone;
   glm::dvec3 head;
-  double reach;                      // mm
+  double reach;                                          // mm
   std::array<RigidTransform, kArcSteps + 1> on_the_way;  // from the parent's motion to the bone's
 };
 
@@ -51,13 +52,15 @@ std::vector<Joint> turned_joints(const JudgedPose& pose, const OutsideAir& outsi
   for (int b = 0; b < std::ssize(pose.armature->bones); ++b) {
     const Bone& bone = pose.armature->bones[b];
     if (bone.parent < 0 || same_motion(pose.applied[b], pose.applied[bone.parent], bone.head)) continue;
-    Joint& joint = joints.emplace_back(Joint{bone.parent, b, bone.head, limits.joint_reach * depth_at(pose.rest.grid, outside, bone.head), {}});
+    Joint& joint = joints.emplace_back(
+        Joint{bone.parent, b, bone.head, limits.joint_reach * depth_at(pose.rest.grid, outside, bone.head), {}});
     const RigidTransform turn = inverse(pose.applied[bone.parent]) * pose.applied[b];
     const glm::dvec3 slid = turn * bone.head - bone.head;
     for (int k = 0; k <= kArcSteps; ++k) {
       const double share = double(k) / kArcSteps;
       const glm::dquat part = glm::slerp(glm::dquat(1, 0, 0, 0), turn.rotation, share);
-      joint.on_the_way[k] = pose.applied[bone.parent] * RigidTransform{part, bone.head + share * slid - part * bone.head};
+      joint.on_the_way[k] =
+          pose.applied[bone.parent] * RigidTransform{part, bone.head + share * slid - part * bone.head};
     }
   }
   return joints;
@@ -74,7 +77,8 @@ bool explains(const Joint& joint, const glm::dvec3& rest, const glm::dvec3& pose
   if (glm::distance(rest, joint.head) > joint.reach) return false;
   const double within = limits.off_arc * joint.reach;
   glm::dvec3 before = joint.on_the_way[0] * rest;
-  if (distance_to_segment(posed, before, joint.on_the_way[kArcSteps] * rest) <= within) return true;  // linear blending takes the chord
+  if (distance_to_segment(posed, before, joint.on_the_way[kArcSteps] * rest) <= within)
+    return true;  // linear blending takes the chord
   for (int k = 1; k <= kArcSteps; ++k) {
     const glm::dvec3 next = joint.on_the_way[k] * rest;
     if (distance_to_segment(posed, before, next) <= within) return true;
@@ -83,7 +87,8 @@ bool explains(const Joint& joint, const glm::dvec3& rest, const glm::dvec3& pose
   return false;
 }
 
-// The gradient of the map from posed to rest, world axes; none where a voxel has no neighbour of soft tissue along an axis.
+// The gradient of the map from posed to rest, world axes; none where a voxel has no neighbour of soft tissue along an
+// axis.
 class RestGradient {
  public:
   RestGradient(const JudgedPose& pose, std::vector<bool> is_soft) : pose_(pose), is_soft_(std::move(is_soft)) {}
@@ -122,7 +127,8 @@ struct StretchedVoxels {
   std::vector<float> stretch;
 };
 
-StretchedVoxels unexplained(const JudgedPose& pose, const RestGradient& gradient, const std::vector<Joint>& joints, const BandLimits& limits) {
+StretchedVoxels unexplained(const JudgedPose& pose, const RestGradient& gradient, const std::vector<Joint>& joints,
+                            const BandLimits& limits) {
   const glm::ivec3 size = pose.posed.grid.size;
   std::vector<StretchedVoxels> slices(size.z);
   parallel_for(size.z, 1, [&](std::int64_t z, std::int64_t) {
@@ -136,7 +142,9 @@ StretchedVoxels unexplained(const JudgedPose& pose, const RestGradient& gradient
         const double stretch = largest_stretch(*map);
         if (!(stretch > limits.stretch)) continue;
         const glm::dvec3 rest = pose.rest_place(v), posed = pose.posed_place(v);
-        if (std::any_of(joints.begin(), joints.end(), [&](const Joint& joint) { return explains(joint, rest, posed, limits); })) continue;
+        if (std::any_of(joints.begin(), joints.end(),
+                        [&](const Joint& joint) { return explains(joint, rest, posed, limits); }))
+          continue;
         slices[z].at.push_back(at);
         slices[z].stretch.push_back(static_cast<float>(std::min(stretch, 1e6)));
       }
@@ -149,7 +157,8 @@ StretchedVoxels unexplained(const JudgedPose& pose, const RestGradient& gradient
   return all;
 }
 
-// Of the bones that take the tissue to where it went, to a voxel or as nearly as any does, the one that lies nearest to it at rest.
+// Of the bones that take the tissue to where it went, to a voxel or as nearly as any does, the one that lies nearest to
+// it at rest.
 int bone_that_carries(const JudgedPose& pose, const glm::dvec3& rest, const glm::dvec3& posed) {
   const auto off = [&](std::size_t b) { return glm::distance(pose.applied[b] * rest, posed); };
   double least = std::numeric_limits<double>::infinity(), nearest = least;
@@ -157,7 +166,8 @@ int bone_that_carries(const JudgedPose& pose, const glm::dvec3& rest, const glm:
   const double edge = std::max({pose.posed.grid.spacing.x, pose.posed.grid.spacing.y, pose.posed.grid.spacing.z});
   int best = 0;
   for (std::size_t b = 0; b < pose.applied.size(); ++b)
-    if (const double away = distance_to_bone(pose.armature->bones[b], rest); off(b) <= least + edge && away < nearest) nearest = away, best = static_cast<int>(b);
+    if (const double away = distance_to_bone(pose.armature->bones[b], rest); off(b) <= least + edge && away < nearest)
+      nearest = away, best = static_cast<int>(b);
   return best;
 }
 

@@ -17,7 +17,8 @@ constexpr std::array<glm::ivec3, 6> kFaces = {{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}
 // Fills air in a box from seeds, a stretch along x at a time.
 class AirFlood {
  public:
-  AirFlood(const LabelVolume& volume, const VoxelBox& box, std::vector<std::uint8_t>& outside) : volume_(volume), box_(box), outside_(outside) {}
+  AirFlood(const LabelVolume& volume, const VoxelBox& box, std::vector<std::uint8_t>& outside)
+      : volume_(volume), box_(box), outside_(outside) {}
 
   void start(const glm::ivec3& v) {
     if (!is_new(v)) return;
@@ -91,7 +92,8 @@ struct SurfaceOfSlice {
 };
 }  // namespace
 
-OutsideAir::OutsideAir(const LabelVolume& volume) : box_(tissue_box(volume, 1)), outside_(static_cast<std::size_t>(box_.voxel_count()), 0) {
+OutsideAir::OutsideAir(const LabelVolume& volume)
+    : box_(tissue_box(volume, 1)), outside_(static_cast<std::size_t>(box_.voxel_count()), 0) {
   AirFlood flood(volume, box_, outside_);
   const glm::ivec3 low = box_.lowest, high = box_.lowest + box_.size - 1;
   for (int z = low.z; z <= high.z; ++z)
@@ -111,13 +113,15 @@ Exposure measure_exposure(const JudgedPose& pose, const AirAround& air) {
   const Grid &rest_grid = pose.rest.grid, &grid = pose.posed.grid;
   const std::vector<TissueKind> kinds = pose.tissues.kinds();
   Exposure exposure;
-  exposure.deeper_than_mm = glm::length(rest_grid.spacing) + std::min({rest_grid.spacing.x, rest_grid.spacing.y, rest_grid.spacing.z});
+  exposure.deeper_than_mm =
+      glm::length(rest_grid.spacing) + std::min({rest_grid.spacing.x, rest_grid.spacing.y, rest_grid.spacing.z});
   const std::vector<glm::ivec3> near = ball(rest_grid.spacing, exposure.deeper_than_mm);
   const AffineTransform to_rest = voxel_from_world(rest_grid);
 
   const auto was_deep = [&](const glm::ivec3& v) {
     const glm::ivec3 rest(glm::floor(to_rest * pose.rest_place(v) + 0.5));
-    return std::none_of(near.begin(), near.end(), [&](const glm::ivec3& step) { return air.rest.contains(rest + step); });
+    return std::none_of(near.begin(), near.end(),
+                        [&](const glm::ivec3& step) { return air.rest.contains(rest + step); });
   };
   std::vector<SurfaceOfSlice> slices(grid.size.z);
   parallel_for(grid.size.z, 1, [&](std::int64_t z, std::int64_t) {
@@ -126,7 +130,9 @@ Exposure measure_exposure(const JudgedPose& pose, const AirAround& air) {
       for (int x = 0; x < grid.size.x; ++x, ++at) {
         const Label label = pose.posed.voxels[at];
         const glm::ivec3 v(x, y, z);
-        if (label == 0 || std::none_of(kFaces.begin(), kFaces.end(), [&](const glm::ivec3& face) { return air.posed.contains(v + face); })) continue;
+        if (label == 0 || std::none_of(kFaces.begin(), kFaces.end(),
+                                       [&](const glm::ivec3& face) { return air.posed.contains(v + face); }))
+          continue;
         ++slices[z].surface_voxels;
         if (kinds[label] != TissueKind::Skin && was_deep(v)) slices[z].exposed.push_back(at);
       }
@@ -161,7 +167,8 @@ std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose, const AirAr
   for (int z = 0; z < grid.size.z; ++z)
     for (int y = 0; y < grid.size.y; ++y)
       for (int x = 0; x < grid.size.x; ++x, ++at)
-        if (pose.posed.voxels[at] == 0 && !air.posed.contains({x, y, z}) && !was_enclosed({x, y, z})) enclosed.push_back(at);
+        if (pose.posed.voxels[at] == 0 && !air.posed.contains({x, y, z}) && !was_enclosed({x, y, z}))
+          enclosed.push_back(at);
   return worst_of(pose, enclosed);
 }
 
@@ -169,7 +176,8 @@ std::string nearest_posed_bone(const JudgedPose& pose, const glm::dvec3& place) 
   std::string nearest;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; pose.armature && b < pose.armature->bones.size(); ++b)
-    if (const double away = distance_to_bone(pose.armature->bones[b], inverse(pose.applied[b]) * place); away < least) least = away, nearest = pose.armature->bones[b].name;
+    if (const double away = distance_to_bone(pose.armature->bones[b], inverse(pose.applied[b]) * place); away < least)
+      least = away, nearest = pose.armature->bones[b].name;
   return nearest;
 }
 

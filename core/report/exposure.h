@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a pose opened to the air, and what it closed off from it, judged from the volumes and the displacement alone.
-//   newly exposed  posed voxels at the outside air that are not skin and lay deep at rest: further from the rest's outside air than
+//   newly exposed  posed voxels at the outside air that are not skin and lay deep at rest: further from the rest's
+//   outside air than
 //                  a voxel's diagonal and a voxel's edge together, so that rounding at a surface does not count
 //   trapped        air that tissue encloses
 #pragma once
@@ -43,8 +44,8 @@ struct Exposure {
 // Needs the displacement.
 Exposure measure_exposure(const JudgedPose& pose, const AirAround& air);
 
-// The largest pocket of air that posed tissue encloses and that was not enclosed at rest, as the tissue beside it tells; none where
-// there is none.
+// The largest pocket of air that posed tissue encloses and that was not enclosed at rest, as the tissue beside it
+// tells; none where there is none.
 std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose, const AirAround& air);
 
 }  // namespace limber

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a posed volume is judged by: the volume at rest, the posed one and the displacement between them, the rig and where its
-// bones were asked to go. None of it is the program's own idea of the body: neither weights nor bone parts.
+// What a posed volume is judged by: the volume at rest, the posed one and the displacement between them, the rig and
+// where its bones were asked to go. None of it is the program's own idea of the body: neither weights nor bone parts.
 #pragma once
 
 #include <span>
@@ -20,11 +20,13 @@ struct JudgedPose {
   std::span<const glm::vec3> displacement{};  // #posed voxels, posed - rest, mm; empty where nobody knows it
   const Armature* armature = nullptr;         // nullptr where there is no rig
   std::vector<RigidTransform> asked;          // #bones, posed from rest, as the pose was asked for
-  std::vector<RigidTransform> applied;        // #bones, where joints were fitted or a solve ended early; else as `asked`
+  std::vector<RigidTransform> applied;  // #bones, where joints were fitted or a solve ended early; else as `asked`
 
   // World, mm: where the posed voxel lies, and where its tissue lay at rest. The latter needs `displacement`.
   glm::dvec3 posed_place(const glm::ivec3& voxel) const { return world_from_voxel(posed.grid) * glm::dvec3(voxel); }
-  glm::dvec3 rest_place(const glm::ivec3& voxel) const { return posed_place(voxel) - glm::dvec3(displacement[posed.grid.index(voxel)]); }
+  glm::dvec3 rest_place(const glm::ivec3& voxel) const {
+    return posed_place(voxel) - glm::dvec3(displacement[posed.grid.index(voxel)]);
+  }
   bool knows_field() const { return !displacement.empty(); }
 };
 

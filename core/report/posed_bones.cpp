@@ -13,9 +13,9 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kFewest = 30;                       // voxels that tell how a limb turned
-constexpr double kShaftBegin = 0.25, kShaftEnd = 0.75;    // of a rig bone's axis: away from the joints, where bones meet
-constexpr double kShaftRadius = 0.15;                     // of the rig bone's length
+constexpr std::size_t kFewest = 30;                     // voxels that tell how a limb turned
+constexpr double kShaftBegin = 0.25, kShaftEnd = 0.75;  // of a rig bone's axis: away from the joints, where bones meet
+constexpr double kShaftRadius = 0.15;                   // of the rig bone's length
 
 struct Moved {
   glm::dvec3 rest, posed;  // world, mm
@@ -28,7 +28,8 @@ struct BoneVoxel {
 };
 
 // The posed voxels of bone whose tissue was a voxel of the same label at rest, in the order of the posed grid.
-std::vector<BoneVoxel> posed_bone_voxels(const JudgedPose& pose, const BoneGraph& graph, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds) {
+std::vector<BoneVoxel> posed_bone_voxels(const JudgedPose& pose, const BoneGraph& graph, const TissueVoxels& tissue,
+                                         const std::vector<TissueKind>& kinds) {
   std::vector<std::int32_t> in_graph(static_cast<std::size_t>(tissue.size()), -1);
   for (std::int32_t i = 0; i < graph.size(); ++i) in_graph[graph.place[i]] = i;
   const AffineTransform to_rest = voxel_from_world(pose.rest.grid);
@@ -63,11 +64,14 @@ RigidTransform best_motion(const MovedVoxels& voxels) {
 }
 
 // Of the bones that it may follow, the one that takes most voxels to where they went.
-int best_bone(const MovedVoxels& voxels, const std::vector<int>& allowed, const std::vector<RigidTransform>& motions, double within) {
+int best_bone(const MovedVoxels& voxels, const std::vector<int>& allowed, const std::vector<RigidTransform>& motions,
+              double within) {
   int best = allowed.front();
   std::int64_t most = -1;
   for (const int bone : allowed) {
-    const std::int64_t right = std::count_if(voxels.begin(), voxels.end(), [&](const Moved& one) { return glm::distance(motions[bone] * one.rest, one.posed) <= within; });
+    const std::int64_t right = std::count_if(voxels.begin(), voxels.end(), [&](const Moved& one) {
+      return glm::distance(motions[bone] * one.rest, one.posed) <= within;
+    });
     if (right > most) most = right, best = bone;
   }
   return best;
@@ -87,7 +91,8 @@ int followed_bone(const MovedVoxels& voxels, const std::vector<RigidTransform>& 
 }
 
 // One bone of the body: the voxels of a label on one side, and the rig bones that its name allows.
-WholeBone judge(const MovedVoxels& voxels, const std::vector<int>& allowed, bool single, const JudgedPose& pose, double within) {
+WholeBone judge(const MovedVoxels& voxels, const std::vector<int>& allowed, bool single, const JudgedPose& pose,
+                double within) {
   WholeBone bone;
   const int own = best_bone(voxels, allowed, pose.applied, within);
   MovedVoxels wrong;
@@ -104,9 +109,13 @@ WholeBone judge(const MovedVoxels& voxels, const std::vector<int>& allowed, bool
 }
 
 // A bone that turned back, as a shank that hangs below a raised thigh, still went somewhere.
-bool moves(const RigidTransform& motion) { return motion.rotation != glm::dquat(1, 0, 0, 0) || motion.translation != glm::dvec3(0); }
+bool moves(const RigidTransform& motion) {
+  return motion.rotation != glm::dquat(1, 0, 0, 0) || motion.translation != glm::dvec3(0);
+}
 
-double degrees_between(const glm::dvec3& a, const glm::dvec3& b) { return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b))); }
+double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
+  return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
+}
 
 LimbDirection direction_of(int bone, const MovedVoxels& voxels, bool by_name, const JudgedPose& pose) {
   const glm::dquat asked = pose.asked[bone].rotation, reached = best_motion(voxels).rotation;
@@ -129,10 +138,12 @@ bool is_at_shaft(const Armature& armature, int bone, const glm::dvec3& p) {
   if (!(length > 0)) return false;
   const double along = glm::dot(p - own.head, axis) / (length * length), away = distance_to_bone(own, p);
   if (along < kShaftBegin || along > kShaftEnd || away > kShaftRadius * length) return false;
-  return std::all_of(armature.bones.begin(), armature.bones.end(), [&](const Bone& other) { return distance_to_bone(other, p) >= away; });
+  return std::all_of(armature.bones.begin(), armature.bones.end(),
+                     [&](const Bone& other) { return distance_to_bone(other, p) >= away; });
 }
 
-std::vector<LimbDirection> limb_directions(const JudgedPose& pose, const std::vector<BoneVoxel>& bone, const std::vector<MovedVoxels>& named) {
+std::vector<LimbDirection> limb_directions(const JudgedPose& pose, const std::vector<BoneVoxel>& bone,
+                                           const std::vector<MovedVoxels>& named) {
   std::vector<LimbDirection> limbs;
   for (int b = 0; b < std::ssize(pose.armature->bones); ++b) {
     if (!moves(pose.asked[b])) continue;
@@ -159,7 +170,8 @@ PosedBones measure_posed_bones(const JudgedPose& pose, const BoneMap& map) {
     const NamedBones named = assign_named_bones(graph, pose.rest, kinds, *pose.armature, labels);
     std::map<std::pair<Label, std::int32_t>, MovedVoxels> members;
     for (const BoneVoxel& one : bone)
-      if (const Label label = pose.rest.at(graph.voxel[one.at_rest]); labels.contains(label)) members[{label, named.group[one.at_rest]}].push_back(one.moved);
+      if (const Label label = pose.rest.at(graph.voxel[one.at_rest]); labels.contains(label))
+        members[{label, named.group[one.at_rest]}].push_back(one.moved);
     const double within = std::max({pose.rest.grid.spacing.x, pose.rest.grid.spacing.y, pose.rest.grid.spacing.z});
     for (const auto& [key, voxels] : members) {
       const auto& [label, group] = key;

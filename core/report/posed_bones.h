@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How the bones of the body went in a posed volume, measured from the displacement of their voxels: whether each bone that a label
-// names stayed whole and went with the rig bone it belongs to, and in which direction each limb points against what was asked.
-// Neither weights nor the program's bone parts are looked at.
+// How the bones of the body went in a posed volume, measured from the displacement of their voxels: whether each bone
+// that a label names stayed whole and went with the rig bone it belongs to, and in which direction each limb points
+// against what was asked. Neither weights nor the program's bone parts are looked at.
 #pragma once
 
 #include <string>
@@ -19,7 +19,8 @@ struct LimbDirection {
   double direction_degrees = 0;    // between the direction of the bone asked for and the one reached
   double orientation_degrees = 0;  // the same with the turn about the bone's own axis
   std::int64_t voxels = 0;         // of bone tissue that it was measured from
-  bool by_name = false;            // these voxels are named bones that belong to it; else bone tissue around the middle of its axis
+  bool by_name =
+      false;  // these voxels are named bones that belong to it; else bone tissue around the middle of its axis
 };
 
 struct PosedBones {
@@ -27,8 +28,9 @@ struct PosedBones {
   std::vector<LimbDirection> limbs;  // in the rig's order; those with fewer than 30 voxels of bone tissue are left out
 };
 
-// Needs the displacement and the rig. A voxel is wrong where no rig bone that its label may follow takes it within a voxel's longest
-// edge of where it went; residual_mm is the largest distance from the best rigid motion of all voxels of the bone.
+// Needs the displacement and the rig. A voxel is wrong where no rig bone that its label may follow takes it within a
+// voxel's longest edge of where it went; residual_mm is the largest distance from the best rigid motion of all voxels
+// of the bone.
 PosedBones measure_posed_bones(const JudgedPose& pose, const BoneMap& map = {});
 
 }  // namespace limber

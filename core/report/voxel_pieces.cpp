@@ -15,7 +15,8 @@ std::int64_t root_of(std::vector<std::int64_t>& parent, std::int64_t i) {
 }
 }  // namespace
 
-std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels, const glm::ivec3& reach) {
+std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels,
+                                                 const glm::ivec3& reach) {
   std::vector<std::int64_t> parent(voxels.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto join = [&](std::int64_t a, std::int64_t b) {
@@ -32,7 +33,8 @@ std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::ve
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const int y = v.y + rows[r][0], z = v.z + rows[r][1];
       if (y < 0 || z < 0 || y >= grid.size.y) continue;
-      const std::int64_t first = grid.index({std::max(v.x - reach.x, 0), y, z}), last = grid.index({std::min(v.x + reach.x, grid.size.x - 1), y, z});
+      const std::int64_t first = grid.index({std::max(v.x - reach.x, 0), y, z}),
+                         last = grid.index({std::min(v.x + reach.x, grid.size.x - 1), y, z});
       while (next[r] < voxels.size() && voxels[next[r]] < first) ++next[r];
       for (std::size_t k = next[r]; k < i && voxels[k] <= last; ++k) join(i, k);
     }
@@ -48,7 +50,8 @@ std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::ve
   return pieces;
 }
 
-glm::ivec3 middle_voxel(const Grid& grid, const std::vector<std::int64_t>& voxels, const std::vector<std::int64_t>& piece) {
+glm::ivec3 middle_voxel(const Grid& grid, const std::vector<std::int64_t>& voxels,
+                        const std::vector<std::int64_t>& piece) {
   glm::dvec3 middle(0);
   for (const std::int64_t i : piece) middle += glm::dvec3(voxel_of_index(grid, voxels[i]));
   middle /= double(piece.size());

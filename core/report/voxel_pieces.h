@@ -9,15 +9,17 @@
 
 namespace limber {
 
-// The pieces of voxels that meet by a face, an edge or a corner (26-connected), the largest first, of equal ones the first in the
-// list; each holds places in the list, ascending.
+// The pieces of voxels that meet by a face, an edge or a corner (26-connected), the largest first, of equal ones the
+// first in the list; each holds places in the list, ascending.
 //   voxels  indices into the grid, ascending, none twice
 //   reach   along each axis; with 2 or more, voxels also belong together across a gap of one voxel less than that
-std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels, const glm::ivec3& reach = glm::ivec3(1));
+std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels,
+                                                 const glm::ivec3& reach = glm::ivec3(1));
 
 // The voxel of a piece that lies nearest to the piece's middle.
 //   piece  places in `voxels`, at least one
-glm::ivec3 middle_voxel(const Grid& grid, const std::vector<std::int64_t>& voxels, const std::vector<std::int64_t>& piece);
+glm::ivec3 middle_voxel(const Grid& grid, const std::vector<std::int64_t>& voxels,
+                        const std::vector<std::int64_t>& piece);
 
 inline glm::ivec3 voxel_of_index(const Grid& grid, std::int64_t at) {
   const std::int64_t row = at / grid.size.x;

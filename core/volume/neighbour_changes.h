@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tells a grey image from labels by its voxels: a label reaches over several voxels, but the grey values of two neighbours are
-// mostly not the same.
+// Tells a grey image from labels by its voxels: a label reaches over several voxels, but the grey values of two
+// neighbours are mostly not the same.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,8 @@
 
 namespace limber {
 
-// Counts how often two neighbours along x, both tissue, differ. Voxels are added in storage order, in parts of any length.
+// Counts how often two neighbours along x, both tissue, differ. Voxels are added in storage order, in parts of any
+// length.
 class NeighbourChanges {
  public:
   explicit NeighbourChanges(int row_length) : row_length_(row_length) {}
@@ -27,8 +28,8 @@ class NeighbourChanges {
   }
   // Of those pairs, [0, 1]. Label volumes have a few percent, grey images most.
   double share() const { return pairs_ ? double(changes_) / double(pairs_) : 0; }
-  // Atlases of a body have up to some 500 labels and differ at a tenth of their faces; a CT has 250 values and more and differs at
-  // nine tenths. Few labels that lie finely mixed are no image.
+  // Atlases of a body have up to some 500 labels and differ at a tenth of their faces; a CT has 250 values and more and
+  // differs at nine tenths. Few labels that lie finely mixed are no image.
   //   labels  how many there are
   bool looks_grey(std::size_t labels) const { return labels >= kManyLabels && share() > kMostlyDiffers; }
 

@@ -26,19 +26,22 @@ std::string first_bytes(const Path& path) {
   return bytes;
 }
 
-// The header of a vector field as that of a volume with one number a voxel: its first axis, of three samples, becomes one of a
-// single sample, which the parser passes over.
+// The header of a vector field as that of a volume with one number a voxel: its first axis, of three samples, becomes
+// one of a single sample, which the parser passes over.
 VolumeHeader header_of_one_number(std::string bytes, const std::string& where) {
   if (!looks_like_nrrd_header(bytes)) throw Error("this is no displacement field", where, kWhatToDo);
   const std::size_t end = std::min(bytes.find("\n\n"), bytes.find("\n\r\n"));
   static const std::regex kSizes("(^|\n)sizes:[ \t]*3[ \t]");
   std::smatch match;
   const std::string lines = bytes.substr(0, end);
-  if (!std::regex_search(lines, match, kSizes)) throw Error("the file does not hold three numbers a voxel", where, kWhatToDo);
+  if (!std::regex_search(lines, match, kSizes))
+    throw Error("the file does not hold three numbers a voxel", where, kWhatToDo);
   bytes[static_cast<std::size_t>(match.position(0) + match.length(0)) - 2] = '1';
   VolumeHeader header = parse_nrrd_header(bytes, where);
-  if (header.voxel_type != VoxelType::Float32) throw Error("the numbers of the field are of type " + std::string(to_string(header.voxel_type)), where, kWhatToDo);
-  if (header.big_endian != (std::endian::native == std::endian::big)) throw Error("the field's bytes are in the order of another machine", where, kWhatToDo);
+  if (header.voxel_type != VoxelType::Float32)
+    throw Error("the numbers of the field are of type " + std::string(to_string(header.voxel_type)), where, kWhatToDo);
+  if (header.big_endian != (std::endian::native == std::endian::big))
+    throw Error("the field's bytes are in the order of another machine", where, kWhatToDo);
   return header;
 }
 }  // namespace
@@ -47,7 +50,8 @@ VectorVolume read_vector_volume(const Path& path) {
   VolumeHeader header = header_of_one_number(first_bytes(path), path.string());
   VectorVolume field{header.grid, {}, header.warnings};
   const auto count = static_cast<std::size_t>(field.grid.voxel_count());
-  if (header.grid.size.x > std::numeric_limits<int>::max() / 3 || double(count) * sizeof(glm::vec3) > 0.9 * double(available_memory()))
+  if (header.grid.size.x > std::numeric_limits<int>::max() / 3 ||
+      double(count) * sizeof(glm::vec3) > 0.9 * double(available_memory()))
     throw Error("the field does not fit in memory", path.string(), "use a coarser spacing or a larger machine");
   header.grid.size.x *= 3;  // of the numbers in the file
   VoxelStream stream(path, header);
@@ -60,7 +64,8 @@ VectorVolume read_vector_volume(const Path& path) {
       if (!std::isfinite(chunk[i].x) || !std::isfinite(chunk[i].y) || !std::isfinite(chunk[i].z))
         throw Error("the field has a displacement that is no number", path.string(), kWhatToDo);
     // Air is never written, and takes no memory.
-    if (std::any_of(chunk.begin(), chunk.begin() + std::ptrdiff_t(some), [](const glm::vec3& v) { return v != glm::vec3(0); }))
+    if (std::any_of(chunk.begin(), chunk.begin() + std::ptrdiff_t(some),
+                    [](const glm::vec3& v) { return v != glm::vec3(0); }))
       std::copy_n(chunk.begin(), some, field.voxels.begin() + first);
   }
   for (const std::string& warning : stream.finish()) field.warnings.push_back(warning);

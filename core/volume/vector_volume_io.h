@@ -17,7 +17,8 @@ struct VectorVolume {
   std::vector<std::string> warnings;
 };
 
-// Throws Error for what is no NRRD file of three floats a voxel, for missing or damaged data, and for values that are not finite.
+// Throws Error for what is no NRRD file of three floats a voxel, for missing or damaged data, and for values that are
+// not finite.
 VectorVolume read_vector_volume(const Path& path);
 
 }  // namespace limber

@@ -31,7 +31,8 @@ void cover_with_skin(LabelVolume& volume) {
     for (int y = 0; y < kSize.y; ++y)
       for (int x = 0; x < kSize.x; ++x) {
         bool open = false;
-        for (int k = 0; k < 27; ++k) open |= bare.at_or_air(glm::ivec3(x, y, z) + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)) == 0;
+        for (int k = 0; k < 27; ++k)
+          open |= bare.at_or_air(glm::ivec3(x, y, z) + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)) == 0;
         if (open && bare.at({x, y, z}) == kFigureMuscle) volume.at({x, y, z}) = kFigureSkin;
       }
 }
@@ -96,19 +97,27 @@ Figure block_figure() {
   fill(volume, {28, 6, 54}, {36, 12, 62}, kBladder);
   fill(volume, {24, 6, 68}, {36, 12, 78}, kLiver);
 
-  figure.tissues.tissues = {tissue(kFigureSkin, "Skin", TissueKind::Skin), tissue(kFigureMuscle, "Muscle", TissueKind::Muscle),
-                            tissue(kLeftFemur, "Left femur", TissueKind::Bone), tissue(kRightFemur, "Right femur", TissueKind::Bone),
-                            tissue(kLeftTibia, "Left tibia", TissueKind::Bone), tissue(kRightTibia, "Right tibia", TissueKind::Bone),
-                            tissue(kLeftHumerus, "Left humerus", TissueKind::Bone), tissue(kRightHumerus, "Right humerus", TissueKind::Bone),
-                            tissue(kLeftUlna, "Left ulna", TissueKind::Bone), tissue(kRightUlna, "Right ulna", TissueKind::Bone),
-                            tissue(kLeftHip, "Left hip bone", TissueKind::Bone), tissue(kRightHip, "Right hip bone", TissueKind::Bone),
-                            tissue(kVertebrae, "Thoracic vertebrae", TissueKind::Bone), tissue(kBladder, "Bladder", TissueKind::Organ),
+  figure.tissues.tissues = {tissue(kFigureSkin, "Skin", TissueKind::Skin),
+                            tissue(kFigureMuscle, "Muscle", TissueKind::Muscle),
+                            tissue(kLeftFemur, "Left femur", TissueKind::Bone),
+                            tissue(kRightFemur, "Right femur", TissueKind::Bone),
+                            tissue(kLeftTibia, "Left tibia", TissueKind::Bone),
+                            tissue(kRightTibia, "Right tibia", TissueKind::Bone),
+                            tissue(kLeftHumerus, "Left humerus", TissueKind::Bone),
+                            tissue(kRightHumerus, "Right humerus", TissueKind::Bone),
+                            tissue(kLeftUlna, "Left ulna", TissueKind::Bone),
+                            tissue(kRightUlna, "Right ulna", TissueKind::Bone),
+                            tissue(kLeftHip, "Left hip bone", TissueKind::Bone),
+                            tissue(kRightHip, "Right hip bone", TissueKind::Bone),
+                            tissue(kVertebrae, "Thoracic vertebrae", TissueKind::Bone),
+                            tissue(kBladder, "Bladder", TissueKind::Organ),
                             tissue(kLiver, "Liver", TissueKind::Organ)};
-  figure.armature.bones = {bone("Pelvis", -1, {32, 12, 48}, {32, 14, 56}), bone("Spine", 0, {32, 14, 56}, {32, 14, 90}),
-                           bone("LeftUpperArm", 1, {53, 12, 88}, {53, 12, 68}), bone("LeftForearm", 2, {53, 12, 68}, {53, 12, 48}),
-                           bone("RightUpperArm", 1, {11, 12, 88}, {11, 12, 68}), bone("RightForearm", 4, {11, 12, 68}, {11, 12, 48}),
-                           bone("LeftThigh", 0, {38, 12, 45}, {38, 12, 23}), bone("LeftShank", 6, {38, 12, 23}, {38, 12, 5}),
-                           bone("RightThigh", 0, {26, 12, 45}, {26, 12, 23}), bone("RightShank", 8, {26, 12, 23}, {26, 12, 5})};
+  figure.armature.bones = {
+      bone("Pelvis", -1, {32, 12, 48}, {32, 14, 56}),       bone("Spine", 0, {32, 14, 56}, {32, 14, 90}),
+      bone("LeftUpperArm", 1, {53, 12, 88}, {53, 12, 68}),  bone("LeftForearm", 2, {53, 12, 68}, {53, 12, 48}),
+      bone("RightUpperArm", 1, {11, 12, 88}, {11, 12, 68}), bone("RightForearm", 4, {11, 12, 68}, {11, 12, 48}),
+      bone("LeftThigh", 0, {38, 12, 45}, {38, 12, 23}),     bone("LeftShank", 6, {38, 12, 23}, {38, 12, 5}),
+      bone("RightThigh", 0, {26, 12, 45}, {26, 12, 23}),    bone("RightShank", 8, {26, 12, 23}, {26, 12, 5})};
   for (const int b : {2, 3, 4, 5, 6, 7, 8, 9}) hinge(figure.armature.bones[b]);
   return figure;
 }
@@ -117,7 +126,9 @@ Figure block_arm() {
   Figure arm = block_figure();
   for (std::int64_t at = 0; at < std::ssize(arm.volume.voxels); ++at)
     if (at % kSize.x < 48) arm.volume.voxels[at] = 0;
-  std::erase_if(arm.tissues.tissues, [](const Tissue& one) { return is_bone(one.kind) && one.label != kLeftHumerus && one.label != kLeftUlna; });
+  std::erase_if(arm.tissues.tissues, [](const Tissue& one) {
+    return is_bone(one.kind) && one.label != kLeftHumerus && one.label != kLeftUlna;
+  });
   std::erase_if(arm.tissues.tissues, [](const Tissue& one) { return one.kind == TissueKind::Organ; });
   arm.armature.bones = {arm.armature.bones[2], arm.armature.bones[3]};
   arm.armature.bones[0].parent = -1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A figure of blocks with arms, legs, named bones, organs and skin, and a rig that fits it; built in code, checkable by hand.
+// A figure of blocks with arms, legs, named bones, organs and skin, and a rig that fits it; built in code, checkable by
+// hand.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +13,21 @@
 namespace limber::test {
 
 enum FigureLabel : Label {
-  kFigureSkin = 1, kFigureMuscle, kLeftFemur, kRightFemur, kLeftTibia, kRightTibia, kLeftHumerus, kRightHumerus, kLeftUlna, kRightUlna, kLeftHip, kRightHip, kVertebrae, kBladder, kLiver,
+  kFigureSkin = 1,
+  kFigureMuscle,
+  kLeftFemur,
+  kRightFemur,
+  kLeftTibia,
+  kRightTibia,
+  kLeftHumerus,
+  kRightHumerus,
+  kLeftUlna,
+  kRightUlna,
+  kLeftHip,
+  kRightHip,
+  kVertebrae,
+  kBladder,
+  kLiver,
 };
 
 struct Figure {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Wrong inputs and wrong results, planted one by one: each must be caught with a sentence and, with --strict, by exit code 5. And
-// good inputs in small poses, of which none may be called wrong.
+// Wrong inputs and wrong results, planted one by one: each must be caught with a sentence and, with --strict, by exit
+// code 5. And good inputs in small poses, of which none may be called wrong.
 #include <fstream>
 #include <functional>
 #include <map>
@@ -35,7 +35,10 @@ std::vector<std::string> operator+(std::vector<std::string> a, const std::vector
 }
 
 ProgramRun resample(const TemporaryFolder& folder, const std::vector<std::string>& more) {
-  return run_limber(std::vector<std::string>{"resample"} + body_arguments(folder) + std::vector<std::string>{"--method", "dqs", "--strict", "-o", folder / "posed.nrrd", "--report", folder / "report.json"} + more);
+  return run_limber(std::vector<std::string>{"resample"} + body_arguments(folder) +
+                    std::vector<std::string>{"--method", "dqs", "--strict", "-o", folder / "posed.nrrd", "--report",
+                                             folder / "report.json"} +
+                    more);
 }
 
 // Caught: exit code 5, the sentence on stderr, and both outputs written.
@@ -49,15 +52,18 @@ void check_caught(const ProgramRun& run, const TemporaryFolder& folder, const ch
 }
 
 // Weights of the figure, changed voxel by voxel.
-void change_weights(const Figure& figure, const TemporaryFolder& folder, const std::function<void(const glm::ivec3& voxel, Label label, Influence& influence)>& change) {
-  const auto run = run_limber(std::vector<std::string>{"weights"} + body_arguments(folder) + std::vector<std::string>{"-o", folder / "weights.nrrd"});
+void change_weights(const Figure& figure, const TemporaryFolder& folder,
+                    const std::function<void(const glm::ivec3& voxel, Label label, Influence& influence)>& change) {
+  const auto run = run_limber(std::vector<std::string>{"weights"} + body_arguments(folder) +
+                              std::vector<std::string>{"-o", folder / "weights.nrrd"});
   REQUIRE_MESSAGE(run.exit_code == 0, run.err);
   const TissueVoxels tissue(figure.volume);
   SkinWeights weights = read_weights(folder / "weights.nrrd", figure.volume, tissue, figure.armature).weights;
   for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
     SkinWeights::Influences influences = weights.chunk(brick);
     auto influence = influences.begin();
-    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) { change(v, figure.volume.at(v), *influence++); });
+    tissue.for_each(brick, brick + 1,
+                    [&](std::int64_t, const glm::ivec3& v) { change(v, figure.volume.at(v), *influence++); });
     weights.set_chunk(brick, influences);
   }
   write_weights(weights, figure.volume, tissue, folder / "weights.nrrd");
@@ -75,7 +81,9 @@ struct OwnPose {
   LabelVolume posed;
   ZeroedVector<glm::vec3> displacement;
 };
-OwnPose posed_by(const LabelVolume& rest, const std::function<glm::dvec3(const glm::ivec3& voxel, const glm::dvec3& place)>& map, const glm::ivec3& points) {
+OwnPose posed_by(const LabelVolume& rest,
+                 const std::function<glm::dvec3(const glm::ivec3& voxel, const glm::dvec3& place)>& map,
+                 const glm::ivec3& points) {
   OwnPose own{{rest.grid, {}}, {}};
   own.posed.grid.size += glm::ivec3(80, 0, 0);
   own.posed.grid.origin.x -= 40 * rest.grid.spacing.x;
@@ -109,15 +117,20 @@ TEST_CASE("planted faults: weights that swap two bones are caught by the bones t
   const TemporaryFolder folder;
   const Figure figure = block_figure();
   write_figure(figure, folder.path());
-  const auto thigh = static_cast<std::uint16_t>(bone(figure, "LeftThigh")), shank = static_cast<std::uint16_t>(bone(figure, "LeftShank"));
+  const auto thigh = static_cast<std::uint16_t>(bone(figure, "LeftThigh")),
+             shank = static_cast<std::uint16_t>(bone(figure, "LeftShank"));
   change_weights(figure, folder, [&](const glm::ivec3&, Label, Influence& influence) {
     for (int k = 0; k < 4; ++k)
-      if (influence.weight[k]) influence.bone[k] = influence.bone[k] == thigh ? shank : influence.bone[k] == shank ? thigh : influence.bone[k];
+      if (influence.weight[k])
+        influence.bone[k] = influence.bone[k] == thigh ? shank : influence.bone[k] == shank ? thigh : influence.bone[k];
   });
-  check_caught(resample(folder, {"--weights", folder / "weights.nrrd", "--flex", "LeftShank=40"}), folder, "went with LeftShank, but belong to LeftThigh");
+  check_caught(resample(folder, {"--weights", folder / "weights.nrrd", "--flex", "LeftShank=40"}), folder,
+               "went with LeftShank, but belong to LeftThigh");
 }
 
-TEST_CASE("planted faults: weights that tear a bone in two are caught, and so are those that give half a label to another bone") {
+TEST_CASE(
+    "planted faults: weights that tear a bone in two are caught, and so are those that give half a label to another "
+    "bone") {
   const TemporaryFolder folder;
   const Figure figure = block_figure();
   write_figure(figure, folder.path());
@@ -135,7 +148,8 @@ TEST_CASE("planted faults: half of a bone under the label of the next one is cau
   fill_where(figure.volume, {36, 10, 24}, {40, 14, 35}, kLeftFemur, kLeftTibia);
   write_figure(figure, folder.path());
   check_caught(resample(folder, {}), folder, "of the label \"Left tibia\" lie along the middle of LeftThigh");
-  const auto weights = run_limber(std::vector<std::string>{"weights"} + body_arguments(folder) + std::vector<std::string>{"--strict", "-o", folder / "w.nrrd"});
+  const auto weights = run_limber(std::vector<std::string>{"weights"} + body_arguments(folder) +
+                                  std::vector<std::string>{"--strict", "-o", folder / "w.nrrd"});
   CHECK(weights.exit_code == 5);
   CHECK(std::filesystem::exists(folder / "w.nrrd"));
 }
@@ -145,9 +159,11 @@ TEST_CASE("planted faults: a rig that is mirrored, in RAS axes, or beside the bo
     std::function<glm::dvec3(const glm::dvec3&)> move;
     const char* sentence;
   };
-  const Case kCases[] = {{[](const glm::dvec3& p) { return p * glm::dvec3(-1, 1, 1); }, "left and right are swapped between rig and labels"},
-                         {[](const glm::dvec3& p) { return (p + glm::dvec3(0, 100, 0)) * glm::dvec3(-1, -1, 1); }, "RAS axes"},
-                         {[](const glm::dvec3& p) { return p + glm::dvec3(0, 0, 700); }, "the rig lies outside the body"}};
+  const Case kCases[] = {
+      {[](const glm::dvec3& p) { return p * glm::dvec3(-1, 1, 1); },
+       "left and right are swapped between rig and labels"},
+      {[](const glm::dvec3& p) { return (p + glm::dvec3(0, 100, 0)) * glm::dvec3(-1, -1, 1); }, "RAS axes"},
+      {[](const glm::dvec3& p) { return p + glm::dvec3(0, 0, 700); }, "the rig lies outside the body"}};
   for (const Case& one : kCases) {
     const TemporaryFolder folder;
     Figure figure = block_figure();
@@ -182,8 +198,10 @@ TEST_CASE("planted faults: labels whose sides are swapped are caught") {
   const TemporaryFolder folder;
   Figure figure = block_figure();
   for (Tissue& tissue : figure.tissues.tissues) {
-    if (tissue.name.starts_with("Left")) tissue.name.replace(0, 4, "Right");
-    else if (tissue.name.starts_with("Right")) tissue.name.replace(0, 5, "Left");
+    if (tissue.name.starts_with("Left"))
+      tissue.name.replace(0, 4, "Right");
+    else if (tissue.name.starts_with("Right"))
+      tissue.name.replace(0, 5, "Left");
   }
   write_figure(figure, folder.path());
   check_caught(resample(folder, {}), folder, "left and right are swapped");
@@ -203,7 +221,9 @@ TEST_CASE("planted faults: a grey image in place of labels is caught") {
   for (Label& label : figure.volume.voxels)
     if (label) label = static_cast<Label>(1 + random() % 300);
   write_volume(figure.volume, folder / "grey.nrrd", greys);
-  const auto run = run_limber({"resample", folder / "grey.nrrd", "--rig", folder / "rig.json", "--bones", "7", "--method", "lbs", "--strict", "-o", folder / "posed.nrrd", "--report", folder / "report.json"});
+  const auto run =
+      run_limber({"resample", folder / "grey.nrrd", "--rig", folder / "rig.json", "--bones", "7", "--method", "lbs",
+                  "--strict", "-o", folder / "posed.nrrd", "--report", folder / "report.json"});
   check_caught(run, folder, "this looks like a grey image");
 }
 
@@ -215,17 +235,22 @@ TEST_CASE("planted faults: an organ that vanished and a muscle that fell apart a
   fill_where(posed.volume, {0, 0, 0}, posed.volume.grid.size, kBladder, kFigureMuscle);
   fill_where(posed.volume, {0, 0, 15}, {64, 24, 17}, kLeftTibia, kFigureMuscle);
   write_volume(posed.volume, folder / "posed.nrrd", posed.tissues);
-  const std::vector<std::string> compare{"report", folder / "volume.nrrd", folder / "posed.nrrd", "--tissues", folder / "tissues.json"};
+  const std::vector<std::string> compare{"report", folder / "volume.nrrd", folder / "posed.nrrd", "--tissues",
+                                         folder / "tissues.json"};
   const auto run = run_limber(compare + std::vector<std::string>{"--strict", "--json"});
   CHECK(run.exit_code == 5);
   CHECK(run.err.find("\"Bladder\" is lost: nothing of its volume is left") != std::string::npos);
   CHECK(run.err.find("\"Left tibia\" fell apart") != std::string::npos);
   CHECK(json::parse(run.out)["gates"].size() == 20);
   CHECK(run_limber(compare).exit_code == 0);
-  CHECK(run_limber({"report", folder / "volume.nrrd", folder / "volume.nrrd", "--tissues", folder / "tissues.json", "--strict"}).exit_code == 0);
+  CHECK(run_limber({"report", folder / "volume.nrrd", folder / "volume.nrrd", "--tissues", folder / "tissues.json",
+                    "--strict"})
+            .exit_code == 0);
 }
 
-TEST_CASE("planted faults: a hand that grew to the hip is caught by the band that a raised arm pulls out, by a field of another program") {
+TEST_CASE(
+    "planted faults: a hand that grew to the hip is caught by the band that a raised arm pulls out, by a field of "
+    "another program") {
   const TemporaryFolder folder;
   Figure figure = block_figure();
   fill_where(figure.volume, {44, 7, 46}, {48, 17, 54}, 0, kFigureMuscle);
@@ -235,20 +260,26 @@ TEST_CASE("planted faults: a hand that grew to the hip is caught by the band tha
   const RigidTransform arm = posed_from_rest(figure.armature, pose)[2];
   std::ofstream(folder / "pose.json") << R"({"bones": {"LeftUpperArm": {"axis": [0, 1, 0], "degrees": -25}}})";
   // From the trunk to the arm the map goes over within the shoulder above, and within the weld below.
-  const auto posed = posed_by(figure.volume, [&](const glm::ivec3& v, const glm::dvec3& p) {
-    if (v.x < 44) return p;
-    const double share = glm::clamp((p.x - figure.volume.grid.origin.x) / 4 - 43.5, 0.0, 4.0) / 4;
-    return glm::mix(p, arm * p, share);
-  }, {24, 3, 3});
+  const auto posed = posed_by(figure.volume,
+                              [&](const glm::ivec3& v, const glm::dvec3& p) {
+                                if (v.x < 44) return p;
+                                const double share =
+                                    glm::clamp((p.x - figure.volume.grid.origin.x) / 4 - 43.5, 0.0, 4.0) / 4;
+                                return glm::mix(p, arm * p, share);
+                              },
+                              {24, 3, 3});
   write_volume(posed.posed, folder / "posed.nrrd", figure.tissues);
   write_vector_volume(posed.posed.grid, {posed.displacement.data(), posed.displacement.size()}, folder / "field.nrrd");
-  const std::vector<std::string> with_field{"--field", folder / "field.nrrd", "--rig", folder / "rig.json", "--pose", folder / "pose.json", "--tissues", folder / "tissues.json"};
-  const auto run = run_limber(std::vector<std::string>{"report", folder / "volume.nrrd", folder / "posed.nrrd", "--strict"} + with_field);
+  const std::vector<std::string> with_field{"--field", folder / "field.nrrd", "--rig",     folder / "rig.json",
+                                            "--pose",  folder / "pose.json",  "--tissues", folder / "tissues.json"};
+  const auto run = run_limber(
+      std::vector<std::string>{"report", folder / "volume.nrrd", folder / "posed.nrrd", "--strict"} + with_field);
   INFO(run.err, run.out);
   CHECK(run.exit_code == 5);
   CHECK(run.err.find("A band of ") != std::string::npos);
   CHECK(run.err.find("part what touches there at rest") != std::string::npos);
-  CHECK(run.err.find("between LeftForearm and LeftThigh") != std::string::npos);  // the thigh stays with the pelvis, and begins there
+  CHECK(run.err.find("between LeftForearm and LeftThigh") !=
+        std::string::npos);  // the thigh stays with the pelvis, and begins there
   CHECK(run.out.find("passed      Each of 11 named bones moved as one") != std::string::npos);
 }
 
@@ -257,7 +288,8 @@ TEST_CASE("strict: a job ends with exit code 5 as the command does, and without 
   Figure figure = block_figure();
   rewrite_rig(figure, [](const glm::dvec3& p) { return p * glm::dvec3(-1, 1, 1); });
   write_figure(figure, folder.path());
-  const char* kJob = R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json", "method": "lbs", "strict": STRICT, "output": "posed.nrrd", "report": "report.json"})";
+  const char* kJob =
+      R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json", "method": "lbs", "strict": STRICT, "output": "posed.nrrd", "report": "report.json"})";
   for (const bool strict : {true, false}) {
     std::string job = kJob;
     std::ofstream(folder / "job.json") << job.replace(job.find("STRICT"), 6, strict ? "true" : "false");
@@ -273,7 +305,8 @@ TEST_CASE("strict: gates that nobody could check say so, and never pass") {
   const TemporaryFolder folder;
   const Figure figure = block_figure();
   write_figure(figure, folder.path());
-  const auto run = run_limber({"report", folder / "volume.nrrd", folder / "volume.nrrd", "--tissues", folder / "tissues.json", "--json"});
+  const auto run = run_limber(
+      {"report", folder / "volume.nrrd", folder / "volume.nrrd", "--tissues", folder / "tissues.json", "--json"});
   REQUIRE(run.exit_code == 0);
   for (const json& gate : json::parse(run.out)["gates"])
     for (const char* id : {"inputs", "whole", "follows", "directions", "exposed", "bands"})
@@ -289,21 +322,38 @@ TEST_CASE("good cases: bodies built in code, at rest and in small poses, pass ev
     std::vector<std::string> flex;
     std::string method;
   };
-  const std::vector<Case> kCases = {
-      {"figure", {}, "lbs"}, {"figure", {}, "dqs"}, {"figure", {"LeftForearm=15"}, "dqs"}, {"figure", {"LeftForearm=-15", "RightForearm=-15"}, "lbs"},
-      {"figure", {"LeftShank=15"}, "dqs"}, {"figure", {"LeftUpperArm=10"}, "dqs"}, {"figure", {"RightThigh=-10"}, "dqs"}, {"block arm", {}, "dqs"},
-      {"block arm", {"LeftForearm=20"}, "dqs"}, {"block arm", {"LeftForearm=-20"}, "lbs"}, {"arm", {}, "dqs"}, {"arm", {"Forearm=20"}, "dqs"}, {"arm", {"Forearm=20"}, "lbs"},
-      {"arm", {"Forearm=40", "IndexProximal=20"}, "dqs"}, {"body", {}, "dqs"}, {"body", {"LeftForearm=30"}, "dqs"}};
+  const std::vector<Case> kCases = {{"figure", {}, "lbs"},
+                                    {"figure", {}, "dqs"},
+                                    {"figure", {"LeftForearm=15"}, "dqs"},
+                                    {"figure", {"LeftForearm=-15", "RightForearm=-15"}, "lbs"},
+                                    {"figure", {"LeftShank=15"}, "dqs"},
+                                    {"figure", {"LeftUpperArm=10"}, "dqs"},
+                                    {"figure", {"RightThigh=-10"}, "dqs"},
+                                    {"block arm", {}, "dqs"},
+                                    {"block arm", {"LeftForearm=20"}, "dqs"},
+                                    {"block arm", {"LeftForearm=-20"}, "lbs"},
+                                    {"arm", {}, "dqs"},
+                                    {"arm", {"Forearm=20"}, "dqs"},
+                                    {"arm", {"Forearm=20"}, "lbs"},
+                                    {"arm", {"Forearm=40", "IndexProximal=20"}, "dqs"},
+                                    {"body", {}, "dqs"},
+                                    {"body", {"LeftForearm=30"}, "dqs"}};
   std::map<std::string, std::unique_ptr<TemporaryFolder>> bodies;
   for (const Case& one : kCases) {
     auto& folder = bodies[one.body];
     if (!folder) {
       folder = std::make_unique<TemporaryFolder>();
-      if (one.body == "figure") write_figure(block_figure(), folder->path());
-      else if (one.body == "block arm") write_figure(block_arm(), folder->path());
-      else REQUIRE(run_limber({"phantom", one.body, "--spacing", one.body == "arm" ? "4" : "6", "-o", folder->path()}).exit_code == 0);
+      if (one.body == "figure")
+        write_figure(block_figure(), folder->path());
+      else if (one.body == "block arm")
+        write_figure(block_arm(), folder->path());
+      else
+        REQUIRE(run_limber({"phantom", one.body, "--spacing", one.body == "arm" ? "4" : "6", "-o", folder->path()})
+                    .exit_code == 0);
     }
-    std::vector<std::string> arguments = std::vector<std::string>{"resample"} + body_arguments(*folder) + std::vector<std::string>{"--method", one.method, "--strict", "-o", *folder / "posed.nrrd"};
+    std::vector<std::string> arguments =
+        std::vector<std::string>{"resample"} + body_arguments(*folder) +
+        std::vector<std::string>{"--method", one.method, "--strict", "-o", *folder / "posed.nrrd"};
     std::string name = one.body + " " + one.method;
     for (const std::string& flex : one.flex) arguments.insert(arguments.end(), {"--flex", flex}), name += " " + flex;
     const auto run = run_limber(arguments);
@@ -318,15 +368,20 @@ TEST_CASE("good cases: real bodies at rest and with bent elbows pass every gate 
     const char *volume, *rig, *tissues;
     std::vector<std::string> flex;
   };
-  const Case kCases[] = {{"bp3d/body_3mm_structures.nii.gz", "bp3d/body.armature.json", "bp3d/body_structures.labels.json", {}},
-                         {"bp3d/body_3mm_structures.nii.gz", "bp3d/body.armature.json", "bp3d/body_structures.labels.json", {"LeftForearm=60", "RightForearm=60"}},
-                         {"makehuman/body_4mm.nrrd", "makehuman/body.armature.json", "", {"LeftForeArm=30"}},
-                         {"bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk", "", {}},
-                         {"bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk", "", {"Forearm=30"}}};
+  const Case kCases[] = {
+      {"bp3d/body_3mm_structures.nii.gz", "bp3d/body.armature.json", "bp3d/body_structures.labels.json", {}},
+      {"bp3d/body_3mm_structures.nii.gz",
+       "bp3d/body.armature.json",
+       "bp3d/body_structures.labels.json",
+       {"LeftForearm=60", "RightForearm=60"}},
+      {"makehuman/body_4mm.nrrd", "makehuman/body.armature.json", "", {"LeftForeArm=30"}},
+      {"bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk", "", {}},
+      {"bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk", "", {"Forearm=30"}}};
   const TemporaryFolder folder;
   for (const Case& one : kCases) {
     const auto file = [](const char* name) { return (shared_path("data") / name).string(); };
-    std::vector<std::string> arguments{"resample", file(one.volume), "--rig", file(one.rig), "--method", "dqs", "--strict", "-o", folder / "posed.nrrd"};
+    std::vector<std::string> arguments{"resample", file(one.volume), "--rig", file(one.rig),        "--method",
+                                       "dqs",      "--strict",       "-o",    folder / "posed.nrrd"};
     if (*one.tissues) arguments.insert(arguments.end(), {"--tissues", file(one.tissues)});
     for (const std::string& flex : one.flex) arguments.insert(arguments.end(), {"--flex", flex});
     const auto run = run_limber(arguments);

@@ -14,7 +14,8 @@ using namespace limber;
 using namespace limber::test;
 
 namespace {
-// A bar of muscle of which a part between two heights is pulled out along z by a factor; the map is known in closed form.
+// A bar of muscle of which a part between two heights is pulled out along z by a factor; the map is known in closed
+// form.
 struct PulledBar {
   LabelVolume rest, posed;
   ZeroedVector<glm::vec3> displacement;
@@ -41,7 +42,9 @@ PulledBar pulled_bar(double begin, double length, double factor, const glm::dvec
     for (int x = 3; x < 13; ++x) {
       for (int z = 2; z < 98; ++z) bar.rest.at({x, y, z}) = kMuscle;
       for (int z = 2; 2 * z < 196 + lift; ++z) {
-        const double at = 2 * z, rest = at < begin ? at : at < begin + length * factor ? begin + (at - begin) / factor : at - lift;
+        const double at = 2 * z, rest = at < begin                     ? at
+                                        : at < begin + length * factor ? begin + (at - begin) / factor
+                                                                       : at - lift;
         bar.posed.at({x, y, z}) = kMuscle;
         bar.displacement[bar.posed.grid.index({x, y, z})] = glm::vec3(0, 0, at - rest);
       }
@@ -73,11 +76,13 @@ TEST_CASE("bands: the largest stretch is one over the smallest singular value") 
   CHECK(largest_stretch(glm::dmat3(0)) > 1e100);
 }
 
-TEST_CASE("bands: tissue pulled out threefold far from the joint is a band between the two bones, of its size and place") {
+TEST_CASE(
+    "bands: tissue pulled out threefold far from the joint is a band between the two bones, of its size and place") {
   const auto bands = bands_of(pulled_bar(140, 16, 3, {15, 15, 20}));
   REQUIRE(bands.size() == 1);
   CHECK(bands[0].stretch == doctest::Approx(3).epsilon(0.01));
-  CHECK(std::abs(bands[0].voxels - 24 * 100) <= 2 * 100);  // 48 mm of 2 mm slices of 10 x 10; at its ends half the steps count
+  CHECK(std::abs(bands[0].voxels - 24 * 100) <=
+        2 * 100);  // 48 mm of 2 mm slices of 10 x 10; at its ends half the steps count
   CHECK(bands[0].mm3 == doctest::Approx(8.0 * double(bands[0].voxels)));
   CHECK(bands[0].place.z == doctest::Approx(164).epsilon(0.03));
   CHECK(std::set<std::string>{bands[0].between[0], bands[0].between[1]} == std::set<std::string>{"Lower", "Upper"});
@@ -92,7 +97,8 @@ TEST_CASE("bands: the same pull around the joint that makes it is none, and neit
 TEST_CASE("bands: two skins that met in the pose are no band, however far apart they lay at rest") {
   PulledBar bar = pulled_bar(140, 16, 1, {15, 15, 20});
   for (std::int64_t at = 0; at < std::ssize(bar.posed.voxels); ++at)
-    if (at / 256 >= 60) bar.displacement[at].x += 40;  // what lies above came from elsewhere, with a jump between two slices
+    if (at / 256 >= 60)
+      bar.displacement[at].x += 40;  // what lies above came from elsewhere, with a jump between two slices
   bar.motions[1].translation.x = 40;
   CHECK(bands_of(bar).empty());
 }

@@ -20,7 +20,8 @@ TissueTable skin_flesh_bone() {
 
 // A block of flesh with a skin of one voxel and a bone in its middle.
 LabelVolume block(const glm::dvec3& spacing) {
-  LabelVolume volume{{.size = {24, 20, 22}, .spacing = spacing, .origin = {5, -7, 30}}, ZeroedVector<Label>(24 * 20 * 22)};
+  LabelVolume volume{{.size = {24, 20, 22}, .spacing = spacing, .origin = {5, -7, 30}},
+                     ZeroedVector<Label>(24 * 20 * 22)};
   for (int z = 3; z < 19; ++z)
     for (int y = 2; y < 18; ++y)
       for (int x = 4; x < 21; ++x) {
@@ -80,7 +81,8 @@ TEST_CASE("exposure: a body at rest exposes nothing and closes no air in") {
   CHECK_FALSE(largest_air_pocket(pose, air));
 }
 
-TEST_CASE("exposure: a notch cut into a body bares what lay deep, voxel by voxel as the distance to the outside air says") {
+TEST_CASE(
+    "exposure: a notch cut into a body bares what lay deep, voxel by voxel as the distance to the outside air says") {
   const TissueTable tissues = skin_flesh_bone();
   for (const glm::dvec3 spacing : {glm::dvec3(2), glm::dvec3(2, 2, 5)}) {
     const LabelVolume rest = block(spacing);
@@ -107,7 +109,8 @@ TEST_CASE("exposure: a notch cut into a body bares what lay deep, voxel by voxel
               n[axis] += side;
               open |= now[posed.grid.index(n)] == 0;
             }
-          if (label && label != kSkin && open && deep[rest.grid.index({x, y, z})] > limit) ++expected, ++by_label[label];
+          if (label && label != kSkin && open && deep[rest.grid.index({x, y, z})] > limit)
+            ++expected, ++by_label[label];
         }
     CHECK(expected > 20);
     CHECK(exposure.voxels == expected);
@@ -124,7 +127,8 @@ TEST_CASE("exposure: where tissue lay at rest is read from the displacement, on 
   for (const bool from_the_middle : {false, true}) {
     LabelVolume posed{{.size = {6, 6, 6}, .spacing = glm::dvec3(2)}, ZeroedVector<Label>(216)};
     ZeroedVector<glm::vec3> moved(216);
-    const glm::dvec3 source = world_from_voxel(rest.grid) * (from_the_middle ? glm::dvec3(8, 8, 8) : glm::dvec3(5, 8, 8));
+    const glm::dvec3 source =
+        world_from_voxel(rest.grid) * (from_the_middle ? glm::dvec3(8, 8, 8) : glm::dvec3(5, 8, 8));
     for (const glm::ivec3 v : {glm::ivec3(2, 2, 2), glm::ivec3(3, 2, 2)}) {
       posed.at(v) = kFlesh;
       moved[posed.grid.index(v)] = world_from_voxel(posed.grid) * glm::dvec3(v) - source;
@@ -138,7 +142,9 @@ TEST_CASE("exposure: the largest pocket of air is found, and air that a channel 
   const TissueTable tissues = skin_flesh_bone();
   const LabelVolume rest = block(glm::dvec3(2));
   LabelVolume posed = rest;
-  for (const glm::ivec3 v : {glm::ivec3(7, 5, 5), glm::ivec3(15, 13, 15), glm::ivec3(16, 13, 15), glm::ivec3(17, 13, 15)}) posed.at(v) = 0;
+  for (const glm::ivec3 v :
+       {glm::ivec3(7, 5, 5), glm::ivec3(15, 13, 15), glm::ivec3(16, 13, 15), glm::ivec3(17, 13, 15)})
+    posed.at(v) = 0;
   for (int x = 4; x < 9; ++x) posed.at({x, 14, 7}) = 0;
   const JudgedPose pose{rest, posed, tissues};
   const auto pocket = largest_air_pocket(pose, air_around(pose));

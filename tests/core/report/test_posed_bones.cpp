@@ -12,7 +12,8 @@ using namespace limber;
 using namespace limber::test;
 
 namespace {
-// The figure's bones in a pose, each posed voxel read from where its own motion says; what moves with what is the test's to say.
+// The figure's bones in a pose, each posed voxel read from where its own motion says; what moves with what is the
+// test's to say.
 struct PosedFigure {
   Figure figure = block_figure();
   LabelVolume posed;
@@ -28,10 +29,12 @@ struct PosedFigure {
 
 using MovesWith = std::function<int(Label label, const glm::ivec3& rest)>;
 
-PosedFigure pose_figure(const std::vector<std::pair<const char*, double>>& degrees_about_x, const MovesWith& moves_with) {
+PosedFigure pose_figure(const std::vector<std::pair<const char*, double>>& degrees_about_x,
+                        const MovesWith& moves_with) {
   PosedFigure body;
   Pose pose = rest_pose(body.figure.armature);
-  for (const auto& [bone, degrees] : degrees_about_x) pose.rotation[*body.figure.armature.find(bone)] = glm::angleAxis(glm::radians(degrees), glm::dvec3(1, 0, 0));
+  for (const auto& [bone, degrees] : degrees_about_x)
+    pose.rotation[*body.figure.armature.find(bone)] = glm::angleAxis(glm::radians(degrees), glm::dvec3(1, 0, 0));
   body.asked = posed_from_rest(body.figure.armature, pose);
   const Grid& rest = body.figure.volume.grid;
   body.posed.grid = rest;
@@ -79,7 +82,8 @@ const WholeBone& of(const PosedBones& bones, Label label) {
 }  // namespace
 
 TEST_CASE("posed bones: bones that went with their own rig bones are whole, and each limb points where it was asked") {
-  const PosedFigure body = pose_figure({{"LeftThigh", -60}, {"LeftShank", 60}}, own_bone);  // the shank hangs as at rest
+  const PosedFigure body =
+      pose_figure({{"LeftThigh", -60}, {"LeftShank", 60}}, own_bone);  // the shank hangs as at rest
   const PosedBones bones = measure_posed_bones(body.judged());
   CHECK(bones.whole.size() == 11);
   for (const WholeBone& one : bones.whole) {
@@ -98,7 +102,9 @@ TEST_CASE("posed bones: bones that went with their own rig bones are whole, and 
 }
 
 TEST_CASE("posed bones: a bone that went whole with another rig bone is rigid, and wrong to the last voxel") {
-  const PosedFigure body = pose_figure({{"LeftThigh", -60}}, [](Label label, const glm::ivec3& v) { return label == kLeftHip ? 6 : own_bone(label, v); });
+  const PosedFigure body = pose_figure({{"LeftThigh", -60}}, [](Label label, const glm::ivec3& v) {
+    return label == kLeftHip ? 6 : own_bone(label, v);
+  });
   const PosedBones bones = measure_posed_bones(body.judged());
   const WholeBone& hip = of(bones, kLeftHip);
   CHECK(hip.residual_mm < 1e-3);
@@ -109,7 +115,9 @@ TEST_CASE("posed bones: a bone that went whole with another rig bone is rigid, a
 }
 
 TEST_CASE("posed bones: a bone cut in two is as far from one motion as its halves went apart") {
-  const PosedFigure body = pose_figure({{"LeftShank", 90}}, [](Label label, const glm::ivec3& v) { return label == kLeftFemur && v.z < 34 ? 7 : own_bone(label, v); });
+  const PosedFigure body = pose_figure({{"LeftShank", 90}}, [](Label label, const glm::ivec3& v) {
+    return label == kLeftFemur && v.z < 34 ? 7 : own_bone(label, v);
+  });
   const WholeBone femur = of(measure_posed_bones(body.judged()), kLeftFemur);
   CHECK(femur.residual_mm > 15);
   CHECK(femur.went_with == "LeftShank");
@@ -141,7 +149,9 @@ TEST_CASE("posed bones: without names the bone around the middle of a limb tells
   CHECK(bones.limbs[0].direction_degrees < 1e-3);
 
   // The forearm's bone stayed behind.
-  PosedFigure left = pose_figure({{"RightForearm", -40}}, [](Label label, const glm::ivec3& v) { return label == kRightUlna ? 4 : own_bone(label, v); });
+  PosedFigure left = pose_figure({{"RightForearm", -40}}, [](Label label, const glm::ivec3& v) {
+    return label == kRightUlna ? 4 : own_bone(label, v);
+  });
   left.figure.tissues = body.figure.tissues;
   CHECK(measure_posed_bones(left.judged()).limbs.at(0).direction_degrees == doctest::Approx(40).epsilon(0.001));
 }

@@ -10,7 +10,8 @@
 using namespace limber;
 
 namespace {
-std::multiset<std::set<std::int64_t>> pieces_by_flooding(const Grid& grid, const std::vector<std::int64_t>& voxels, const glm::ivec3& reach) {
+std::multiset<std::set<std::int64_t>> pieces_by_flooding(const Grid& grid, const std::vector<std::int64_t>& voxels,
+                                                         const glm::ivec3& reach) {
   std::set<std::int64_t> left(voxels.begin(), voxels.end());
   std::multiset<std::set<std::int64_t>> pieces;
   while (!left.empty()) {

@@ -38,8 +38,10 @@ TEST_CASE("vector volumes: what is no field is refused, with the file's name") {
   const TemporaryFolder folder;
   const Grid grid = small_grid();
   write_volume({grid, ZeroedVector<Label>(210, 3)}, folder / "labels.nrrd");
-  const std::string header = "NRRD0005\ntype: float\ndimension: 4\nspace: left-posterior-superior\nsizes: 3 2 1 1\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\n"
-                             "kinds: vector domain domain domain\nendian: little\nencoding: raw\nspace origin: (0,0,0)\n\n";
+  const std::string header =
+      "NRRD0005\ntype: float\ndimension: 4\nspace: left-posterior-superior\nsizes: 3 2 1 1\nspace directions: none "
+      "(1,0,0) (0,1,0) (0,0,1)\n"
+      "kinds: vector domain domain domain\nendian: little\nencoding: raw\nspace origin: (0,0,0)\n\n";
   const float values[6] = {1, 2, 3, 4, 5, std::numeric_limits<float>::quiet_NaN()};
   const std::string bytes(reinterpret_cast<const char*>(values), sizeof values);
   write_bytes(folder / "good.nrrd", header + bytes.substr(0, 20) + bytes.substr(0, 4));
@@ -50,7 +52,8 @@ TEST_CASE("vector volumes: what is no field is refused, with the file's name") {
   write_bytes(folder / "text.nrrd", "sizes: 3 2 1 1\n\n");
   write_bytes(folder / "empty.nrrd", "");
   CHECK(read_vector_volume(folder / "good.nrrd").voxels[1] == glm::vec3(4, 5, 1));
-  for (const char* name : {"labels.nrrd", "nan.nrrd", "short.nrrd", "four.nrrd", "double.nrrd", "text.nrrd", "empty.nrrd", "absent.nrrd"}) {
+  for (const char* name : {"labels.nrrd", "nan.nrrd", "short.nrrd", "four.nrrd", "double.nrrd", "text.nrrd",
+                           "empty.nrrd", "absent.nrrd"}) {
     CAPTURE(name);
     try {
       read_vector_volume(folder / name);
