@@ -66,7 +66,9 @@ inline void decide(QualityGate& gate, bool passed, std::string figure, std::stri
   gate.sentence = std::move(sentence);
 }
 
-inline void not_checked(QualityGate& gate, const std::string& why) { gate.sentence = "Not checked: " + why; }
+inline void not_checked(QualityGate& gate, const std::string& why) {
+  gate.sentence = in_quotes(gate.name) + " is not checked: " + why;
+}
 
 using LimitText = std::string (*)(const QualityLimits& limits);
 

@@ -24,7 +24,7 @@ std::string formatted(const char* format, double value) {
 QualityGate unmeasured(const char* id, const char* name, const char* meaning, const char* limit) {
   QualityGate gate;
   gate.id = id, gate.name = name, gate.meaning = meaning, gate.limit = limit;
-  gate.sentence = "Not checked: no solve by finite elements has figures for it.";
+  gate.sentence = "\"" + gate.name + "\" is not checked: no solve by finite elements has figures for it.";
   gate.strict = true;
   return gate;
 }

@@ -312,7 +312,7 @@ TEST_CASE("strict: gates that nobody could check say so, and never pass") {
     for (const char* id : {"inputs", "whole", "follows", "directions", "exposed", "bands"})
       if (gate["id"] == id) {
         CHECK(gate["state"] == "not checked");
-        CHECK(gate["sentence"].get<std::string>().starts_with("Not checked: "));
+        CHECK(gate["sentence"].get<std::string>().find("is not checked: ") != std::string::npos);
       }
 }
 

@@ -28,7 +28,7 @@ TEST_CASE("quality gates: what a report has no figures for is neither passed nor
     CHECK(solve_gates(report).size() == 2);
     CHECK(all_gates(report).size() == 20);
     for (const QualityGate& one : all_gates(report)) {
-      CHECK(one.sentence.starts_with("Not checked: "));
+      CHECK(one.sentence.starts_with("\"" + one.name + "\" is not checked: "));
       CHECK(to_string(one.state) == "not checked");
       CHECK(one.state == GateState::NotMeasured);
       CHECK(one.figure.empty());
@@ -94,7 +94,7 @@ TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
     CHECK(gate(one.failing, one.id).figure == one.figure);
     for (const char* report : {one.passing, one.failing}) {
       CHECK(gate(report, one.id).sentence.ends_with("."));
-      CHECK_FALSE(gate(report, one.id).sentence.starts_with("Not checked"));
+      CHECK(gate(report, one.id).sentence.find("not checked") == std::string::npos);
     }
   }
 }
