@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -27,11 +28,22 @@ struct BoneVoxel {
   Moved moved;
 };
 
+// The place in the graph of each rest voxel of bone; the graph is costly, and only named bones need it.
+struct RestBone {
+  TissueVoxels tissue;
+  BoneGraph graph;
+  std::vector<std::int32_t> in_graph;  // #tissue, -1 where it is no bone
+
+  RestBone(const LabelVolume& rest, const std::vector<TissueKind>& kinds)
+      : tissue(rest), graph(gather_bone(rest, tissue, kinds)), in_graph(static_cast<std::size_t>(tissue.size()), -1) {
+    for (std::int32_t i = 0; i < graph.size(); ++i) in_graph[graph.place[i]] = i;
+  }
+};
+
 // The posed voxels of bone whose tissue was a voxel of the same label at rest, in the order of the posed grid.
-std::vector<BoneVoxel> posed_bone_voxels(const JudgedPose& pose, const BoneGraph& graph, const TissueVoxels& tissue,
+//   bone  nullptr: without their places in a graph
+std::vector<BoneVoxel> posed_bone_voxels(const JudgedPose& pose, const RestBone* bone,
                                          const std::vector<TissueKind>& kinds) {
-  std::vector<std::int32_t> in_graph(static_cast<std::size_t>(tissue.size()), -1);
-  for (std::int32_t i = 0; i < graph.size(); ++i) in_graph[graph.place[i]] = i;
   const AffineTransform to_rest = voxel_from_world(pose.rest.grid);
   const glm::ivec3 size = pose.posed.grid.size;
   std::vector<std::vector<BoneVoxel>> slices(size.z);
@@ -43,11 +55,15 @@ std::vector<BoneVoxel> posed_bone_voxels(const JudgedPose& pose, const BoneGraph
         if (label == 0 || !is_bone(kinds[label])) continue;
         const Moved moved{pose.rest_place({x, y, z}), pose.posed_place({x, y, z})};
         const glm::ivec3 rest(glm::floor(to_rest * moved.rest + 0.5));
-        if (pose.rest.at_or_air(rest) == label) slices[z].push_back({in_graph[tissue.index_of(rest)], moved});
+        if (pose.rest.at_or_air(rest) == label)
+          slices[z].push_back({bone ? bone->in_graph[bone->tissue.index_of(rest)] : -1, moved});
       }
   });
   std::vector<BoneVoxel> all;
-  for (const auto& slice : slices) all.insert(all.end(), slice.begin(), slice.end());
+  for (auto& slice : slices) {
+    all.insert(all.end(), slice.begin(), slice.end());
+    slice = {};
+  }
   return all;
 }
 
@@ -157,37 +173,45 @@ std::vector<LimbDirection> limb_directions(const JudgedPose& pose, const std::ve
   }
   return limbs;
 }
+
+// Each bone that a label names, on each side, judged; what belongs to a rig bone is added to that one's voxels.
+std::vector<WholeBone> judge_named(const JudgedPose& pose, const std::map<Label, LabelBones>& labels,
+                                   const RestBone& rest, const std::vector<BoneVoxel>& bone,
+                                   std::vector<MovedVoxels>& of_rig_bone) {
+  const NamedBones named = assign_named_bones(rest.graph, pose.rest, pose.tissues.kinds(), *pose.armature, labels);
+  std::map<std::pair<Label, std::int32_t>, MovedVoxels> members;
+  for (const BoneVoxel& one : bone)
+    if (const Label label = pose.rest.at(rest.graph.voxel[one.at_rest]); labels.contains(label))
+      members[{label, named.group[one.at_rest]}].push_back(one.moved);
+  const glm::dvec3& spacing = pose.rest.grid.spacing;
+  const double within = std::max({spacing.x, spacing.y, spacing.z});
+  std::vector<WholeBone> all;
+  for (const auto& [key, voxels] : members) {
+    const auto& [label, group] = key;
+    const bool single = labels.at(label).single;
+    if (named.candidates[group].empty()) continue;
+    WholeBone& whole = all.emplace_back(judge(voxels, named.candidates[group], single, pose, within));
+    whole.label = label;
+    whole.file_value = pose.tissues.find(label)->file_value;
+    whole.name = pose.tissues.find(label)->name;
+    if (!single) continue;
+    MovedVoxels& of_bone = of_rig_bone[*pose.armature->find(whole.belongs_to)];
+    of_bone.insert(of_bone.end(), voxels.begin(), voxels.end());
+  }
+  return all;
+}
 }  // namespace
 
 PosedBones measure_posed_bones(const JudgedPose& pose, const BoneMap& map) {
   const std::vector<TissueKind> kinds = pose.tissues.kinds();
-  const TissueVoxels tissue(pose.rest);
-  const BoneGraph graph = gather_bone(pose.rest, tissue, kinds);
-  const std::vector<BoneVoxel> bone = posed_bone_voxels(pose, graph, tissue, kinds);
+  const std::map<Label, LabelBones> labels = bones_of_labels(pose.tissues, *pose.armature, map);
+  std::optional<RestBone> rest;
+  if (!labels.empty()) rest.emplace(pose.rest, kinds);
+  const std::vector<BoneVoxel> bone = posed_bone_voxels(pose, rest ? &*rest : nullptr, kinds);
   std::vector<MovedVoxels> of_rig_bone(pose.armature->bones.size());
   PosedBones found;
-  if (const std::map<Label, LabelBones> labels = bones_of_labels(pose.tissues, *pose.armature, map); !labels.empty()) {
-    const NamedBones named = assign_named_bones(graph, pose.rest, kinds, *pose.armature, labels);
-    std::map<std::pair<Label, std::int32_t>, MovedVoxels> members;
-    for (const BoneVoxel& one : bone)
-      if (const Label label = pose.rest.at(graph.voxel[one.at_rest]); labels.contains(label))
-        members[{label, named.group[one.at_rest]}].push_back(one.moved);
-    const double within = std::max({pose.rest.grid.spacing.x, pose.rest.grid.spacing.y, pose.rest.grid.spacing.z});
-    for (const auto& [key, voxels] : members) {
-      const auto& [label, group] = key;
-      const bool single = labels.at(label).single;
-      if (named.candidates[group].empty()) continue;
-      WholeBone whole = judge(voxels, named.candidates[group], single, pose, within);
-      whole.label = label;
-      whole.file_value = pose.tissues.find(label)->file_value;
-      whole.name = pose.tissues.find(label)->name;
-      if (single) {
-        MovedVoxels& all = of_rig_bone[*pose.armature->find(whole.belongs_to)];
-        all.insert(all.end(), voxels.begin(), voxels.end());
-      }
-      found.whole.push_back(std::move(whole));
-    }
-  }
+  if (rest) found.whole = judge_named(pose, labels, *rest, bone, of_rig_bone);
+  rest.reset();
   found.limbs = limb_directions(pose, bone, of_rig_bone);
   return found;
 }
