@@ -152,8 +152,10 @@ bool is_at_shaft(const Armature& armature, int bone, const glm::dvec3& p) {
   const glm::dvec3 axis = own.tail - own.head;
   const double length = glm::length(axis);
   if (!(length > 0)) return false;
-  const double along = glm::dot(p - own.head, axis) / (length * length), away = distance_to_bone(own, p);
-  if (along < kShaftBegin || along > kShaftEnd || away > kShaftRadius * length) return false;
+  const double along = glm::dot(p - own.head, axis) / (length * length);
+  if (along < kShaftBegin || along > kShaftEnd) return false;
+  const double away = distance_to_bone(own, p);
+  if (away > kShaftRadius * length) return false;
   return std::all_of(armature.bones.begin(), armature.bones.end(),
                      [&](const Bone& other) { return distance_to_bone(other, p) >= away; });
 }
