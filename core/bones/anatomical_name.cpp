@@ -119,8 +119,8 @@ void read_finger(const Words& words, AnatomicalName& name) {
   name.finger = finger_of(words);
   if (has_any(words, {"metacarpal", "metacarpals", "metacarpus"})) name.segment = 0;
   else if (has(words, "proximal")) name.segment = 1;
+  else if (has(words, "distal")) name.segment = 3;  // before "middle", which may name the finger
   else if (has_any(words, {"middle", "intermediate"}) && has_any(words, {"phalanx", "phalanges"})) name.segment = 2;
-  else if (has(words, "distal")) name.segment = 3;
   // A thumb has no middle phalanx: its metacarpal counts as 1.
   if (name.finger == BodyPart::Thumb && name.segment >= 0) name.segment = name.segment == 3 ? 3 : name.segment + 1;
   name.plural = name.finger == BodyPart::Fingers || name.segment < 0;

@@ -22,6 +22,7 @@
 #include "core/rig/fit_starts.h"
 #include "core/rig/joint_landmarks.h"
 #include "core/rig/limb_paths.h"
+#include "core/rig/named_joints.h"
 #include "core/rig/rig_placing.h"
 #include "core/rig/surface_points.h"
 #include "core/rig/tissue_cuts.h"
@@ -231,8 +232,9 @@ void try_hands(Mannequin& m, const Target& target, const FitSurface* bone) {
     const glm::dvec3 along = glm::normalize(m.joint(hand->knuckle) - m.joint(b)), normal = glm::normalize(glm::cross(along, m.joint(hand->index) - m.joint(hand->little)));
     Mannequin best = m;
     double least = 1e300;
-    for (double twist : {0.0, -0.7, 0.7})
+    for (double twist : {0.0, -0.7, 0.7, -1.6, 1.6, 3.14})
       for (double aside : {0.0, -0.25, 0.25}) {
+        if (std::abs(twist) > 1 && aside != 0) continue;
         Mannequin tried = m;
         tried.turn_branch(b, glm::mat3_cast(glm::angleAxis(twist, along) * glm::angleAxis(aside, normal)));
         keep_better(best, least, tried, *hand, twist == 0 && aside == 0 ? 1 : 0.97);  // without need it stays as it is
@@ -287,6 +289,7 @@ std::string_view to_string(JointFit::How how) {
     case JointFit::How::BoneAxis: return "bone axis";
     case JointFit::How::Girth: return "girth";
     case JointFit::How::Ball: return "joint ball";
+    case JointFit::How::NamedBones: return "named bones";
     case JointFit::How::Carried: return "carried along";
     case JointFit::How::Extents: return "extents";
     case JointFit::How::Unseen: return "proportion";
@@ -538,6 +541,40 @@ LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, cons
   return labels;
 }
 
+// The joints that the names of bones tell, with the body laid along them.
+std::vector<NamedJoint> joints_by_name(Fitted& fitted, const Target& target, const LabelVolume& volume, const TissueTable& tissues) {
+  Mannequin& m = *fitted.body;
+  std::vector<NamedJoint> joints = named_joints(volume, tissues, m);
+  if (!same_sides(m, joints)) {
+    const glm::dvec3 up = m.turn[0] * m.rest_axis(0);
+    m.turn_branch(0, glm::mat3_cast(glm::angleAxis(3.14159265358979323846, glm::normalize(up))));
+    refine_by_skin(fitted, target);
+    joints = named_joints(volume, tissues, m);
+  }
+  lay_along(m, joints);
+  return joints;
+}
+
+// What the names of bones say counts; what hangs from such a joint moves along.
+void take_named(FoundJoints& found, const Armature& rig, const std::vector<NamedJoint>& named, double size) {
+  // That the body puts its joints elsewhere between the same bones moves nothing else.
+  constexpr double kElsewhere = 0.009;
+  std::vector<glm::dvec3> shift(rig.bones.size(), glm::dvec3(0));
+  std::vector<const NamedJoint*> own(rig.bones.size(), nullptr);
+  for (const NamedJoint& joint : named) own[joint.bone] = &joint;
+  for (int b = 0; b < std::ssize(rig.bones); ++b) {
+    if (own[b]) {
+      const glm::dvec3 off = own[b]->place - found.places[b];
+      shift[b] = off * std::max(0.0, 1 - kElsewhere * size / std::max(glm::length(off), 1e-9));
+      found.places[b] = own[b]->place;
+      found.how[b] = {.how = JointFit::How::NamedBones, .confidence = 0.95, .error = own[b]->error};
+    } else if (rig.bones[b].parent >= 0) {
+      shift[b] = shift[rig.bones[b].parent];
+      found.places[b] += shift[b];
+    }
+  }
+}
+
 // What lies beyond a cut is laid on by proportion alone, and a limb that is cut off looks short.
 void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& found, std::vector<std::string>& warnings) {
   constexpr double kNear = 0.05, kStrange = 5;  // of the tissue's diagonal; mm of error from which a joint is of another shape
@@ -552,6 +589,7 @@ void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& fo
     const double out = beyond(target.cuts, found.places[b]);
     JointFit& joint = found.how[b];
     const int parent = rig.bones[b].parent;
+    if (joint.how == JointFit::How::NamedBones) continue;
     if (out > 0 || (!seen[b] && (parent < 0 || !seen[parent]))) {
       const double from_cut = out > 0 ? out : 0.1 * target.length;
       joint = {.how = JointFit::How::Unseen, .confidence = 0, .error = std::max(joint.error, kLeast + kGrowth * from_cut)};
@@ -570,7 +608,7 @@ void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& fo
   const std::vector<JointFit> own = found.how;
   const auto is_doubted = [&](int b) { return !is_digit(rig.bones[b].name) && (own[b].how == JointFit::How::Unseen || near_cut[b]); };
   for (int b = 0; b < std::ssize(rig.bones); ++b) {
-    if (is_doubted(b) || own[b].how == JointFit::How::Unseen || own[b].error <= kStrange) continue;
+    if (is_doubted(b) || own[b].how == JointFit::How::Unseen || own[b].how == JointFit::How::NamedBones || own[b].error <= kStrange) continue;
     double beside = 0;
     for (int c = 0; c < std::ssize(rig.bones); ++c)
       if ((rig.bones[c].parent == b || rig.bones[b].parent == c) && is_doubted(c)) beside = std::max(beside, own[c].error);
@@ -652,11 +690,13 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
   } else {
     progress.update("fitting", 0);
     refine_by_skin(fitted, target);
+    const std::vector<NamedJoint> named = joints_by_name(fitted, target, volume, tissues);
     progress.update("fitting", 0.3);
     add_bone(target, volume, bone_labels(volume, tissues, fitted, result.warnings));
     refine(fitted, target, progress);
     if (!target.cuts.empty()) lay_unseen(fitted, seen_bones(fitted, target));
     FoundJoints found = found_joints(fitted, target);
+    take_named(found, fitted.atlas->rig, named, target.length);
     doubt_cut_limbs(fitted, target, found, result.warnings);
     const PlacedRig placed = place_rig(rig, *fitted.body, found.places);
     result.misfit_mm = fitted.misfit;

@@ -30,7 +30,7 @@
 namespace limber {
 
 struct JointFit {
-  enum class How { Skin, BoneSurface, BoneAxis, Girth, Ball, Carried, Extents, Unseen };  // Unseen: beyond a cut
+  enum class How { Skin, BoneSurface, BoneAxis, Girth, Ball, NamedBones, Carried, Extents, Unseen };  // Unseen: beyond a cut
   How how = How::Carried;
   double confidence = 0;  // 0 .. 1
   double error = 0;       // mm that it may lie off: seven joints of eight so found lay within it, on bodies whose joints are known

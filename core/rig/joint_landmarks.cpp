@@ -306,6 +306,11 @@ std::optional<Ball> ball_at(const std::vector<SurfacePoint>& points, const glm::
 
 }  // namespace
 
+std::optional<glm::dvec3> ball_near(const std::vector<SurfacePoint>& points, const glm::dvec3& start, double scale) {
+  const auto ball = ball_at(points, start, scale);
+  return ball ? std::optional(ball->centre) : std::nullopt;
+}
+
 std::vector<JointLandmark> ball_landmarks(const Mannequin& m, const FitSurface& bone) {
   std::vector<JointLandmark> found;
   for (int b = 0; b < m.bone_count(); ++b) {

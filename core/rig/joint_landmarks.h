@@ -8,6 +8,7 @@
 //          on the hip as the centre of its head].
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/rig/articulated_fit.h"
@@ -27,5 +28,9 @@ std::vector<JointLandmark> girth_landmarks(const Mannequin& mannequin, const Occ
 // Shoulders and hips.
 //   bone  the surface of bone tissue
 std::vector<JointLandmark> ball_landmarks(const Mannequin& mannequin, const FitSurface& bone);
+
+// The middle of the ball, of the size of an adult's times `scale`, that most of a surface's points lie around within 35 mm times
+// `scale` of `start`.
+std::optional<glm::dvec3> ball_near(const std::vector<SurfacePoint>& points, const glm::dvec3& start, double scale);
 
 }  // namespace limber
