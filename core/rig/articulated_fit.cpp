@@ -30,6 +30,8 @@ constexpr double kLargestTurn = 0.35, kLargestStretch = 0.15;     // of one step
 std::string without_side(const std::string& name) {
   for (const char* side : {"Left", "Right"})
     if (name.starts_with(side)) return name.substr(std::string(side).size());
+  for (const char* side : {".L", ".R"})
+    if (name.ends_with(side)) return name.substr(0, name.size() - 2);
   return name;
 }
 

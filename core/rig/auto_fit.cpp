@@ -17,6 +17,7 @@
 #include "core/rig/articulated_fit.h"
 #include "core/rig/body_atlas.h"
 #include "core/rig/body_skeleton.h"
+#include "core/rig/capsule_atlas.h"
 #include "core/bones/guess_bone_labels.h"
 #include "core/rig/draw_inside.h"
 #include "core/rig/fit_starts.h"
@@ -111,6 +112,10 @@ bool has_shape(const Target& target) {
   return std::ssize(target.skin->points) >= kLeast;
 }
 
+bool ends_with_any(const std::string& name, std::initializer_list<const char*> parts) {
+  return std::any_of(parts.begin(), parts.end(), [&](const char* part) { return name.ends_with(part); });
+}
+
 bool is_digit(const std::string& name) {
   for (const char* word : {"Thumb", "Index", "Middle", "Ring", "Little", "Jaw"})
     if (name.find(word) != std::string::npos) return true;
@@ -128,6 +133,7 @@ struct Fitted {
   std::optional<Mannequin> body;
   double misfit = 1e300;  // mm
   bool is_rods = false;
+  bool is_capsules = false;  // of a body that only its rig tells of
 };
 
 // Every start is tried roughly, the best of them in earnest.
@@ -215,8 +221,8 @@ void bend_alike(Mannequin& m, int hand, int other) {
   m.settle();
 }
 
-// A hand can come to lie one finger beside itself. It is tried turned in its plane and about the forearm, then bent like the
-// other one, and what fits best is kept.
+// A hand can come to lie one finger beside itself, or with its palm out. It is tried turned in its plane and about the forearm,
+// then bent like the other one, and what fits best is kept.
 void try_hands(Mannequin& m, const Target& target, const FitSurface* bone) {
   const Armature& rig = m.atlas().rig;
   std::vector<std::pair<int, double>> hands;  // and their misfit
@@ -252,9 +258,75 @@ void try_hands(Mannequin& m, const Target& target, const FitSurface* bone) {
   }
 }
 
+// The hands open and of the size that the limbs have: what was drawn onto fingers that are not its own is bent and shrunk.
+Mannequin with_fresh_hands(const Mannequin& m) {
+  Mannequin fresh = m;
+  const Armature& rig = m.atlas().rig;
+  double size = 0;
+  int limbs = 0;
+  for (int b = 0; b < m.bone_count(); ++b)
+    if (ends_with_any(rig.bones[b].name, {"UpperArm", "Forearm", "Thigh", "Shank"})) size += m.along[m.group_of(b)], ++limbs;
+  for (int b = 0; b < m.bone_count() && limbs > 0; ++b)
+    if (is_digit(rig.bones[b].name) && rig.bones[b].name != "Jaw") {
+      fresh.turn[b] = fresh.turn[rig.bones[b].parent];
+      fresh.along[m.group_of(b)] = fresh.across[m.group_of(b)] = size / limbs;
+    } else if (rig.bones[b].name.ends_with("Hand")) {
+      fresh.along[m.group_of(b)] = fresh.across[m.group_of(b)] = size / limbs;
+    }
+  fresh.settle();
+  return fresh;
+}
+
+// Open hands of the size that the limbs have, turned about their forearms and drawn onto the skin with the forearm's own turn
+// and all sizes free.
+Mannequin with_turned_hands(const Mannequin& m, double twist, const Target& target) {
+  Mannequin turned = with_fresh_hands(m);
+  const Armature& rig = m.atlas().rig;
+  for (int b = 0; b < m.bone_count(); ++b) {
+    if (!rig.bones[b].name.ends_with("Hand")) continue;
+    const auto hand = hand_fit(turned, b);
+    if (!hand) continue;
+    FitStage stage = hand->stage;
+    stage.turns = stage.points = branch_of(rig, std::max(0, rig.bones[b].parent));
+    stage.stretches = true, stage.iterations = 25, stage.wide = 0.4 * hand->palm, stage.narrow = 0.06 * hand->palm;
+    const bool left = rig.bones[b].name.starts_with("Left");
+    turned.turn_branch(b, glm::mat3_cast(glm::angleAxis(left ? -twist : twist, glm::normalize(turned.joint(hand->knuckle) - turned.joint(b)))));
+    fit(turned, &*target.skin, nullptr, stage);
+  }
+  // All but the arms keeps its place and size, which nothing asked for in that.
+  turned.root = m.root;
+  std::vector<std::uint8_t> of_arm(m.group_count(), 0);
+  for (int b = 0; b < m.bone_count(); ++b) of_arm[m.group_of(b)] |= ends_with_any(rig.bones[b].name, {"Forearm", "Hand"}) || (is_digit(rig.bones[b].name) && rig.bones[b].name != "Jaw");
+  for (int g = 0; g < m.group_count(); ++g)
+    if (!of_arm[g]) turned.along[g] = m.along[g], turned.across[g] = m.across[g];
+  turned.settle();
+  return turned;
+}
+
+// How much of the fingers lies where it should, 0 .. 1; 1 for a body without hands.
+double hands_near(const Mannequin& m, const FitSurface& surface, bool by_bone, double near) {
+  const std::vector<double> share = share_near(m, surface, by_bone, near);
+  double sum = 0;
+  int digits = 0;
+  for (int b = 0; b < m.bone_count(); ++b)
+    if (is_digit(m.atlas().rig.bones[b].name) && m.atlas().rig.bones[b].name != "Jaw" && share[b] >= 0) sum += share[b], ++digits;
+  return digits ? sum / digits : 1;
+}
+
 void refine_by_skin(Fitted& result, const Target& target) {
   const double L = target.length;
   fit(*result.body, &*target.skin, nullptr, {.iterations = 20, .wide = 0.03 * L, .narrow = 0.01 * L, .turns = without_digits(result.atlas->rig), .stride = 3});
+}
+
+// Hands first, then all, roughly with some of the points and to the end with all of them.
+void finish(Mannequin& m, const Target& target, const FitSurface* bone, bool is_rods) {
+  const double L = target.length;
+  try_hands(m, target, bone);
+  // Voxels coarser than finger bones are thick show skin better than bone.
+  const double bone_share = 0.8 * std::min(1.0, 4 / target.cell);
+  if (is_rods) return;
+  for (const auto& [iterations, stride, wide, narrow] : {std::tuple(14, 3, 0.012, 0.005), std::tuple(9, 1, 0.005, bone ? 0.003 : 0.004)})
+    fit(m, &*target.skin, bone, {.iterations = iterations, .wide = wide * L, .narrow = narrow * L, .bone_share = bone_share, .stride = stride});
 }
 
 void refine(Fitted& result, const Target& target, Progress& progress) {
@@ -268,14 +340,21 @@ void refine(Fitted& result, const Target& target, Progress& progress) {
     fit(m, &*target.skin, bone, {.iterations = 24, .wide = 0.03 * L, .narrow = 0.006 * L, .turns = without_digits(result.atlas->rig), .bone_share = 0.7, .stride = 2});
   }
   progress.update("fitting", 0.6);
-  try_hands(m, target, bone);
-  progress.update("fitting", 0.8);
-  // Voxels coarser than finger bones are thick show skin better than bone.
-  const double bone_share = 0.8 * std::min(1.0, 4 / target.cell);
-  // Roughly with some of the points, then to the end with all.
-  if (!result.is_rods)
-    for (const auto& [iterations, stride, wide, narrow] : {std::tuple(14, 3, 0.012, 0.005), std::tuple(9, 1, 0.005, bone ? 0.003 : 0.004)})
-      fit(m, &*target.skin, bone, {.iterations = iterations, .wide = wide * L, .narrow = narrow * L, .bone_share = bone_share, .stride = stride});
+  const Mannequin before = m;
+  finish(m, target, bone, result.is_rods);
+  // Hands that lie on nothing like a hand may be turned another way.
+  constexpr double kLittle = 0.78, kBetter = 1.05;
+  const double near = 2.5 + (bone ? 1.2 : 1) * target.cell;
+  double most = hands_near(m, bone ? *bone : *target.skin, bone, near);
+  if (std::getenv("DBG")) std::printf("hands near %g\n", most);
+  for (double twist : {0.0, 3.14, 1.57, -1.57}) {
+    if (most > kLittle) break;
+    Mannequin turned = with_turned_hands(before, twist, target);
+    finish(turned, target, bone, result.is_rods);
+    const double share = hands_near(turned, bone ? *bone : *target.skin, bone, near);
+    if (std::getenv("DBG")) std::printf("  twist %g near %g\n", twist, share);
+    if (share > kBetter * most) most = share, m = turned;
+  }
   result.misfit = std::sqrt(misfit(m, &*target.skin, nullptr, 0.04 * L, {}));
   progress.update("fitting", 1);
 }
@@ -328,6 +407,14 @@ Fitted best_start(const std::vector<AtlasKind>& kinds, const Target& target, Pro
     }
   }
   return best;
+}
+
+// A body that is not known but for the rig.
+Fitted capsule_start(const Armature& rig, const Target& target, Progress& progress) {
+  progress.update("starting", 0);
+  Fitted tried{.atlas = std::make_shared<BodyAtlas>(capsule_atlas(rig)), .body = std::nullopt, .is_capsules = true};
+  take_best_start(tried, target, turned_starts(*tried.atlas, target.rough_body));
+  return tried;
 }
 
 // The bones that are seen well enough, and from one to the next: those beyond a cut are not, nor a hand whose forearm is cut
@@ -392,10 +479,6 @@ std::vector<double> shares_near(const Fitted& fitted, const Target& target) {
   return result;
 }
 
-bool ends_with_any(const std::string& name, std::initializer_list<const char*> parts) {
-  return std::any_of(parts.begin(), parts.end(), [&](const char* part) { return name.ends_with(part); });
-}
-
 // Per bone: how little its surface and its parent's is that of the body that was laid over it, 0 for the same and 1 for another
 // shape.
 struct Likeness {
@@ -453,7 +536,7 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
   FoundJoints found;
   for (int b = 0; b < m.bone_count(); ++b) {
     const std::string& name = rig.bones[b].name;
-    const bool rod = fitted.is_rods && ends_with_any(name, {"UpperArm", "Forearm", "Thigh", "Shank", "Foot"});
+    const bool rod = fitted.is_rods && !fitted.is_capsules && ends_with_any(name, {"UpperArm", "Forearm", "Thigh", "Shank", "Foot"});
     const double by_skin = ends_with_any(name, {"Thigh", "Hips", "Neck", "Spine"}) ? kHipsBySkin : name.ends_with("UpperArm") ? kShoulderBySkin : kBySkin;
     const double other = by_bone ? kByBone : by_skin;
     found.places.push_back(m.joint(b));
@@ -528,7 +611,7 @@ LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, cons
   Armature long_bones;
   for (int b = 0; b < m.bone_count(); ++b) {
     const Bone& bone = m.atlas().rig.bones[b];
-    if (ends_with_any(bone.name, {"UpperArm", "Forearm", "Thigh", "Shank"})) long_bones.bones.push_back({.name = bone.name, .parent = -1, .head = m.joint(b), .tail = m.carried(b, bone.tail)});
+    if (fitted.is_capsules || ends_with_any(bone.name, {"UpperArm", "Forearm", "Thigh", "Shank"})) long_bones.bones.push_back({.name = bone.name, .parent = -1, .head = m.joint(b), .tail = m.carried(b, bone.tail)});
   }
   if (const auto guess = guess_bone_tissue(volume, tissues, long_bones)) {
     const Tissue* tissue = tissues.find(guess->label);
@@ -684,7 +767,10 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
   AutoFit result;
   const std::vector<AtlasKind> kinds = kinds_for(rig);
   Fitted fitted;
-  if (!kinds.empty() && has_shape(target)) fitted = best_start(kinds, target, progress);
+  if (has_shape(target)) {
+    if (!kinds.empty()) fitted = best_start(kinds, target, progress);
+    else if (has_trunk(rig)) fitted = capsule_start(rig, target, progress);
+  }
   if (!fitted.body) {
     result = by_extents(volume, rig, kinds.empty() ? "the bones' names do not tell of a body that is known" : "the tissue has hardly any surface");
   } else {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
 #include <glm/gtc/quaternion.hpp>
 
 #include "core/rig/limb_paths.h"
@@ -239,6 +240,73 @@ std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body
       }
     }
     std::reverse(path.points.begin(), path.points.end());
+  }
+  return starts;
+}
+
+namespace {
+
+struct Extent {
+  glm::dvec3 middle{0}, low{1e300}, high{-1e300};
+  glm::dmat3 axes{1};  // columns, the longest first; right-handed
+};
+
+Extent extent_of(const std::vector<glm::dvec3>& points) {
+  Extent extent;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const glm::dvec3& p : points) extent.middle += p / double(points.size()), extent.low = glm::min(extent.low, p), extent.high = glm::max(extent.high, p);
+  for (const glm::dvec3& p : points) {
+    const Eigen::Vector3d d(p.x - extent.middle.x, p.y - extent.middle.y, p.z - extent.middle.z);
+    spread += d * d.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 3; ++i) extent.axes[k][i] = solver.eigenvectors()(i, 2 - k);
+  if (glm::determinant(extent.axes) < 0) extent.axes[2] = -extent.axes[2];
+  return extent;
+}
+
+// All turns that take axes to axes.
+std::vector<glm::dmat3> axis_turns() {
+  std::vector<glm::dmat3> turns;
+  for (int x = 0; x < 3; ++x)
+    for (int y = 0; y < 3; ++y)
+      for (double sx : {1.0, -1.0})
+        for (double sy : {1.0, -1.0}) {
+          if (x == y) continue;
+          glm::dvec3 first(0), second(0);
+          first[x] = sx, second[y] = sy;
+          turns.push_back(glm::dmat3(first, second, glm::cross(first, second)));
+        }
+  return turns;
+}
+
+}  // namespace
+
+std::vector<Mannequin> turned_starts(const BodyAtlas& atlas, const Occupancy& body) {
+  std::vector<glm::dvec3> tissue, skin;
+  const AffineTransform to_world = world_from_voxel(body.grid);
+  for (int z = 0; z < body.grid.size.z; ++z)
+    for (int y = 0; y < body.grid.size.y; ++y)
+      for (int x = 0; x < body.grid.size.x; ++x)
+        if (body.filled({x, y, z})) tissue.push_back(to_world * glm::dvec3(x, y, z));
+  for (const AtlasPoint& point : atlas.skin) skin.push_back(point.place);
+  std::vector<Mannequin> starts;
+  if (tissue.empty() || skin.empty()) return starts;
+  const Extent there = extent_of(tissue), here = extent_of(skin);
+  std::vector<glm::dmat3> turns = axis_turns();
+  for (const glm::dmat3& turn : axis_turns()) turns.push_back(there.axes * turn * glm::transpose(here.axes));
+  for (const glm::dmat3& turn : turns) {
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const glm::dvec3& p : skin) low = glm::min(low, turn * p), high = glm::max(high, turn * p);
+    const double scale = glm::distance(there.low, there.high) / glm::distance(low, high);
+    Mannequin m(atlas);
+    std::fill(m.along.begin(), m.along.end(), std::log(scale));
+    m.across = m.along;
+    for (glm::dmat3& own : m.turn) own = turn;
+    m.root = (there.low + there.high) / 2.0 + scale * (turn * atlas.rig.bones[0].head - (low + high) / 2.0);
+    m.settle();
+    starts.push_back(std::move(m));
   }
   return starts;
 }

@@ -20,4 +20,7 @@ std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body
 // that was cut off may also be longer than what is there.
 std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body, AtlasKind kind, const std::vector<TissueCut>& cuts);
 
+// The whole as large as the tissue, in every right angle, and turned from its own main axes to those of the tissue.
+std::vector<Mannequin> turned_starts(const BodyAtlas& atlas, const Occupancy& body);
+
 }  // namespace limber
