@@ -181,6 +181,19 @@ bool follow_rods(Mannequin& m, const Target& target) {
   return true;
 }
 
+// Of a body that only its rig tells of: its segments drawn into the bones, kept where more bone lies close around them then.
+bool follow_bones(Mannequin& m, const Target& target) {
+  constexpr double kClose = 0.025, kMost = 0.8;  // of the tissue's diagonal; share of the bone
+  const double L = target.length;
+  Mannequin drawn = m;
+  fit_rods(drawn, target.bone_cells, *target.skin, {.iterations = 40, .wide = 0.03 * L, .narrow = 0.008 * L, .bone_share = 0.6, .stride = 3});
+  const double before = rod_share(m, target.bone_cells, target.bone_body, kClose * L).near, after = rod_share(drawn, target.bone_cells, target.bone_body, kClose * L).near;
+  if (std::getenv("DBG")) std::printf("follow %g -> %g\n", before, after);
+  if (after < kMost || after < before) return false;
+  m = drawn;
+  return true;
+}
+
 std::vector<std::uint8_t> branch_of(const Armature& rig, int root) {
   std::vector<std::uint8_t> in(rig.bones.size(), 0);
   for (int b = root; b < std::ssize(rig.bones); ++b) in[b] = b == root || (rig.bones[b].parent >= 0 && in[rig.bones[b].parent]);
@@ -303,9 +316,10 @@ Mannequin with_turned_hands(const Mannequin& m, double twist, const Target& targ
   return turned;
 }
 
-// How much of the fingers lies where it should, 0 .. 1; 1 for a body without hands.
-double hands_near(const Mannequin& m, const FitSurface& surface, bool by_bone, double near) {
-  const std::vector<double> share = share_near(m, surface, by_bone, near);
+// How much of the fingers' skin lies where it should, 0 .. 1; 1 for a body without hands. Finger bones are thinner than many
+// voxels are.
+double hands_near(const Mannequin& m, const Target& target) {
+  const std::vector<double> share = share_near(m, *target.skin, false, 2.5 + target.cell);
   double sum = 0;
   int digits = 0;
   for (int b = 0; b < m.bone_count(); ++b)
@@ -332,8 +346,10 @@ void finish(Mannequin& m, const Target& target, const FitSurface* bone, bool is_
 void refine(Fitted& result, const Target& target, Progress& progress) {
   Mannequin& m = *result.body;
   const double L = target.length;
-  const FitSurface* bone = target.bone ? &*target.bone : nullptr;
-  if (bone && follow_rods(m, target)) {
+  const FitSurface* bone = target.bone && !result.is_capsules ? &*target.bone : nullptr;
+  if (target.bone && result.is_capsules) {
+    result.is_rods = follow_bones(m, target);
+  } else if (bone && follow_rods(m, target)) {
     result.is_rods = true;
     bone = nullptr;
   } else if (bone) {
@@ -344,14 +360,13 @@ void refine(Fitted& result, const Target& target, Progress& progress) {
   finish(m, target, bone, result.is_rods);
   // Hands that lie on nothing like a hand may be turned another way.
   constexpr double kLittle = 0.78, kBetter = 1.05;
-  const double near = 2.5 + (bone ? 1.2 : 1) * target.cell;
-  double most = hands_near(m, bone ? *bone : *target.skin, bone, near);
+  double most = hands_near(m, target);
   if (std::getenv("DBG")) std::printf("hands near %g\n", most);
   for (double twist : {0.0, 3.14, 1.57, -1.57}) {
     if (most > kLittle) break;
     Mannequin turned = with_turned_hands(before, twist, target);
     finish(turned, target, bone, result.is_rods);
-    const double share = hands_near(turned, bone ? *bone : *target.skin, bone, near);
+    const double share = hands_near(turned, target);
     if (std::getenv("DBG")) std::printf("  twist %g near %g\n", twist, share);
     if (share > kBetter * most) most = share, m = turned;
   }
@@ -462,7 +477,7 @@ void lay_unseen(Fitted& fitted, const std::vector<std::uint8_t>& seen) {
 // Confidence in the heads of the fitted body's bones: how much of the surface on either side of the joint lies where it should.
 std::vector<double> shares_near(const Fitted& fitted, const Target& target) {
   const Mannequin& m = *fitted.body;
-  const bool by_bone = target.bone && !fitted.is_rods;
+  const bool by_bone = target.bone && !fitted.is_rods && !fitted.is_capsules;
   const double near = by_bone ? 2.5 + 1.2 * target.cell : 2.5 + 0.004 * target.length + target.cell;
   std::vector<double> share = share_near(m, by_bone ? *target.bone : *target.skin, by_bone, near);
   std::vector<double> result(share.size(), 0);
@@ -512,10 +527,21 @@ std::vector<double> strangeness(const Mannequin& m, const std::vector<AtlasPoint
 std::vector<double> strangeness(const Fitted& fitted, const Target& target) {
   const Mannequin& m = *fitted.body;
   std::vector<double> result = strangeness(m, m.atlas().skin, *target.skin, {.same = 0.8, .other = 0.8, .of_cell = 0.08}, target);
-  if (!target.bone || fitted.is_rods) return result;
+  if (!target.bone || fitted.is_rods || fitted.is_capsules) return result;
   const std::vector<double> bones = strangeness(m, m.atlas().bone, *target.bone, {.same = 0.5, .other = 0.4, .of_cell = 0.15}, target);
   for (size_t b = 0; b < result.size(); ++b) result[b] = std::min(result[b], bones[b]);
   return result;
+}
+
+// Of the whole: the mean of the limbs and the trunk, and 1 where voxels are too coarse to tell.
+double whole_strangeness(const Fitted& fitted, const std::vector<double>& strange, const Target& target) {
+  constexpr double kFine = 5, kCoarse = 9;  // mm, of a cell
+  double sum = 0;
+  int bones = 0;
+  for (size_t b = 0; b < strange.size(); ++b)
+    if (!is_digit(fitted.atlas->rig.bones[b].name)) sum += strange[b], ++bones;
+  const double size = std::exp(fitted.body->along[0]);
+  return std::max(bones ? sum / bones : 1.0, std::clamp((target.cell / size - kFine) / (kCoarse - kFine), 0.0, 1.0));
 }
 
 // The fitted body's joints. Where it is of another shape than the body laid over it, its own landmarks say more.
@@ -524,23 +550,41 @@ struct FoundJoints {
   std::vector<JointFit> how;
 };
 
+// Of a body that only its rig tells of the skin shows how limbs run, and their ends, but not where along them they bend; a limb
+// that lies on nothing may lie anywhere about its root.
+void doubt_capsules(FoundJoints& found, const std::vector<double>& near, const Mannequin& m, const Target& target) {
+  constexpr double kOfWhole = 0.035, kOfBone = 0.1, kLost = 0.75, kEnough = 0.8;  // of the tissue's diagonal, and of a bone's length
+  const Armature& rig = m.atlas().rig;
+  std::vector<double> lost(rig.bones.size(), 0);
+  for (int b = 0; b < std::ssize(rig.bones); ++b) {
+    const int parent = rig.bones[b].parent;
+    const double length = parent < 0 ? 0 : glm::distance(m.joint(b), m.joint(parent));
+    if (parent >= 0) lost[b] = lost[parent] + kLost * length * std::clamp((kEnough - near[b]) / kEnough, 0.0, 1.0);
+    found.how[b].error = kOfWhole * target.length + kOfBone * length + lost[b];
+  }
+}
+
 FoundJoints found_joints(const Fitted& fitted, const Target& target) {
   using How = JointFit::How;
   // mm within which nine of ten such joints lay on segmented adults, beside those that another shape adds. Of hips even the
   // authors of rigs differ by 5 cm where skin is all there is.
-  constexpr double kLeastError = 3, kByBone = 12, kBySkin = 22, kShoulderBySkin = 26, kHipsBySkin = 58, kByGirth = 12, kHandByGirth = 15, kNeckByGirth = 22, kByBall = 8, kByAxis = 14;
+  constexpr double kLeastError = 4, kByBone = 14, kCollarByBone = 28, kFingerByBone = 14, kBySkin = 22, kShoulderBySkin = 26, kCollarBySkin = 36, kHipsBySkin = 58, kByGirth = 12, kHandByGirth = 15, kNeckByGirth = 22, kByBall = 9, kByAxis = 16;
   const Mannequin& m = *fitted.body;
   const Armature& rig = m.atlas().rig;
-  const bool by_bone = target.bone && !fitted.is_rods;
-  const std::vector<double> near = shares_near(fitted, target), strange = strangeness(fitted, target);
+  const bool by_bone = target.bone && !fitted.is_rods && !fitted.is_capsules;
+  const std::vector<double> near = shares_near(fitted, target);
+  const std::vector<double> strange = strangeness(fitted, target);
+  // A body of another build puts its joints elsewhere also where a bone by itself looks alike, as thin ones always do.
+  const double whole = whole_strangeness(fitted, strange, target);
   FoundJoints found;
   for (int b = 0; b < m.bone_count(); ++b) {
     const std::string& name = rig.bones[b].name;
-    const bool rod = fitted.is_rods && !fitted.is_capsules && ends_with_any(name, {"UpperArm", "Forearm", "Thigh", "Shank", "Foot"});
+    const bool rod = fitted.is_rods && (fitted.is_capsules || ends_with_any(name, {"UpperArm", "Forearm", "Thigh", "Shank", "Foot"}));
     const double by_skin = ends_with_any(name, {"Thigh", "Hips", "Neck", "Spine"}) ? kHipsBySkin : name.ends_with("UpperArm") ? kShoulderBySkin : kBySkin;
-    const double other = by_bone ? kByBone : by_skin;
+    const bool collar = name.ends_with("Clavicle");
+    const double other = by_bone ? (collar ? kCollarByBone : is_digit(name) ? kFingerByBone : kByBone) : collar ? kCollarBySkin : by_skin;
     found.places.push_back(m.joint(b));
-    found.how.push_back({.how = rod ? How::BoneAxis : by_bone ? How::BoneSurface : How::Skin, .confidence = rod ? 0.9 : near[b], .error = rod ? kByAxis : kLeastError + strange[b] * other});
+    found.how.push_back({.how = rod ? How::BoneAxis : by_bone ? How::BoneSurface : How::Skin, .confidence = rod ? 0.9 : near[b], .error = rod ? kByAxis : kLeastError + std::max(strange[b], whole) * other});
   }
   const auto take = [&](const JointLandmark& mark, How how, double weight, double error) {
     const double off = glm::distance(found.places[mark.bone], mark.place);
@@ -590,6 +634,15 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
     const double few = !in_limb || found.how[b].how == How::Ball ? kFew : name.ends_with("Hand") ? kFewOfHand : kFewOfLimb;
     return (in_limb ? kLimbFarOff : kFarOff) * std::max(0.0, few - near[b]);
   };
+  // Fingers that lie on nothing like fingers may be those of a hand that is turned another way.
+  constexpr double kHandShare = 0.85, kHandFarOff = 120;
+  if (!fitted.is_capsules) {
+    const double lost = kHandFarOff * std::max(0.0, kHandShare - hands_near(m, target));
+    for (int b = 0; b < m.bone_count(); ++b)
+      if (is_digit(rig.bones[b].name) && rig.bones[b].name != "Jaw") found.how[b].error += lost;
+  }
+  if (std::getenv("DBG")) for (int b = 0; b < m.bone_count(); ++b) std::printf("E %s strange %.2f near %.2f whole %.2f misfit/L %.4f L %.0f\n", rig.bones[b].name.c_str(), strange[b], near[b], whole, fitted.misfit/target.length, target.length);
+  if (fitted.is_capsules) doubt_capsules(found, near, m, target);
   // Half sure of what may lie off by as much as a joint is thick.
   constexpr double kJoint = 40;
   for (int b = 0; b < m.bone_count(); ++b) {
@@ -717,8 +770,9 @@ void doubt_cut_limbs(const Fitted& fitted, const Target& target, FoundJoints& fo
 AutoFit by_extents(const LabelVolume& volume, const Armature& rig, const std::string& reason) {
   AutoFit result;
   result.armature = scaled_to_tissue(volume, rig);
-  result.joints.assign(rig.bones.size(), {JointFit::How::Extents, 0.1});
-  result.warnings.push_back(reason + ": the rig was only scaled to the tissue's extents");
+  const double error = error_by_extents(volume);
+  result.joints.assign(rig.bones.size(), {JointFit::How::Extents, 0.1, error});
+  result.warnings.push_back(reason + ": the rig was only scaled to the tissue's extents, and its joints may lie up to some " + std::to_string(std::lround(error)) + " mm off");
   return result;
 }
 
@@ -740,6 +794,11 @@ void warn_of_joints(AutoFit& result) {
 }
 
 }  // namespace
+
+double error_by_extents(const LabelVolume& volume) {
+  constexpr double kShare = 0.35;  // of the diagonal: a joint can lie at the other end of a body that is turned around
+  return kShare * glm::length(glm::dvec3(tissue_box(volume).size) * volume.grid.spacing);
+}
 
 Armature scaled_to_tissue(const LabelVolume& volume, const Armature& rig) {
   const VoxelBox box = tissue_box(volume);

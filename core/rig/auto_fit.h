@@ -52,6 +52,9 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
 // The rig in the middle of the tissue, as large as it is; nothing is turned.
 Armature scaled_to_tissue(const LabelVolume& volume, const Armature& rig);
 
+// mm that a joint may lie off where the rig was only scaled to the tissue.
+double error_by_extents(const LabelVolume& volume);
+
 // The template that suits the volume best: one of core/rig/templates.h.
 std::string suggest_template(const LabelVolume& volume, Progress& progress = no_progress());
 

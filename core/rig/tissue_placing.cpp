@@ -70,7 +70,7 @@ AutoFit fitted_or_placed(const LabelVolume& volume, const TissueTable& tissues, 
   AutoFit placed{.armature = placed_in_tissue(volume, rig)};
   placed.check = check_rig(volume, placed.armature);
   if (suits(placed.check, placed.armature) <= suits(fitted.check, fitted.armature)) return fitted;
-  placed.joints.assign(rig.bones.size(), {JointFit::How::Extents, 0.1});
+  placed.joints.assign(rig.bones.size(), {JointFit::How::Extents, 0.1, error_by_extents(volume)});
   placed.warnings = {"no joint could be found with confidence: the rig was only placed and scaled to the tissue; move its joints by hand, or name its bones as the body's parts are named"};
   return placed;
 }
