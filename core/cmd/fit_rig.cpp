@@ -89,7 +89,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_fit_rig(CLI::App& app) {
-  auto* command = app.add_subcommand("fit-rig", "lays a rig into a volume by itself, joints found from bone or from the body's shape");
+  auto* command = app.add_subcommand("fit-rig", "lays a rig into a volume by itself, joints found from named bones, bone, or the body's shape");
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command->add_option("--template", options->rig, "arm, hand, leg, adult, child, quadruped, auto, or a rig file (JSON, Bender .vtk or .arm, BVH)")->required();

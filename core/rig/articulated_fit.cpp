@@ -250,7 +250,7 @@ class Step {
       if (parent < 0) continue;
       const int above = m_.group_of(parent);
       if (above == group) continue;
-      like_equal(2 * group, 2 * above, m_.along[group] - m_.along[above], kNeighbourStretch / std::sqrt(share));
+      like_equal(2 * group, 2 * above, m_.along[group] - m_.along[above], kNeighbourStretch / (m_.alike * std::sqrt(share)));
       like_equal(2 * group + 1, 2 * above + 1, m_.across[group] - m_.across[above], kNeighbourStretch / std::sqrt(share));
     }
   }

@@ -29,6 +29,7 @@ class Mannequin {
   glm::dvec3 root{0};
   std::vector<glm::dmat3> turn;       // per bone, world from the atlas at rest
   std::vector<double> along, across;  // per group of bones: logarithm of the stretch
+  double alike = 1;  // how many times more than usual neighbours along a limb want the same stretch
 
   void settle();
   const glm::dvec3& joint(int bone) const { return joint_[bone]; }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -188,7 +189,6 @@ bool follow_bones(Mannequin& m, const Target& target) {
   Mannequin drawn = m;
   fit_rods(drawn, target.bone_cells, *target.skin, {.iterations = 40, .wide = 0.03 * L, .narrow = 0.008 * L, .bone_share = 0.6, .stride = 3});
   const double before = rod_share(m, target.bone_cells, target.bone_body, kClose * L).near, after = rod_share(drawn, target.bone_cells, target.bone_body, kClose * L).near;
-  if (std::getenv("DBG")) std::printf("follow %g -> %g\n", before, after);
   if (after < kMost || after < before) return false;
   m = drawn;
   return true;
@@ -361,13 +361,11 @@ void refine(Fitted& result, const Target& target, Progress& progress) {
   // Hands that lie on nothing like a hand may be turned another way.
   constexpr double kLittle = 0.78, kBetter = 1.05;
   double most = hands_near(m, target);
-  if (std::getenv("DBG")) std::printf("hands near %g\n", most);
   for (double twist : {0.0, 3.14, 1.57, -1.57}) {
     if (most > kLittle) break;
     Mannequin turned = with_turned_hands(before, twist, target);
     finish(turned, target, bone, result.is_rods);
     const double share = hands_near(turned, target);
-    if (std::getenv("DBG")) std::printf("  twist %g near %g\n", twist, share);
     if (share > kBetter * most) most = share, m = turned;
   }
   result.misfit = std::sqrt(misfit(m, &*target.skin, nullptr, 0.04 * L, {}));
@@ -424,11 +422,62 @@ Fitted best_start(const std::vector<AtlasKind>& kinds, const Target& target, Pro
   return best;
 }
 
+// From a bone at a limb's end up to the first that hangs from the trunk.
+std::vector<int> limb_to(const Armature& rig, int last) {
+  std::vector<int> children(rig.bones.size(), 0), limb{last};
+  for (const Bone& bone : rig.bones)
+    if (bone.parent >= 0) ++children[bone.parent];
+  for (int b = rig.bones[last].parent; b >= 0 && children[b] == 1 && rig.bones[b].parent >= 0; b = rig.bones[b].parent) limb.push_back(b);
+  std::reverse(limb.begin(), limb.end());
+  return limb;
+}
+
+// Limbs that end short of the tissue's ends, or beyond them, are aimed at those and stretched; both sides alike.
+void reach_ends(Mannequin& m, const Occupancy& body) {
+  constexpr double kMost = 0.6, kNear = 0.7;  // logarithm of the stretch; of the limb's length
+  const Armature& rig = m.atlas().rig;
+  std::vector<std::uint8_t> is_last(rig.bones.size(), 1);
+  for (const Bone& bone : rig.bones)
+    if (bone.parent >= 0) is_last[bone.parent] = 0;
+  std::map<int, std::pair<double, int>> stretch;  // by group: sum and count
+  struct Aim {
+    int root, last;
+    glm::dvec3 end;
+  };
+  std::vector<Aim> aims;
+  for (const LimbPath& path : limb_paths(body, PathCentre::Thickest)) {
+    const glm::dvec3 end = path.points.front();
+    const auto apart = [&](int b) { return is_last[b] ? glm::distance(m.carried(b, rig.bones[b].tail), end) : 1e300; };
+    int last = 0;
+    for (int b = 1; b < m.bone_count(); ++b)
+      if (apart(b) < apart(last)) last = b;
+    const std::vector<int> limb = limb_to(rig, last);
+    double length = 0;
+    for (int b : limb) length += glm::distance(m.joint(b), m.carried(b, rig.bones[b].tail));
+    const bool taken = std::any_of(aims.begin(), aims.end(), [&](const Aim& aim) { return aim.last == last; });
+    if (taken || !(length > 0) || apart(last) > kNear * length) continue;
+    const glm::dvec3 root = m.joint(limb.front()), tail = m.carried(last, rig.bones[last].tail);
+    if (!(glm::distance(tail, root) > 0) || !(glm::distance(end, root) > 0)) continue;
+    const double by = std::clamp(std::log(glm::distance(end, root) / glm::distance(tail, root)), -kMost, kMost);
+    for (int b : limb) stretch[m.group_of(b)].first += by, ++stretch[m.group_of(b)].second;
+    aims.push_back({limb.front(), last, end});
+  }
+  for (const auto& [group, sum] : stretch) m.along[group] += sum.first / sum.second;
+  m.settle();
+  for (const Aim& aim : aims) {
+    const glm::dvec3 root = m.joint(aim.root), tail = m.carried(aim.last, rig.bones[aim.last].tail);
+    m.turn_branch(aim.root, glm::mat3_cast(shortest_turn(tail - root, aim.end - root)));
+  }
+}
+
 // A body that is not known but for the rig.
 Fitted capsule_start(const Armature& rig, const Target& target, Progress& progress) {
   progress.update("starting", 0);
   Fitted tried{.atlas = std::make_shared<BodyAtlas>(capsule_atlas(rig)), .body = std::nullopt, .is_capsules = true};
   take_best_start(tried, target, turned_starts(*tried.atlas, target.rough_body));
+  if (!tried.body) return tried;
+  refine_by_skin(tried, target);
+  reach_ends(*tried.body, target.rough_body);
   return tried;
 }
 
@@ -553,12 +602,12 @@ struct FoundJoints {
 // Of a body that only its rig tells of the skin shows how limbs run, and their ends, but not where along them they bend; a limb
 // that lies on nothing may lie anywhere about its root.
 void doubt_capsules(FoundJoints& found, const std::vector<double>& near, const Mannequin& m, const Target& target) {
-  constexpr double kOfWhole = 0.035, kOfBone = 0.1, kLost = 0.75, kEnough = 0.8;  // of the tissue's diagonal, and of a bone's length
+  constexpr double kOfWhole = 0.02, kOfBone = 0.2, kLost = 0.75, kEnough = 0.8;  // of the tissue's diagonal, and of a bone's length
   const Armature& rig = m.atlas().rig;
   std::vector<double> lost(rig.bones.size(), 0);
   for (int b = 0; b < std::ssize(rig.bones); ++b) {
     const int parent = rig.bones[b].parent;
-    const double length = parent < 0 ? 0 : glm::distance(m.joint(b), m.joint(parent));
+    const double length = parent < 0 ? glm::distance(m.joint(b), m.carried(b, rig.bones[b].tail)) : glm::distance(m.joint(b), m.joint(parent));
     if (parent >= 0) lost[b] = lost[parent] + kLost * length * std::clamp((kEnough - near[b]) / kEnough, 0.0, 1.0);
     found.how[b].error = kOfWhole * target.length + kOfBone * length + lost[b];
   }
@@ -641,7 +690,6 @@ FoundJoints found_joints(const Fitted& fitted, const Target& target) {
     for (int b = 0; b < m.bone_count(); ++b)
       if (is_digit(rig.bones[b].name) && rig.bones[b].name != "Jaw") found.how[b].error += lost;
   }
-  if (std::getenv("DBG")) for (int b = 0; b < m.bone_count(); ++b) std::printf("E %s strange %.2f near %.2f whole %.2f misfit/L %.4f L %.0f\n", rig.bones[b].name.c_str(), strange[b], near[b], whole, fitted.misfit/target.length, target.length);
   if (fitted.is_capsules) doubt_capsules(found, near, m, target);
   // Half sure of what may lie off by as much as a joint is thick.
   constexpr double kJoint = 40;

@@ -4,15 +4,17 @@
 //   1  the ends of the tissue and the ways to them give the limbs (core/rig/limb_paths.h), whatever their pose and however
 //      the body lies in the world;
 //   2  the skin gives pose and proportions (core/rig/articulated_fit.h);
-//   3  where the table says what is bone, the bones' surfaces give the joints; bones drawn as mere rods are followed along
+//   3  where labels name bones, joints lie where the two bones meet (core/rig/named_joints.h), and the body is laid along them;
+//   4  where the table says what is bone, the bones' surfaces give the joints; bones drawn as mere rods are followed along
 //      their axes instead. Without a table bone is the label that the long bones run through (core/bones/guess_bone_labels.h);
-//   4  where the skin is not that of the known body, landmarks of the volume's own shape put joints right
+//   5  where the skin is not that of the known body, landmarks of the volume's own shape put joints right
 //      (core/rig/joint_landmarks.h).
 // Of a body that was cut off (core/rig/tissue_cuts.h) only what is there is fitted; what lies beyond is laid on by proportion,
 // and said to be.
 //
 // The joints of any rig are then put where the body's joints came to lie, matched by what their names mean
-// (core/rig/joint_names.h); those between and below ride along. A rig whose names mean nothing is laid into the tissue's
+// (core/rig/joint_names.h); those between and below ride along. A rig whose names mean nothing, an animal's, becomes a body of
+// round limbs itself (core/rig/capsule_atlas.h), which is drawn onto the skin; one without a trunk is laid into the tissue's
 // extents.
 //
 // The same bytes come out for any number of threads.
@@ -33,7 +35,7 @@ struct JointFit {
   enum class How { Skin, BoneSurface, BoneAxis, Girth, Ball, NamedBones, Carried, Extents, Unseen };  // Unseen: beyond a cut
   How how = How::Carried;
   double confidence = 0;  // 0 .. 1
-  double error = 0;       // mm that it may lie off: seven joints of eight so found lay within it, on bodies whose joints are known
+  double error = 0;       // mm that it may lie off: nine joints of ten lay within it, on bodies whose joints are known
 };
 std::string_view to_string(JointFit::How how);  // "bone surface"
 

@@ -293,6 +293,8 @@ std::vector<Mannequin> turned_starts(const BodyAtlas& atlas, const Occupancy& bo
   for (const AtlasPoint& point : atlas.skin) skin.push_back(point.place);
   std::vector<Mannequin> starts;
   if (tissue.empty() || skin.empty()) return starts;
+  // Round limbs show nowhere where they bend, so that their parts can only be told by their shares.
+  constexpr double kAlike = 4;
   const Extent there = extent_of(tissue), here = extent_of(skin);
   std::vector<glm::dmat3> turns = axis_turns();
   for (const glm::dmat3& turn : axis_turns()) turns.push_back(there.axes * turn * glm::transpose(here.axes));
@@ -303,6 +305,7 @@ std::vector<Mannequin> turned_starts(const BodyAtlas& atlas, const Occupancy& bo
     Mannequin m(atlas);
     std::fill(m.along.begin(), m.along.end(), std::log(scale));
     m.across = m.along;
+    m.alike = kAlike;
     for (glm::dmat3& own : m.turn) own = turn;
     m.root = (there.low + there.high) / 2.0 + scale * (turn * atlas.rig.bones[0].head - (low + high) / 2.0);
     m.settle();

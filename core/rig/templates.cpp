@@ -16,7 +16,7 @@ const std::vector<RigTemplate>& rig_templates() {
       {"leg", "Leg", "hip to toes, 4 bones"},
       {"adult", "Adult body", "spine, limbs, fingers and jaw, 60 bones"},
       {"child", "Child body", "the same, in a child's proportions"},
-      {"quadruped", "Quadruped", "a dog's build; scaled to the tissue, to be corrected by hand"},
+      {"quadruped", "Quadruped", "a dog's build; drawn onto the skin of an animal, to be looked over by hand"},
   };
   return templates;
 }
