@@ -906,7 +906,7 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
     std::vector<double> free;
     for (const JointFit& joint : result.joints) free.push_back(kGivesWay * joint.error);
     result.armature = drawn_inside(placed.armature, volume, target.cuts, free);
-    constexpr double kUnlike = 0.022;  // of the tissue's diagonal
+    constexpr double kUnlike = 0.016;  // of the tissue's diagonal
     if (result.misfit_mm > kUnlike * target.length) result.warnings.push_back("the tissue looks little like the body that this rig is of; check every joint by eye");
   }
   result.check = check_rig(volume, result.armature);
