@@ -242,7 +242,7 @@ struct Finder {
 
   std::optional<NamedJoint> joint(const Meeting& meeting, BodySide side) const {
     // Bones that face each other within a share of their length make the joint; those that lie farther apart do not meet.
-    constexpr double kFacing = 0.028, kApart = 0.09, kLeastError = 3, kOfLength = 0.016, kOfVoxel = 0.7, kOfGap = 0.3, kSpine = 0.03;
+    constexpr double kFacing = 0.028, kApart = 0.09, kLeastError = 3, kOfLength = 0.02, kOfVoxel = 0.7, kOfGap = 0.3, kSpine = 0.03;
     constexpr double kAdultFemur = 470, kAdultHumerus = 320;  // mm, diagonal of the extent
     const Piece *above = find(meeting.above, side), *below = find(meeting.below, side);
     if (!above || !below) return std::nullopt;
@@ -257,7 +257,7 @@ struct Finder {
     if (meeting.ball) {
       const bool is_hip = std::string(meeting.bone) == "Thigh";
       const double scale = below->length / (is_hip ? kAdultFemur : kAdultHumerus);
-      constexpr double kBallAway = 40, kBallError = 5, kShoulderError = 9;  // mm of an adult
+      constexpr double kBallAway = 40, kBallError = 5, kShoulderError = 11;  // mm of an adult
       // A bone that was cut off looks short, and its ball large.
       const auto ball = ball_of(volume, *below, contact->place, std::clamp(scale, 0.4, 1.3));
       if (ball && glm::distance(*ball, contact->place) < kBallAway * scale) joint.place = *ball, joint.error = (is_hip ? kBallError : kShoulderError) * std::clamp(scale, 0.6, 1.3) + 0.4 * voxel;
