@@ -80,11 +80,12 @@ struct Meeting {
   const char *above, *below;  // the hinged bone of two stands for both where it is known alone
   bool along = false;  // only what faces along the limb counts: a kneecap lies before the knee
   bool ball = false;   // the bone below begins with a ball
+  double aside = 0;    // mm that authors of rigs put it elsewhere between the same bones
 };
 constexpr Meeting kMeetings[] = {
     {"Spine", "Hips", "Spine"}, {"Chest", "Spine", "Chest"}, {"Neck", "Chest", "Neck"}, {"Head", "Neck", "Head"}, {"Clavicle", "Sternum", "Clavicle"},
-    {"UpperArm", "Scapula", "UpperArm", false, true}, {"Forearm", "UpperArm", "Ulna", true}, {"Hand", "Forearm", "Hand", true},
-    {"Thigh", "Hips", "Thigh", false, true}, {"Shank", "Thigh", "Tibia", true}, {"Foot", "Tibia", "Foot", true}, {"Toes", "Foot", "Toes"},
+    {"UpperArm", "Scapula", "UpperArm", false, true}, {"Forearm", "UpperArm", "Ulna", true, false, 5}, {"Hand", "Forearm", "Hand", true, false, 2},
+    {"Thigh", "Hips", "Thigh", false, true}, {"Shank", "Thigh", "Tibia", true}, {"Foot", "Tibia", "Foot", true, false, 2}, {"Toes", "Foot", "Toes", false, false, 5},
 };
 
 // The two pieces that meet at a finger's joint; none for other bones.
@@ -251,13 +252,13 @@ struct Finder {
     const glm::dvec3 along = meeting.along && glm::length(way) > 0 ? glm::normalize(way) : glm::dvec3(0);
     const auto contact = contact_of(*above, *below, along, std::max(voxel, kFacing * length), std::max(2.5 * voxel, kApart * length));
     if (!contact) return std::nullopt;
-    NamedJoint joint{.bone = 0, .place = contact->place, .error = kLeastError + kOfLength * length + kOfVoxel * voxel + kOfGap * contact->gap};
+    NamedJoint joint{.bone = 0, .place = contact->place, .error = kLeastError + kOfLength * length + kOfVoxel * voxel + kOfGap * contact->gap + meeting.aside};
     // Vertebrae meet along all of their discs and processes, and authors of rigs choose among them.
     if (side == BodySide::Middle && is_of_trunk(meeting.bone)) joint.error += kSpine * above->length;
     if (meeting.ball) {
       const bool is_hip = std::string(meeting.bone) == "Thigh";
       const double scale = below->length / (is_hip ? kAdultFemur : kAdultHumerus);
-      constexpr double kBallAway = 40, kBallError = 5, kShoulderError = 11;  // mm of an adult
+      constexpr double kBallAway = 40, kBallError = 5, kShoulderError = 13;  // mm of an adult
       // A bone that was cut off looks short, and its ball large.
       const auto ball = ball_of(volume, *below, contact->place, std::clamp(scale, 0.4, 1.3));
       if (ball && glm::distance(*ball, contact->place) < kBallAway * scale) joint.place = *ball, joint.error = (is_hip ? kBallError : kShoulderError) * std::clamp(scale, 0.6, 1.3) + 0.4 * voxel;

@@ -86,6 +86,7 @@ TEST_CASE("anatomical names: a finger's bone is read with finger and segment") {
     CHECK_FALSE(name.plural);
   };
   check_finger("Middle phalanx of left middle finger", BodyPart::Middle, 2);
+  check_finger("Distal phalanx of left middle finger", BodyPart::Middle, 3);
   check_finger("Distal phalanx of right index finger", BodyPart::Index, 3);
   check_finger("Proximal phalanx of right thumb", BodyPart::Thumb, 2);
   check_finger("Left first metacarpal bone", BodyPart::Thumb, 1);
