@@ -289,7 +289,7 @@ void note_bone_overlap(Report& report, std::int64_t voxels, bool joints_fitted) 
   if (voxels == 0) return;
   note(report, {joints_fitted ? std::to_string(voxels) + " voxels are still claimed by two bones"
                               : std::to_string(voxels) + " voxels are claimed by two bones: the rig's joint is not the anatomical one: "
-                                                         "add --fit-joints"});
+                                                         "add --fit-joints, which moves its axis and with it the pose"});
 }
 
 // Of a pose, beside the posed volume.

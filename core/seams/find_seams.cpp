@@ -2,11 +2,12 @@
 #include "core/seams/find_seams.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "core/bones/min_cut.h"
 #include "core/seams/limbs.h"
-#include "core/seams/max_flow.h"
 #include "core/skin/soft_body.h"
 #include "core/skin/tissue_front.h"
 
@@ -31,6 +32,13 @@ double cost_of(TissueKind kind) {
 }
 
 bool is_sheet(TissueKind kind) { return kind == TissueKind::Skin || kind == TissueKind::Connective; }
+
+// Of a voxel of the band: it is the limb's, it is not, or the cut decides.
+enum class Side { Limb, Other, Free };
+
+// In a CutGraph, the edges of a voxel in the six directions of its faces; edge 25 - k leads back over edge k.
+constexpr std::array<int, 6> kEdgeTowards{12, 13, 10, 15, 4, 21};
+constexpr std::int32_t kCertain = 1 << 30;
 
 // What labels say of limbs. Only kinds that are found all over the body are named so; "head" of an organ is part of it.
 std::optional<LimbName> limb_of_tissue(const Tissue& tissue) {
@@ -125,7 +133,7 @@ class SeamFinder {
   void part(const Limb& limb) {
     find_band(limb);
     if (!band_.empty()) {
-      const std::vector<bool> inside = cheapest_cut(limb);
+      const std::vector<std::uint8_t> inside = cheapest_cut(limb);
       take_sides(limb, inside);
       cut_faces(limb);
     }
@@ -195,42 +203,46 @@ class SeamFinder {
   }
 
   // Bones, tissue whose name tells, and the band's ends stay what they are.
-  MaxFlow::Side fixed_side(const Limb& limb, const Node& node) const {
-    const MaxFlow::Side own = is_of(limb, node.place) ? MaxFlow::Side::Source : MaxFlow::Side::Sink;
+  Side fixed_side(const Limb& limb, const Node& node) const {
+    const Side own = is_of(limb, node.place) ? Side::Limb : Side::Other;
     if (held_by_[node.place] != kSoft) return own;
     const auto named = named_[volume_.at(node.voxel)];
     const auto limb_name = limb_of_bone_[std::find(limb.has_bone.begin(), limb.has_bone.end(), true) - limb.has_bone.begin()];
-    if (named && limb_name && (*named != *limb_name || own == MaxFlow::Side::Source)) return own;
+    if (named && limb_name && (*named != *limb_name || own == Side::Limb)) return own;
     bool is_end = false;
     for_each_joined(node.voxel, [&](int, const glm::ivec3&, std::int64_t there) { is_end |= node_of_[there] < 0; });
-    return is_end ? own : MaxFlow::Side::Free;
+    return is_end ? own : Side::Free;
   }
 
-  std::vector<bool> cheapest_cut(const Limb& limb) const {
+  std::vector<std::uint8_t> cheapest_cut(const Limb& limb) const {
     const std::vector<float> depth = depth_in_sheets();
-    MaxFlow flow(static_cast<std::int32_t>(band_.size()));
+    std::array<std::int32_t, 26> none, nothing{};
+    none.fill(-1);
+    CutGraph graph{std::vector(band_.size(), none), std::vector(band_.size(), nothing), std::vector<std::int32_t>(band_.size(), 0)};
     const glm::dvec3 s = volume_.grid.spacing, area(s.y * s.z, s.x * s.z, s.x * s.y);
     const double smallest = std::min({area.x, area.y, area.z});
     const auto cost = [&](std::int32_t n) { return cost_of(kind_[volume_.at(band_[n].voxel)]) / (1 + depth[n]); };
     for (std::int32_t n = 0; n < std::ssize(band_); ++n) {
-      flow.fix(n, fixed_side(limb, band_[n]));
+      const Side side = fixed_side(limb, band_[n]);
+      graph.terminal[n] = side == Side::Limb ? kCertain : side == Side::Other ? -kCertain : 0;
       for_each_joined(band_[n].voxel, [&](int direction, const glm::ivec3&, std::int64_t there) {
         const std::int32_t m = node_of_[there];
-        if (m < 0 || !(direction & 1)) return;
+        if (m < 0) return;
         const double capacity = kCostUnit * area[direction >> 1] / smallest * (cost(n) + cost(m));
-        flow.connect(n, direction, m, direction ^ 1, std::max(1, static_cast<int>(std::lround(capacity))));
+        graph.neighbour[n][kEdgeTowards[direction]] = m;
+        graph.capacity[n][kEdgeTowards[direction]] = std::max(1, static_cast<int>(std::lround(capacity)));
       });
     }
-    return flow.source_side();
+    return min_cut(std::move(graph));
   }
 
   // What changes sides follows the bone of what is around it there. A fragment of one side that hangs on nothing else of it goes
   // with the other.
-  void take_sides(const Limb& limb, const std::vector<bool>& inside) {
+  void take_sides(const Limb& limb, const std::vector<std::uint8_t>& inside) {
     std::vector<bool> settled(band_.size());
     std::vector<std::int32_t> open;
     for (std::int32_t n = 0; n < std::ssize(band_); ++n)
-      if (is_of(limb, band_[n].place) == inside[n] && fixed_side(limb, band_[n]) != MaxFlow::Side::Free) {
+      if (is_of(limb, band_[n].place) == bool(inside[n]) && fixed_side(limb, band_[n]) != Side::Free) {
         settled[n] = true;
         open.push_back(n);
       }

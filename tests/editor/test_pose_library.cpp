@@ -54,7 +54,7 @@ TEST_CASE("pose library: a card applies its pose by a click and a part of it by 
   CHECK(bend_of_fore(pose_of(s.document())) < 1e-9);
 }
 
-TEST_CASE("pose library: a rig whose bones are known has the poses of any body, with pictures; a click seats it, and they are nobody's to delete") {
+TEST_CASE("pose library: a rig whose bones are known has the poses of any body, with pictures, a click seats it, and they are nobody's to delete") {
   Stage s;
   CHECK(body_pose_cards(s.editor()).empty());
   Document next = s.document();

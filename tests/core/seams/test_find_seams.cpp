@@ -109,7 +109,7 @@ TEST_CASE("seams: the same with one, two and four threads") {
   }
 }
 
-TEST_CASE("seams: a raised arm leaves the trunk where it is and takes all of itself along; without them it drags a web") {
+TEST_CASE("seams: a raised arm leaves the trunk where it is and takes all of itself along, and drags a web without them") {
   const test::GluedArm body(-3);
   const auto seams = std::make_shared<const Seams>(body.seams());
   const Raised cut = raise(body, seams, 60), grown = raise(body, nullptr, 60);
