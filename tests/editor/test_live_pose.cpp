@@ -122,7 +122,7 @@ TEST_CASE("live pose: what the pointer is over is the voxel at rest, in slices a
   LiveEditor test;
   test.turn("Y", 90);
   test.play("key Return\nclick view.four\nwait-job");
-  const glm::dvec3 rest(1, 1, -45), posed = test.scene().posed_from_rest[1].rotation * rest;
+  const glm::dvec3 rest(15, 1, -20), posed = test.scene().posed_from_rest[1].rotation * rest;
   const Grid& grid = test.editor->document().volume->grid;
   test.editor->views->cross_hair = posed;
   test.play("wait-job");

@@ -89,7 +89,7 @@ TEST_CASE("steps: the list names what is missing next, from nothing to a posed v
   )");
   CHECK(next_step(*test.editor) == "none");
   CHECK(steps(*test.editor)[4].state == StepState::Done);
-  CHECK(steps(*test.editor)[4].line == "Fore 30\u00b0, DQ");
+  CHECK(steps(*test.editor)[4].line == "Fore 30\u00b0, Mixed");
   run(*test.editor, "resample.lbs");
   run(*test.editor, "resample.run");
   test.play("wait-job");
@@ -109,8 +109,8 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   const Document& document = test.editor->document();
   REQUIRE(document.results.size() == 1);
   const Result& result = *document.results[0];
-  CHECK(result.name == "Fore 30\u00b0, DQ");
-  const Posed expected = resample(*document.volume, *document.tissues, *document.armature, *document.weights, *document.pose, DualQuaternion{});
+  CHECK(result.name == "Fore 30\u00b0, Mixed");
+  const Posed expected = resample(*document.volume, *document.tissues, *document.armature, *document.weights, *document.pose, MixedBlend{});
   CHECK(result.volume->grid == expected.volume.grid);
   CHECK(result.volume->voxels == expected.volume.voxels);
   const auto facts = facts_of(*test.editor, document.results[0]);
@@ -118,14 +118,14 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   CHECK(facts->change_percent);
   CHECK(facts->seconds > 0);
   // With the voxels that `limber resample --overlap` would have marked.
-  const auto marked = resample(*document.volume, *document.tissues, *document.armature, *document.weights, *document.pose, DualQuaternion{}, {.overlap = true}).overlap;
+  const auto marked = resample(*document.volume, *document.tissues, *document.armature, *document.weights, *document.pose, MixedBlend{}, {.overlap = true}).overlap;
   REQUIRE(result.overlap);
   CHECK(std::ssize(result.overlap->tissue) == std::count(marked.begin(), marked.end(), 1));
   CHECK(std::ssize(result.overlap->bones) == std::count(marked.begin(), marked.end(), 2));
   CHECK(facts->overlap_voxels >= std::ssize(result.overlap->tissue));
 
   // Shown in place of the volume, and no longer.
-  test.play("click \"Fore 30\u00b0, DQ/row\"");
+  test.play("click \"Fore 30\u00b0, Mixed/row\"");
   CHECK(test.editor->views->scene.volume == result.volume);
   test.play("click \"At rest/row\"");
   CHECK(test.editor->views->scene.volume == document.volume);
@@ -340,14 +340,15 @@ TEST_CASE("resample: finite elements run in the worker as the panel says, and th
     key Ctrl+4
     click resample.fem
     click Quality/list
-    click "Draft, 12 mm"
+    click "Fine, 4 mm"
   )");
-  CHECK(test.editor->resampling.quality == "draft");
+  CHECK(test.editor->resampling.quality == "fine");
   CHECK(test.editor->resampling.contact);
   test.play("click Contact");
   CHECK_FALSE(test.editor->resampling.contact);
   run(*test.editor, "resample.run");
   test.play("wait-job");
+  INFO(test.editor->messages.last_failure);
   const Document& document = test.editor->document();
   REQUIRE(document.results.size() == 1);
   CHECK(document.results[0]->name == "Fore 30\u00b0, FEM");
