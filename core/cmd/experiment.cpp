@@ -79,7 +79,7 @@ void add_experiment(CLI::App& app, const StartPictures& pictures) {
   command->add_option("STUDY", options->study, "description (JSON), or arm: the elbow at 2, 3, 4 mm, by every technique")->required();
   command->add_option("DIR", options->folder, "for arm: a folder with man-arm-2mm.mha and its armature (default: the procedural arm)");
   command->add_option("-o,--output", options->out, "folder for cells.csv, cells.json, report.html and all that was computed; made if absent")->required();
-  command->add_option("--methods", options->methods, "lbs, dqs, fem, fem-contact, and each with -mass-exact behind it (default: as the description says; the first four)")->delimiter(',')->type_name("M,M");
+  command->add_option("--methods", options->methods, "lbs, dqs, fem, fem-contact, mix, and each with -mass-exact behind it (default: as the description says; else the first four)")->delimiter(',')->type_name("M,M");
   command->add_option("--shard", options->shard, "computes every n-th cell only, from the i-th on")->type_name("i/n");
   add_run_options(*command, options->run);
   command->callback([options, pictures] { run(*options, pictures); });

@@ -31,13 +31,14 @@ std::string colour_of(int technique) {
   return "t" + std::to_string(technique % kPlainTechniques) + (is_mass_exact(static_cast<Technique>(technique)) ? " exact" : "");
 }
 
-// Circle, square, triangle, diamond; a small dot for what is no technique.
+// Circle, square, triangle, diamond, triangle upside down; a small dot for what is no technique.
 std::string mark(int technique, double x, double y, double r) {
   const std::string style = " class=\"mark " + colour_of(technique) + "\"/>";
   switch (technique < 0 ? technique : technique % kPlainTechniques) {
     case 1: return "<rect x=\"" + px(x - 0.88 * r) + "\" y=\"" + px(y - 0.88 * r) + "\" width=\"" + px(1.76 * r) + "\" height=\"" + px(1.76 * r) + "\"" + style;
     case 2: return "<path d=\"M" + px(x) + " " + px(y - 1.15 * r) + "L" + px(x + 1.1 * r) + " " + px(y + 0.85 * r) + "L" + px(x - 1.1 * r) + " " + px(y + 0.85 * r) + "Z\"" + style;
     case 3: return "<path d=\"M" + px(x) + " " + px(y - 1.25 * r) + "L" + px(x + 1.25 * r) + " " + px(y) + "L" + px(x) + " " + px(y + 1.25 * r) + "L" + px(x - 1.25 * r) + " " + px(y) + "Z\"" + style;
+    case 4: return "<path d=\"M" + px(x) + " " + px(y + 1.15 * r) + "L" + px(x + 1.1 * r) + " " + px(y - 0.85 * r) + "L" + px(x - 1.1 * r) + " " + px(y - 0.85 * r) + "Z\"" + style;
     default: return "<circle cx=\"" + px(x) + "\" cy=\"" + px(y) + "\" r=\"" + px(technique < 0 ? 0.7 * r : r) + "\"" + style;
   }
 }

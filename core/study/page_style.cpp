@@ -6,9 +6,9 @@ namespace limber {
 std::string_view page_style() {
   return R"css(
 :root{--paper:#ffffff;--panel:#f4f5f7;--line:#d3d7dd;--line2:#bec4cc;--text:#1b1d21;--text2:#4a505a;--text3:#5d6470;--accent:#1a57b8;--ok:#0f7043;--bad:#b8232b;--ok-soft:#e3f3ea;--bad-soft:#fbe6e7;
- --t0:#2c66b0;--t1:#b86200;--t2:#0a7d68;--t3:#8a3fb0;--void:#25282d}
+ --t0:#2c66b0;--t1:#b86200;--t2:#0a7d68;--t3:#8a3fb0;--t4:#a03060;--void:#25282d}
 @media (prefers-color-scheme:dark){:root{--paper:#1e2024;--panel:#25272c;--line:#33363d;--line2:#4a4e57;--text:#e6e8ec;--text2:#aeb4be;--text3:#969ca7;--accent:#8fbeff;--ok:#5ad19a;--bad:#ff7a80;--ok-soft:#1d3329;--bad-soft:#3d2427;
- --t0:#6fa8dc;--t1:#e3a24c;--t2:#3fb6a8;--t3:#c08be8}}
+ --t0:#6fa8dc;--t1:#e3a24c;--t2:#3fb6a8;--t3:#c08be8;--t4:#e88bb0}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--paper);color:var(--text);font:15px/1.55 Inter,"Segoe UI",system-ui,"Liberation Sans",Arial,sans-serif;font-variant-numeric:tabular-nums}
 main{max-width:1000px;margin:0 auto;padding:40px 28px 80px}
@@ -57,11 +57,11 @@ svg .axis{stroke:var(--text2);stroke-width:1}
 svg .line{fill:none;stroke-width:1.8;stroke-linejoin:round}
 svg .mark{stroke:var(--paper);stroke-width:1}
 svg .name{font-weight:600}
-.line.t0{stroke:var(--t0)}.line.t1{stroke:var(--t1)}.line.t2{stroke:var(--t2)}.line.t3{stroke:var(--t3)}.line.t-none{stroke:var(--text3);stroke-dasharray:3 3}
-.mark.t0,.bar.t0,svg .name.t0{fill:var(--t0)}.mark.t1,.bar.t1,svg .name.t1{fill:var(--t1)}.mark.t2,.bar.t2,svg .name.t2{fill:var(--t2)}.mark.t3,.bar.t3,svg .name.t3{fill:var(--t3)}
+.line.t0{stroke:var(--t0)}.line.t1{stroke:var(--t1)}.line.t2{stroke:var(--t2)}.line.t3{stroke:var(--t3)}.line.t4{stroke:var(--t4)}.line.t-none{stroke:var(--text3);stroke-dasharray:3 3}
+.mark.t0,.bar.t0,svg .name.t0{fill:var(--t0)}.mark.t1,.bar.t1,svg .name.t1{fill:var(--t1)}.mark.t2,.bar.t2,svg .name.t2{fill:var(--t2)}.mark.t3,.bar.t3,svg .name.t3{fill:var(--t3)}.mark.t4,.bar.t4,svg .name.t4{fill:var(--t4)}
 .mark.t-none,svg .name.t-none{fill:var(--text3)}
 .line.exact{stroke-dasharray:6 3}svg .mark.exact{fill:var(--paper);stroke-width:1.8}svg .bar.exact{fill-opacity:.35;stroke-width:1.2}
-.mark.t0.exact,.bar.t0.exact{stroke:var(--t0)}.mark.t1.exact,.bar.t1.exact{stroke:var(--t1)}.mark.t2.exact,.bar.t2.exact{stroke:var(--t2)}.mark.t3.exact,.bar.t3.exact{stroke:var(--t3)}
+.mark.t0.exact,.bar.t0.exact{stroke:var(--t0)}.mark.t1.exact,.bar.t1.exact{stroke:var(--t1)}.mark.t2.exact,.bar.t2.exact{stroke:var(--t2)}.mark.t3.exact,.bar.t3.exact{stroke:var(--t3)}.mark.t4.exact,.bar.t4.exact{stroke:var(--t4)}
 p.legend{display:flex;flex-wrap:wrap;gap:4px 22px;margin:0 0 10px;font-size:13.5px}
 .panels{display:grid;grid-template-columns:repeat(3,1fr);gap:18px 14px}
 .panels.two{grid-template-columns:repeat(2,1fr)}

@@ -79,7 +79,7 @@ class Pace {
   }
 
  private:
-  static double weight(int technique) { return plain_of(static_cast<Technique>(technique)) >= Technique::Fem ? 5 : 1; }
+  static double weight(int technique) { return is_fem(static_cast<Technique>(technique)) ? 5 : 1; }
   std::array<double, kTechniques> seconds_{}, cells_{};
 };
 
@@ -241,7 +241,7 @@ class Runner {
     if (!map.path.empty()) job["map"] = map.path.string();
     if (pose.frame) job["frame"] = *pose.frame;
     if (!pose.up.empty()) job["up"] = pose.up;
-    const bool fem = technique >= Technique::Fem;
+    const bool fem = is_fem(technique);
     job["method"] = fem ? "fem" : word_of(technique);
     if (technique == Technique::FemContact) job["contact"] = true;
     if (fem) job["quality"] = study_.quality;

@@ -21,13 +21,10 @@ constexpr std::size_t kMostCells = 100000;
 constexpr std::size_t kLongestName = 60;
 
 constexpr std::array<std::pair<const char*, const char*>, kPlainTechniques> kNames = {
-    {{"lbs", "Linear blend"}, {"dqs", "Dual quaternions"}, {"fem", "FEM"}, {"fem-contact", "FEM with contact"}}};
+    {{"lbs", "Linear blend"}, {"dqs", "Dual quaternions"}, {"fem", "FEM"}, {"fem-contact", "FEM with contact"}, {"mix", "Mixed blend"}}};
 
-std::vector<Technique> plain_techniques() {
-  std::vector<Technique> techniques;
-  for (int t = 0; t < kPlainTechniques; ++t) techniques.push_back(static_cast<Technique>(t));
-  return techniques;
-}
+// What a study compares where it names none.
+std::vector<Technique> usual_techniques() { return {Technique::LinearBlend, Technique::DualQuaternion, Technique::Fem, Technique::FemContact}; }
 
 // Reads a value of the description, and says which key is wrong.
 class Reader {
@@ -173,7 +170,7 @@ void read_cells(const Reader& read, const Json& json, Study& study) {
     for (const Json& one : read.list(json["methods"], "methods")) words.push_back(read.text(one, "methods"));
     study.techniques = read.techniques(words);
   } else {
-    study.techniques = plain_techniques();
+    study.techniques = usual_techniques();
   }
 
   const auto check_distinct = [&](auto values, const char* key) {
@@ -211,7 +208,7 @@ std::vector<Technique> techniques_of(const std::vector<std::string>& words, cons
   for (const std::string& word : words) {
     int t = 0;
     while (t < kTechniques && word_of(static_cast<Technique>(t)) != word) ++t;
-    if (t == kTechniques) throw Error("there is no such method: " + word, where, "use lbs, dqs, fem, fem-contact, or one of them with -mass-exact behind it");
+    if (t == kTechniques) throw Error("there is no such method: " + word, where, "use lbs, dqs, mix, fem, fem-contact, or one of them with -mass-exact behind it");
     if (std::count(techniques.begin(), techniques.end(), static_cast<Technique>(t))) throw Error("something stands there twice", where, "name each once");
     techniques.push_back(static_cast<Technique>(t));
   }
@@ -263,7 +260,7 @@ Study paper_study(const Path& folder) {
     const std::string text = "+" + std::to_string(degrees);
     study.poses.push_back({.name = text + "°", .flex = degrees ? std::vector<std::string>{"Forearm=" + std::to_string(degrees)} : std::vector<std::string>{}});
   }
-  study.techniques = plain_techniques();
+  study.techniques = usual_techniques();
   return study;
 }
 

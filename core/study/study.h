@@ -22,10 +22,14 @@
 namespace limber {
 
 // A method, and each again with masses made exact afterwards: a row of its own, never silently part of the method's.
-enum class Technique { LinearBlend, DualQuaternion, Fem, FemContact, LinearBlendMassExact, DualQuaternionMassExact, FemMassExact, FemContactMassExact };
-constexpr int kTechniques = 8, kPlainTechniques = 4;
+enum class Technique {
+  LinearBlend, DualQuaternion, Fem, FemContact, MixedBlend,
+  LinearBlendMassExact, DualQuaternionMassExact, FemMassExact, FemContactMassExact, MixedBlendMassExact,
+};
+constexpr int kTechniques = 10, kPlainTechniques = 5;
 constexpr bool is_mass_exact(Technique technique) { return static_cast<int>(technique) >= kPlainTechniques; }
 constexpr Technique plain_of(Technique technique) { return static_cast<Technique>(static_cast<int>(technique) % kPlainTechniques); }
+constexpr bool is_fem(Technique technique) { return plain_of(technique) == Technique::Fem || plain_of(technique) == Technique::FemContact; }
 std::string word_of(Technique technique);  // "fem-contact", "fem-mass-exact": in descriptions, folders and tables
 std::string name_of(Technique technique);  // "FEM with contact", "FEM, mass-exact"
 // Of words. Throws Error naming `where` for one that is none, or stands there twice.
