@@ -96,37 +96,26 @@ class AirRuns {
   std::vector<std::int64_t> first_, joined_;
 };
 
-template <class Body>
-void for_each_face_neighbour(const glm::ivec3& v, const Body& body) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side : {-1, 1}) {
-      glm::ivec3 beside = v;
-      beside[axis] += side;
-      body(beside);
-    }
-}
-
 // Which pocket at rest, of those around the rest places of a pocket's walls, holds how many voxels: their sum, each counted once.
 std::int64_t size_at_rest(const AirPocket& pocket, const LabelVolume& posed, const LabelVolume& rest, const std::vector<AirPocket>& rest_pockets,
                           const std::unordered_map<std::int64_t, int>& pocket_at_rest, const RestPoint& rest_point) {
   std::set<int> found;
   for (const glm::ivec3& v : pocket)
-    for_each_face_neighbour(v, [&](const glm::ivec3& wall) {
-      if (posed.at_or_air(wall) == 0) return;
+    for (const glm::ivec3& face : kFaceNeighbours) {
+      const glm::ivec3 wall = v + face;
+      if (posed.at_or_air(wall) == 0) continue;
       const glm::ivec3 from = glm::ivec3(glm::floor(rest_point(wall) + 0.5));
       for (const glm::ivec3& step : neighbours())
         if (rest.grid.contains(from + step))
           if (const auto at = pocket_at_rest.find(rest.grid.index(from + step)); at != pocket_at_rest.end()) found.insert(at->second);
-    });
+    }
   std::int64_t size = 0;
   for (int p : found) size += std::ssize(rest_pockets[p]);
   return size;
 }
 
 bool touches_tissue(const LabelVolume& posed, const glm::ivec3& v) {
-  bool found = false;
-  for_each_face_neighbour(v, [&](const glm::ivec3& beside) { found |= posed.at_or_air(beside) != 0; });
-  return found;
+  return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(), [&](const glm::ivec3& face) { return posed.at_or_air(v + face) != 0; });
 }
 
 // The flesh at a voxel of a pocket's border, looked for at most two voxels behind its wall; else the skin there.
@@ -137,8 +126,7 @@ Label flesh_behind(const LabelVolume& posed, const glm::ivec3& v, const LabelSet
 }
 
 // From the walls inwards, layer by layer, until `kept` voxels are left.
-std::int64_t fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSet& flesh, const LabelSet& soft) {
-  std::int64_t filled = 0;
+void fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSet& flesh, const LabelSet& soft, std::vector<glm::ivec3>& filled) {
   while (std::ssize(pocket) > kept) {
     AirPocket inner;
     std::vector<std::pair<glm::ivec3, Label>> layer;
@@ -151,28 +139,29 @@ std::int64_t fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const
         inner.push_back(v);
     }
     if (layer.empty()) break;
-    for (const auto& [v, label] : layer) posed.at(v) = label;
-    filled += std::ssize(layer);
+    for (const auto& [v, label] : layer) {
+      posed.at(v) = label;
+      filled.push_back(v);
+    }
     pocket = std::move(inner);
   }
-  return filled;
 }
 
 }  // namespace
 
 std::vector<AirPocket> air_pockets(const LabelVolume& volume) { return AirRuns(volume).pockets(); }
 
-std::int64_t fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point) {
+std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point) {
   const std::vector<AirPocket> pockets = air_pockets(posed), rest_pockets = air_pockets(rest);
-  if (pockets.empty()) return 0;
+  if (pockets.empty()) return {};
   std::unordered_map<std::int64_t, int> pocket_at_rest;
   for (size_t p = 0; p < rest_pockets.size(); ++p)
     for (const glm::ivec3& v : rest_pockets[p]) pocket_at_rest[rest.grid.index(v)] = static_cast<int>(p);
   const double posed_per_rest = rest.grid.voxel_volume() / posed.grid.voxel_volume();
-  std::int64_t filled = 0;
+  std::vector<glm::ivec3> filled;
   for (const AirPocket& pocket : pockets) {
     const std::int64_t before = size_at_rest(pocket, posed, rest, rest_pockets, pocket_at_rest, rest_point);
-    filled += fill(posed, pocket, std::llround(posed_per_rest * double(before)), flesh, soft);
+    fill(posed, pocket, std::llround(posed_per_rest * double(before)), flesh, soft, filled);
   }
   return filled;
 }

@@ -159,12 +159,7 @@ bool is_enclosed(const LabelVolume& volume, const glm::ivec3& voxel) {
 
 bool touches_air(const LabelVolume& volume, const glm::ivec3& voxel) {
   bool air = false;
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side : {-1, 1}) {
-      glm::ivec3 beside = voxel;
-      beside[axis] += side;
-      air |= volume.at_or_air(beside) == 0;
-    }
+  for (const glm::ivec3& step : kFaceNeighbours) air |= volume.at_or_air(voxel + step) == 0;
   return air;
 }
 

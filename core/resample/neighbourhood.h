@@ -15,6 +15,8 @@ constexpr std::int64_t kSmallestPart = 50;  // voxels; what is smaller comes and
 using RestPoint = std::function<glm::dvec3(const glm::ivec3& posed_voxel)>;
 
 const std::array<glm::ivec3, 26>& neighbours();
+// The six of them that share a face with it.
+constexpr std::array<glm::ivec3, 6> kFaceNeighbours{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
 // The place in components.runs of the run that holds a voxel, or else of the next one that ends after it.
 std::int64_t run_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v);

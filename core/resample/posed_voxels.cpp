@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -25,8 +27,6 @@ constexpr int kReach = 8;                // voxels: as far as soft tissue is loo
 
 constexpr double kMostSure = 0.8;        // of memberships: a voxel that is surer of its tissue keeps it
 constexpr std::int64_t kJudged = 5000;   // voxels: the grid alone changes smaller tissues by more than is asked here
-
-constexpr std::array<glm::ivec3, 6> kFaceSteps{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
 // Grey values between voxel centres, linear; the nearest voxel's outside the grid.
 class GreySampler {
@@ -171,8 +171,10 @@ class PosedVoxels {
     posed_.report.mended_voxels = std::ssize(bridges) + kept + closed + thin_skin(closed) +
                                   mend(posed_.volume, volume_, labels_.soft, rest_point, {&rows_, &rest_rows},
                                        {&bone_rows_, &bone_rest_rows});
-    posed_.report.filled_air_voxels = fill_grown_pockets(posed_.volume, volume_, flesh_, labels_.soft, rest_point);
-    posed_.report.new_skin_voxels = cover_bare_flesh();
+    std::vector<glm::ivec3> was_air = fill_grown_pockets(posed_.volume, volume_, flesh_, labels_.soft, rest_point);
+    posed_.report.filled_air_voxels = std::ssize(was_air);
+    posed_.report.new_skin_voxels = cover_bare_flesh(was_air);
+    carry_fields(was_air, rest_point);
   }
 
  private:
@@ -188,20 +190,50 @@ class PosedVoxels {
     return closed;
   }
 
-  // Where a seam opens or a stretch goes deeper, flesh lies bare that was covered at rest: its outermost voxels are skin now, and
-  // bone that lay right at a seam gets skin over it, of
-  // the kind that the skin beside them is.
-  std::int64_t cover_bare_flesh() {
-    std::vector<glm::ivec3> bare;
+  // Where a seam opens or a stretch goes deeper, flesh lies bare that was covered at rest: its outermost voxels are skin now. Bone
+  // that lay right at a seam gets skin over it.
+  //   was_air  what had no tissue before is added
+  std::int64_t cover_bare_flesh(std::vector<glm::ivec3>& was_air) {
+    std::vector<glm::ivec3> bare, over_bone;
+    std::unordered_set<std::int64_t> known;
     for (const UnderSkin& voxel : under_skin_) {
       const glm::ivec3 v = voxel_at(output_.grid, voxel.at);
       const Label label = posed_.volume.voxels[voxel.at];
       if (flesh_[label] && touches_air(posed_.volume, v)) bare.push_back(v);
-      if (labels_.bone[label])
-        for (const glm::ivec3& step : kFaceSteps)
-          if (output_.grid.contains(v + step) && posed_.volume.at(v + step) == 0) bare.push_back(v + step);
+      if (!labels_.bone[label]) continue;
+      for (const glm::ivec3& step : kFaceNeighbours)
+        if (const glm::ivec3 over = v + step; output_.grid.contains(over) && posed_.volume.at(over) == 0 && known.insert(output_.grid.index(over)).second) over_bone.push_back(over);
     }
-    return cover_with_skin(posed_.volume, std::move(bare), labels_.skin);
+    bare.insert(bare.end(), over_bone.begin(), over_bone.end());
+    const std::int64_t covered = cover_with_skin(posed_.volume, std::move(bare), labels_.skin);
+    std::copy_if(over_bone.begin(), over_bone.end(), std::back_inserter(was_air), [&](const glm::ivec3& v) { return posed_.volume.at(v) != 0; });
+    return covered;
+  }
+
+  // Tissue where the map has none comes from where the tissue beside it comes from.
+  //   was_air  such voxels, each beside tissue of the map or an earlier one
+  template <class RestPoint>
+  void carry_fields(const std::vector<glm::ivec3>& was_air, const RestPoint& rest_point) {
+    if (!settings_.displacement && !settings_.jacobian && !settings_.grey) return;
+    std::unordered_map<std::int64_t, glm::dvec3> rest;
+    std::unordered_set<std::int64_t> waiting;
+    for (const glm::ivec3& v : was_air) waiting.insert(output_.grid.index(v));
+    for (const glm::ivec3& v : was_air) {
+      const std::int64_t at = output_.grid.index(v);
+      const auto source = std::find_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
+        return posed_.volume.at_or_air(v + step) != 0 && !waiting.contains(output_.grid.index(v + step));
+      });
+      waiting.erase(at);
+      if (source == neighbours().end()) continue;
+      const std::int64_t beside = output_.grid.index(v + *source);
+      const auto known = rest.find(beside);
+      const glm::dvec3 from = known != rest.end() ? known->second : rest_point(v + *source);
+      rest[at] = from;
+      if (settings_.displacement)
+        posed_.displacement[at] = world_from_rest_.linear * (lattice_.output().to_rest(glm::dvec3(output_.range.low + v)) - from);
+      if (settings_.jacobian) posed_.jacobian[at] = posed_.jacobian[beside];
+      if (settings_.grey) posed_.grey.voxels[at] = moved_grey(from);
+    }
   }
 
   // Where skin was closed it gained voxels, and elsewhere the grid laid some of it two voxels thick: the deepest of those go to

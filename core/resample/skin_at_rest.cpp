@@ -42,12 +42,10 @@ bool SkinAtRest::is_mostly_closed() const {
 
 bool SkinAtRest::touches_outside(const glm::ivec3& voxel) const {
   bool outside = false;
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side : {-1, 1}) {
-      glm::ivec3 beside = voxel;
-      beside[axis] += side;
-      outside |= !volume_.grid.contains(beside) || (volume_.at(beside) == 0 && !enclosed_air_.contains(volume_.grid.index(beside)));
-    }
+  for (const glm::ivec3& step : kFaceNeighbours) {
+    const glm::ivec3 beside = voxel + step;
+    outside |= !volume_.grid.contains(beside) || (volume_.at(beside) == 0 && !enclosed_air_.contains(volume_.grid.index(beside)));
+  }
   return outside;
 }
 
@@ -77,7 +75,7 @@ bool SkinAtRest::was_covered(const glm::dvec3& rest_point) const {
   if (touches_air(volume_, voxel)) return !touches_outside(voxel);
   if (is_deep(voxel)) return true;
   if (was_at_seam(rest_point)) return true;
-  return is_closed_ && std::none_of(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) { return is_bare(voxel + step); });
+  return is_closed_ && (skin_over(rest_point) || std::none_of(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) { return is_bare(voxel + step); }));
 }
 
 bool SkinAtRest::was_at_seam(const glm::dvec3& rest_point) const {

@@ -44,13 +44,13 @@ TEST_CASE("air pockets: what the pose closed is filled with flesh, what was ther
   LabelVolume rest = block();
   for (int x = 3; x < 6; ++x) rest.at({x, 4, 4}) = 0;
   LabelVolume posed = rest;
-  CHECK(fill_grown_pockets(posed, rest, flesh, soft, kStays) == 0);
+  CHECK(fill_grown_pockets(posed, rest, flesh, soft, kStays).empty());
   CHECK(posed.voxels == rest.voxels);
 
   posed.at({9, 8, 6}) = 0;  // new
   posed.at({10, 8, 6}) = 0;
   for (int x = 3; x < 6; ++x) posed.at({x, 5, 4}) = 0;  // twice the hollow
-  CHECK(fill_grown_pockets(posed, rest, flesh, soft, kStays) == 5);
+  CHECK(fill_grown_pockets(posed, rest, flesh, soft, kStays).size() == 5);
   CHECK(posed.at({9, 8, 6}) == 2);
   std::int64_t hollow = 0;
   for (const AirPocket& pocket : air_pockets(posed)) hollow += std::ssize(pocket);

@@ -65,7 +65,7 @@ TEST_CASE("resample: skin of one voxel stays closed over a bent limb, and bare t
       const VolumeMetrics change = compare(tube.volume, result.volume, tube.tissues);
       INFO("at ", degrees);
       CHECK(change.skin_share_before < 0.99);
-      CHECK(change.skin_share_after > change.skin_share_before - 0.02);
+      CHECK(change.skin_share_after > change.skin_share_before - 0.015);
       CHECK(change.skin_share_after < 0.9);
       const Posed as_it_falls = posed(tube, tube.pose(degrees, 20), method, {.nearest = true});
       CHECK(compare(tube.volume, as_it_falls.volume, tube.tissues).skin_share_after < change.skin_share_after - 0.02);
@@ -125,4 +125,43 @@ TEST_CASE("resample: bones stay rigid though the given weights would bend them")
     REQUIRE(result.report.bones.size() == 2);
     for (const auto& bone : result.report.bones) CHECK(bone.rigid_residual_mm < 0.01);
   }
+}
+
+TEST_CASE("resample: a hollow that a bend would enlarge keeps its size, and what fills it says where it comes from") {
+  test::BentTube tube = test::bent_tube();
+  const int joint = tube.volume.grid.size.z / 2;
+  std::int64_t hollow = 0;
+  for (int y : {6, 7, 8, 16, 17, 18})
+    for (int z = joint - 4; z <= joint + 4; ++z)
+      for (int x = 9; x <= 13; ++x) {
+        hollow += tube.volume.at({x, y, z}) != 0;
+        tube.volume.at({x, y, z}) = 0;
+      }
+  const TissueVoxels tissue(tube.volume);
+  tube.weights = SkinWeights({tube.rig.bones[0].name, tube.rig.bones[1].name}, tissue);
+  for (std::int64_t brick = 0; brick < tube.weights.chunk_count(); ++brick) {
+    SkinWeights::Influences chunk;
+    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
+      const double fore = std::clamp(0.5 + (v.z - joint) / 12.0, 0.0, 1.0);
+      chunk.push_back(tube.volume.at(v) == test::kBone ? rigid_influence(v.z > joint) : quantize({{0, 1 - fore}, {1, fore}}));
+    });
+    tube.weights.set_chunk(brick, chunk);
+  }
+  const Posed result = posed(tube, tube.pose(70), DualQuaternion{}, {.displacement = true});
+  CHECK(result.report.filled_air_voxels > 0);
+  CHECK(compare(tube.volume, result.volume, tube.tissues).enclosed_air_after <= hollow);
+  std::int64_t from_nowhere = 0;
+  const Grid& grid = result.volume.grid;
+  glm::ivec3 v;
+  for (v.z = 0; v.z < grid.size.z; ++v.z)
+    for (v.y = 0; v.y < grid.size.y; ++v.y)
+      for (v.x = 0; v.x < grid.size.x; ++v.x) {
+        if (result.volume.at(v) == 0) continue;
+        const glm::dvec3 rest = voxel_from_world(tube.volume.grid) * (world_from_voxel(grid) * glm::dvec3(v) - glm::dvec3(result.displacement[grid.index(v)]));
+        bool near_tissue = false;  // rest points on the tissue's border round to either side
+        for (int corner = 0; corner < 8; ++corner)
+          near_tissue |= tube.volume.at_or_air(glm::ivec3(glm::floor(rest)) + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)) != 0;
+        from_nowhere += !near_tissue;
+      }
+  CHECK(from_nowhere == 0);
 }
