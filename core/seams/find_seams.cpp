@@ -57,7 +57,7 @@ class SeamFinder {
     }
     if (limbs_.empty()) return;
     held_by_ = bone_holding(volume, tissue, parts, armature);
-    name_of_bones();
+    limb_of_bone_ = limb_of_bones(armature);
     spread_bones();
   }
 
@@ -78,19 +78,6 @@ class SeamFinder {
     std::int64_t place;
     float way;  // mm, from where the limbs meet
   };
-
-  void name_of_bones() {
-    std::vector<std::string> names;
-    std::vector<int> parents;
-    for (const Bone& bone : armature_.bones) {
-      names.push_back(bone.name);
-      parents.push_back(bone.parent);
-    }
-    limb_of_bone_.resize(names.size());
-    const auto roles = joint_roles(names, parents);
-    for (size_t b = 0; b < names.size(); ++b)
-      if (roles[b]) limb_of_bone_[b] = limb_name_of(*roles[b]);
-  }
 
   bool may_hold(int bone, Label label) const { return !named_[label] || !limb_of_bone_[bone] || *named_[label] == *limb_of_bone_[bone]; }
 

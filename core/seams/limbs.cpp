@@ -36,6 +36,17 @@ bool is_digit(BodyPart part) {
 // Beyond the palm.
 bool is_free_digit(const JointRole& role) { return is_digit(role.part) && role.index >= (role.part == BodyPart::Thumb ? 2 : 1); }
 
+LimbName limb_name_of(const JointRole& role) {
+  switch (role.part) {
+    case BodyPart::UpperArm: case BodyPart::Forearm: case BodyPart::Hand: case BodyPart::Palm: case BodyPart::Fingers:
+    case BodyPart::Thumb: case BodyPart::Index: case BodyPart::Middle: case BodyPart::Ring: case BodyPart::Little:
+      return LimbName::Arms;
+    case BodyPart::Thigh: case BodyPart::Shank: case BodyPart::Foot: case BodyPart::Toes: return LimbName::Legs;
+    case BodyPart::Neck: case BodyPart::Head: return LimbName::Head;
+    default: return LimbName::Trunk;
+  }
+}
+
 template <class Belongs>
 Limb limb_where(const Armature& armature, const Roles& roles, const Belongs& belongs) {
   Limb limb;
@@ -70,15 +81,10 @@ Limb digit(const Armature& armature, const Roles& roles, BodyPart part, BodySide
 
 }  // namespace
 
-LimbName limb_name_of(const JointRole& role) {
-  switch (role.part) {
-    case BodyPart::UpperArm: case BodyPart::Forearm: case BodyPart::Hand: case BodyPart::Palm: case BodyPart::Fingers:
-    case BodyPart::Thumb: case BodyPart::Index: case BodyPart::Middle: case BodyPart::Ring: case BodyPart::Little:
-      return LimbName::Arms;
-    case BodyPart::Thigh: case BodyPart::Shank: case BodyPart::Foot: case BodyPart::Toes: return LimbName::Legs;
-    case BodyPart::Neck: case BodyPart::Head: return LimbName::Head;
-    default: return LimbName::Trunk;
-  }
+std::vector<std::optional<LimbName>> limb_of_bones(const Armature& armature) {
+  std::vector<std::optional<LimbName>> names;
+  for (const auto& role : roles_of(armature)) names.push_back(role ? std::optional(limb_name_of(*role)) : std::nullopt);
+  return names;
 }
 
 std::vector<Limb> limbs_of(const Armature& armature) {

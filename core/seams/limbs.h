@@ -29,7 +29,7 @@ enum class LimbName { Arms, Legs, Trunk, Head };
 
 // Of names like "Muscle, arms" and "Residual tissue of the legs"; none where a name says nothing of it.
 std::optional<LimbName> limb_named(std::string_view tissue_name);
-// Of a bone's role.
-LimbName limb_name_of(const JointRole& role);
+// #bones; none where a bone's name and its parents' mean nothing known.
+std::vector<std::optional<LimbName>> limb_of_bones(const Armature& armature);
 
 }  // namespace limber

@@ -1,14 +1,28 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Whole volume files, header and data: read, or refused with Error, within the memory that libFuzzer is given.
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/seams/seams_io.h"
 #include "core/volume/vector_volume_io.h"
 #include "core/volume/volume_io.h"
+
+// A bar of 4 x 3 x 2 voxels, all tissue but one, whose seams a file may hold.
+static const limber::LabelVolume& body() {
+  static const limber::LabelVolume volume = [] {
+    limber::LabelVolume made;
+    made.grid.size = {4, 3, 2};
+    made.voxels.assign(made.grid.voxel_count(), 1);
+    made.voxels[5] = 0;
+    return made;
+  }();
+  return volume;
+}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const limber::Path folder = [] {
@@ -22,6 +36,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
       limber::summarize_volume(path);
       limber::read_volume(path);
+    } catch (const limber::Error&) {
+    }
+    try {
+      const limber::Seams seams = limber::read_seams(path, body());
+      seams.for_each([](const glm::ivec3& lower, int axis) {
+        glm::ivec3 above = lower;
+        ++above[axis];
+        if (!body().at(lower) || !body().at_or_air(above)) std::abort();
+      });
     } catch (const limber::Error&) {
     }
     try {

@@ -141,7 +141,6 @@ TEST_CASE("seams: files keep them, and what is no such file is refused") {
   const Path path = folder / "seams.nrrd";
   write_seams(seams, body.volume.grid, path);
   CHECK(read_seams(path, body.volume) == seams);
-  const test::GluedArm other(10);
   LabelVolume moved = body.volume;
   moved.grid.origin.x += 40;
   CHECK_THROWS_AS(read_seams(path, moved), Error);
