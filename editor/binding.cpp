@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/body_seams.h"
 #include "editor/binding.h"
 
 #include <algorithm>
 
 #include "core/base/error.h"
 #include "core/bones/bone_parts.h"
-#include "core/seams/find_seams.h"
 #include "core/skin/geodesic.h"
 #include "core/skin/recomputed.h"
 #include "core/skin/rigid.h"
@@ -73,7 +73,7 @@ TissueRegion region_of(const Part& part, const LabelVolume& volume, const Tissue
 SkinWeights computed(const Document& from, TissueVoxels tissue, const Computation& computation, Progress& progress, WeightsReport& report) {
   const LabelVolume& volume = *from.volume;
   const BoneParts parts = split_bones(volume, tissue, *from.tissues, *from.armature, progress);
-  tissue.set_seams(std::make_shared<const Seams>(find_seams(volume, tissue, *from.tissues, *from.armature, parts, progress)));
+  tissue.set_seams(body_seams().of(from.volume, from.tissues, from.armature, progress));
   switch (computation.method) {
     case BindingMethod::Rigid: return bind_rigid(volume, tissue, *from.armature, parts, progress, &report);
     case BindingMethod::Geodesic: return bind_geodesic(volume, tissue, *from.armature, parts, {.stiffness = computation.stiffness}, progress, &report);

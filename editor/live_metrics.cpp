@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/bones/bone_parts.h"
 #include "core/report/metrics.h"
-#include "core/seams/find_seams.h"
+#include "editor/body_seams.h"
 #include "editor/editor.h"
 #include "editor/live_pose.h"
 #include "editor/tissues.h"
@@ -19,9 +18,7 @@ std::optional<double> PoseMetrics::Row::change_percent() const {
 
 PoseMetrics measure(const DenseWish& wish, Progress& progress) {
   const Method method = wish.blend == Blend::Linear ? Method(LinearBlend{}) : wish.blend == Blend::Mixed ? Method(MixedBlend{}) : Method(DualQuaternion{});
-  const TissueVoxels tissue(*wish.volume);
-  const BoneParts parts = split_bones(*wish.volume, tissue, *wish.tissues, *wish.armature, progress);
-  const auto seams = std::make_shared<const Seams>(find_seams(*wish.volume, tissue, *wish.tissues, *wish.armature, parts, progress));
+  const auto seams = body_seams().of(wish.volume, wish.tissues, wish.armature, progress);
   const Posed posed = resample(*wish.volume, *wish.tissues, *wish.armature, *wish.weights, wish.pose, method, {.seams = seams}, progress);
   progress.update("measure", 0);
   const VolumeMetrics changes = compare(*wish.volume, posed.volume, *wish.tissues);

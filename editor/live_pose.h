@@ -35,6 +35,7 @@ struct PosedBody {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
   std::shared_ptr<const SkinWeights> weights;
+  std::shared_ptr<const Armature> armature;  // that says which limbs touch without being one; null: none
 
   bool operator==(const PosedBody&) const = default;
 };

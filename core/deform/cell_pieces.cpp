@@ -22,7 +22,9 @@ bool is_empty(const Voxels& voxels) {
 }
 
 // What hangs together with the first of `voxels`.
-Voxels first_piece(const Voxels& voxels) {
+//   cuts  null: none
+Voxels first_piece(const Voxels& voxels, const CellCuts* cuts) {
+  const auto open = [&](int axis, int z) { return cuts ? ~(*cuts)[axis][z] : ~std::uint64_t{0}; };
   Voxels piece{};
   const auto slice = std::find_if(voxels.begin(), voxels.end(), [](std::uint64_t each) { return each != 0; });
   piece[slice - voxels.begin()] = *slice & -*slice;
@@ -30,8 +32,9 @@ Voxels first_piece(const Voxels& voxels) {
     grown = false;
     for (int z = 0; z < 8; ++z) {
       const std::uint64_t here = piece[z];
-      const std::uint64_t around = here | (here & ~kLastColumn) << 1 | (here & ~kFirstColumn) >> 1 | here << 8 | here >> 8 |
-                                   (z > 0 ? piece[z - 1] : 0) | (z < 7 ? piece[z + 1] : 0);
+      const std::uint64_t around = here | (here & open(0, z) & ~kLastColumn) << 1 | ((here & ~kFirstColumn) >> 1 & open(0, z)) |
+                                   (here & open(1, z)) << 8 | (here >> 8 & open(1, z)) |
+                                   (z > 0 ? piece[z - 1] & open(2, z - 1) : 0) | (z < 7 ? piece[z + 1] & open(2, z) : 0);
       piece[z] = around & voxels[z];
       grown = grown || piece[z] != here;
     }
@@ -49,6 +52,20 @@ Voxels voxels_of(const TissueVoxels::Brick& brick, const glm::ivec3& low, int st
   return voxels;
 }
 
+// Null where none of the cell's voxels has a cut face.
+//   lowest  voxel of the cell
+std::shared_ptr<const CellCuts> cuts_of(const Seams& seams, const Voxels& voxels, const glm::ivec3& lowest) {
+  CellCuts cuts{};
+  bool any = false;
+  for (int z = 0; z < 8; ++z)
+    for (std::uint64_t bits = voxels[z]; bits; bits &= bits - 1) {
+      const int bit = std::countr_zero(bits);
+      for (int axis = 0; axis < 3; ++axis)
+        if (seams.is_cut(lowest + glm::ivec3(bit & 7, bit >> 3, z), axis)) cuts[axis][z] |= bits & -bits, any = true;
+    }
+  return any ? std::make_shared<const CellCuts>(cuts) : nullptr;
+}
+
 // Adds up what the voxels of one brick give to their pieces.
 class Gather {
  public:
@@ -59,10 +76,13 @@ class Gather {
     const TissueVoxels::Brick& brick = tissue_.bricks()[brick_index];
     const auto first = std::ssize(pieces);
     const int side = TissueVoxels::kBrick / step_;
+    const bool has_seams = tissue_.seams() && tissue_.seams()->is_near_brick(brick.corner);
     for (int c = 0; c < side * side * side; ++c) {
       const glm::ivec3 cell(c % side, c / side % side, c / (side * side)), low = cell * step_;
-      for (Voxels left = voxels_of(brick, low, step_); !is_empty(left);) {
-        const Voxels piece = first_piece(left);
+      Voxels left = voxels_of(brick, low, step_);
+      const auto cuts = has_seams ? cuts_of(*tissue_.seams(), left, brick.corner + low) : nullptr;
+      while (!is_empty(left)) {
+        const Voxels piece = first_piece(left, cuts.get());
         for (int z = 0; z < 8; ++z) {
           left[z] &= ~piece[z];
           for (std::uint64_t bits = piece[z]; bits; bits &= bits - 1) {
@@ -70,7 +90,7 @@ class Gather {
             piece_of_[low.x + (bit & 7) + 8 * (low.y + (bit >> 3)) + 64 * (low.z + z)] = static_cast<std::uint16_t>(std::ssize(pieces) - first);
           }
         }
-        pieces.push_back({brick.corner / step_ + cell, piece, 0, {}, {}, {}});
+        pieces.push_back({brick.corner / step_ + cell, piece, 0, {}, {}, {}, cuts});
         pieces.back().away.fill(std::numeric_limits<float>::infinity());
       }
     }
@@ -157,11 +177,12 @@ std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights
 }
 
 bool touch(const CellPiece& a, const CellPiece& b, int axis, int step) {
-  if (axis == 2) return (a.voxels[step - 1] & b.voxels[0]) != 0;
+  const auto open = [&](int z) { return a.voxels[z] & (a.cuts ? ~(*a.cuts)[axis][z] : ~std::uint64_t{0}); };
+  if (axis == 2) return (open(step - 1) & b.voxels[0]) != 0;
   const int shift = axis == 0 ? step - 1 : 8 * (step - 1);
   const std::uint64_t first = axis == 0 ? kFirstColumn : 0xff;
   for (int z = 0; z < step; ++z)
-    if (a.voxels[z] >> shift & b.voxels[z] & first) return true;
+    if (open(z) >> shift & b.voxels[z] & first) return true;
   return false;
 }
 

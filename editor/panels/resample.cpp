@@ -32,13 +32,13 @@ void draw_resample(Editor& editor, Column& column) {
   const Look& look = editor.look;
   if (column.begin_section("Resample")) {
     auto& settings = editor.resampling;
-    const Rect method = column.property("Method");
-    const float quarter = std::floor(method.width() / 4);
-    float x = method.low.x;
-    for (const char* id : {"resample.mix", "resample.lbs", "resample.dqs", "resample.fem"}) {
-      const Operator* op = find_operator(editor, id);
-      operator_button(editor, id, {{x, method.low.y}, {x + quarter - look.px(1), method.high.y}}, op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
-      x += quarter;
+    const Rect methods = column.row(30);
+    const std::array ids{"resample.mix", "resample.lbs", "resample.dqs", "resample.fem"};
+    const float width = std::floor((methods.width() - look.px(20)) / float(ids.size()));
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const Operator* op = find_operator(editor, ids[i]);
+      const float x = methods.low.x + look.px(10) + float(i) * width;
+      operator_button(editor, ids[i], {{x, methods.low.y}, {x + width - look.px(1), methods.low.y + look.px(26)}}, op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
     }
     if (settings.method == "fem") draw_fem(editor, column);
     const Rect spacing = column.property("Output");
