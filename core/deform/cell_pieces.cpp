@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <numeric>
 
 #include "core/base/parallel.h"
 
@@ -165,11 +166,17 @@ class Gather {
 }  // namespace
 
 std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing) {
-  const auto bricks = std::ssize(tissue.bricks());
-  std::vector<std::vector<CellPiece>> blocks((bricks + kGrain - 1) / kGrain);
-  parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
+  std::vector<std::int64_t> every(tissue.bricks().size());
+  std::iota(every.begin(), every.end(), 0);
+  return cell_pieces(tissue, weights, step, spacing, every);
+}
+
+std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing,
+                                   std::span<const std::int64_t> bricks) {
+  std::vector<std::vector<CellPiece>> blocks((bricks.size() + kGrain - 1) / kGrain);
+  parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Gather gather(tissue, weights, step, spacing);
-    for (auto brick = begin; brick < end; ++brick) gather.add(brick, blocks[begin / kGrain]);
+    for (auto i = begin; i < end; ++i) gather.add(bricks[i], blocks[begin / kGrain]);
   });
   std::vector<CellPiece> pieces;
   for (auto& block : blocks) pieces.insert(pieces.end(), std::make_move_iterator(block.begin()), std::make_move_iterator(block.end()));

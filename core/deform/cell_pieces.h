@@ -44,6 +44,9 @@ struct CellPiece {
 // The pieces in order of the bricks that hold them; a cell lies in one brick and its pieces behind one another.
 //   step  2, 4 or 8    spacing  of voxels, mm
 std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing);
+// Of some bricks only.
+std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing,
+                                   std::span<const std::int64_t> bricks);
 
 // Whether voxels of both touch by faces that are not cut, `b` lying in the next cell along the axis.
 bool touch(const CellPiece& a, const CellPiece& b, int axis, int step);

@@ -8,6 +8,8 @@
 
 #include "core/base/parallel.h"
 #include "core/base/pages.h"
+#include "core/deform/brick_motions.h"
+#include "core/deform/settled_flesh.h"
 #include "core/deform/split_corners.h"
 
 namespace limber {
@@ -16,7 +18,7 @@ namespace {
 
 constexpr double kFurthest = 32000;                    // output voxels from the base; fixed point holds 32 768
 constexpr std::int64_t kKeptBytes = std::int64_t{48} << 20;  // all corners of a limb, not those of a body
-constexpr int kSeveral = -1;
+constexpr int kSeveral = BrickMotions::kSeveral;
 constexpr int kHalo = TissueVoxels::kBrick + 2;        // a brick and one voxel around it
 constexpr int kHaloCount = kHalo * kHalo * kHalo;
 
@@ -26,22 +28,6 @@ constexpr std::array<std::uint8_t, 256> kBitCount = [] {
   for (int i = 1; i < 256; ++i) count[i] = static_cast<std::uint8_t>(count[i / 2] + (i & 1));
   return count;
 }();
-
-// The first bone that moves as each does, to within the rounding of a long chain of bones.
-std::vector<int> first_alike(const std::vector<RigidTransform>& motions) {
-  const auto alike = [](const RigidTransform& a, const RigidTransform& b) {
-    const double turn = std::abs(glm::dot(a.rotation, b.rotation));
-    const glm::dquat off = glm::dot(a.rotation, b.rotation) < 0 ? a.rotation + b.rotation : a.rotation - b.rotation;
-    return turn > 0.5 && glm::length(off) < 1e-13 && glm::length(a.translation - b.translation) < 1e-10;
-  };
-  std::vector<int> first(motions.size());
-  for (int i = 0; i < std::ssize(motions); ++i) {
-    first[i] = i;
-    for (int k = 0; k < i && first[i] == i; ++k)
-      if (first[k] == k && alike(motions[k], motions[i])) first[i] = k;
-  }
-  return first;
-}
 
 // Per bone, the weights of a brick's voxels and of those around it, summed over the eight voxels around each corner.
 class CornerWeights {
@@ -127,28 +113,6 @@ class CornerWeights {
   std::vector<BoneWeight> influences_;
 };
 
-// What all bones that any of them follows move as, or kSeveral.
-int motion_of_all(const SkinWeights::Chunk& chunk, const std::vector<int>& moves_as) {
-  const int first = moves_as[chunk.front().bone[0]];
-  const bool same = std::all_of(chunk.begin(), chunk.end(), [&](const Influence& influence) {
-    for (int i = 0; i < 4 && influence.weight[i]; ++i)
-      if (moves_as[influence.bone[i]] != first) return false;
-    return true;
-  });
-  return same ? first : kSeveral;
-}
-
-// body(brick) for the brick itself and those of its 26 neighbours that have tissue.
-template <class Body>
-void for_each_around(const TissueVoxels& tissue, std::int64_t brick, const Body& body) {
-  const glm::ivec3 here = tissue.bricks()[brick].corner / TissueVoxels::kBrick;
-  const glm::ivec3 low = glm::max(here - 1, glm::ivec3(0)), high = glm::min(here + 1, tissue.brick_grid() - 1);
-  for (int z = low.z; z <= high.z; ++z)
-    for (int y = low.y; y <= high.y; ++y)
-      for (int x = low.x; x <= high.x; ++x)
-        if (const int near = tissue.brick_at(glm::ivec3(x, y, z) * TissueVoxels::kBrick); near >= 0) body(near);
-}
-
 bool is_full(const TissueVoxels::Brick& brick) {
   return std::all_of(std::begin(brick.mask), std::end(brick.mask), [](std::uint64_t slice) { return slice == ~std::uint64_t{0}; });
 }
@@ -178,16 +142,17 @@ void for_each_corner(const TissueVoxels::Brick& brick, const Body& body) {
 
 PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                            const std::vector<RigidTransform>& posed_from_rest, Blend blend, const glm::dvec3& ratio,
-                           Progress& progress)
+                           Progress& progress, const SettledFlesh* settled)
     : volume_(&volume), tissue_(&tissue), weights_(&weights), world_from_voxel_(world_from_voxel(volume.grid)),
       voxel_from_world_(voxel_from_world(volume.grid)), bones_(skin_transforms(posed_from_rest)), blend_(blend),
-      output_{ratio}, moves_as_(first_alike(posed_from_rest)) {
+      settled_(settled), output_{ratio} {
   const std::int64_t count = std::ssize(tissue.bricks());
   bounds_.resize(count);
   still_.resize(count);
   split_.resize(count);
-  only_bone_.resize(count);
-  rigid_.resize(count);
+  BrickMotions brick_motions(tissue, weights, posed_from_rest);
+  moves_as_ = std::move(brick_motions.moves_as);
+  rigid_ = std::move(brick_motions.around);
   for (const RigidTransform& posed : posed_from_rest) {
     const glm::dmat3 turn = voxel_from_world_.linear * (glm::mat3_cast(posed.rotation) - glm::dmat3(1));
     shift_.push_back({turn * world_from_voxel_.linear, turn * world_from_voxel_.offset + voxel_from_world_.linear * posed.translation});
@@ -202,15 +167,11 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
   choose_base();
   for (const RigidTransform& posed : posed_from_rest) rest_from_posed_.push_back(backward(posed));
   progress.update("pose", 0);
-  parallel_for(count, 64, [&](std::int64_t begin, std::int64_t end) {
-    for (auto brick = begin; brick < end; ++brick) only_bone_[brick] = motion_of_all(weights.chunk(brick), moves_as_);
-  });
   std::atomic<std::int32_t> kept = 0;
   parallel_for(count, 16, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) throw Cancelled();
     Corners room;
     for (auto brick = begin; brick < end; ++brick) {
-      rigid_[brick] = only_bone_around(brick);
       const BrickBounds posed = compute(brick, room);
       bounds_[brick] = posed.box;
       still_[brick] = posed.still;
@@ -231,7 +192,11 @@ void PosedLattice::split_corners(std::int64_t brick, SplitBrick& corners) const 
   tissue_->for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
     const glm::ivec3 v = voxel - lowest;
     FixedPoint* own = &corners[8 * (v.x + 8 * (v.y + 8 * v.z))];
-    for (int c = 0; c < 8; ++c) own[c] = posed(voxel + glm::ivec3(c & 1, c >> 1 & 1, c >> 2), split.at(v, c));
+    for (int c = 0; c < 8; ++c) {
+      const glm::ivec3 corner = voxel + glm::ivec3(c & 1, c >> 1 & 1, c >> 2);
+      const glm::dvec3 shift = settled_ ? settled_->corner_shift(corner - 1, split.joined_voxels(v, c)) : glm::vec3(0);
+      own[c] = posed(corner, split.at(v, c), shift);
+    }
   });
 }
 
@@ -290,10 +255,11 @@ void PosedLattice::choose_base() {
   output_.base = glm::ivec3(glm::floor(at + 0.5));
 }
 
-FixedPoint PosedLattice::posed(const glm::ivec3& corner, std::span<const BoneWeight> influences) const {
+//   shift  beyond blending, in voxels
+FixedPoint PosedLattice::posed(const glm::ivec3& corner, std::span<const BoneWeight> influences, const glm::dvec3& shift) const {
   const glm::dvec3 rest = glm::dvec3(corner) - 0.5;
   const int bone = influences.front().bone;
-  if (influences.size() == 1) return fixed(rest, shift_[bone] * rest, bone);
+  if (influences.size() == 1) return fixed(rest, shift_[bone] * rest + shift, bone);
   if (blend_ == Blend::Linear) {
     glm::dvec3 moved(0);
     double total = 0;
@@ -301,10 +267,10 @@ FixedPoint PosedLattice::posed(const glm::ivec3& corner, std::span<const BoneWei
       moved += influence.weight * (shift_[influence.bone] * rest);
       total += influence.weight;
     }
-    return fixed(rest, moved / total, bone);
+    return fixed(rest, moved / total + shift, bone);
   }
   const glm::dvec3 world = world_from_voxel_ * rest;
-  return fixed(rest, voxel_from_world_.linear * (blend_point(blend_, bones_, influences, world) - world), bone);
+  return fixed(rest, voxel_from_world_.linear * (blend_point(blend_, bones_, influences, world) - world) + shift, bone);
 }
 
 void PosedLattice::throw_torn(int bone) const {
@@ -325,13 +291,6 @@ FixedPoint PosedLattice::posed_by(int bone, const glm::ivec3& corner) const {
   return fixed(rest, shift_[bone] * rest, bone);
 }
 
-int PosedLattice::only_bone_around(std::int64_t brick) const {
-  const int bone = only_bone_[brick];
-  bool same = bone != kSeveral;
-  if (same) for_each_around(*tissue_, brick, [&](int near) { same &= only_bone_[near] == bone; });
-  return same ? bone : kSeveral;
-}
-
 // Of a brick that moves as one, `corners` may hold only those that tell where it goes.
 PosedLattice::BrickBounds PosedLattice::compute(std::int64_t brick, Corners& corners) const {
   const TissueVoxels::Brick& cells = tissue_->bricks()[brick];
@@ -342,7 +301,11 @@ PosedLattice::BrickBounds PosedLattice::compute(std::int64_t brick, Corners& cor
     return is_full(cells) ? compute_by(brick, outermost, by_bone, corners) : compute_by(brick, every, by_bone, corners);
   }
   CornerWeights weights(*tissue_, *weights_, moves_as_, brick);
-  return compute_by(brick, every, [&](int i, int j, int k) { return posed(cells.corner + glm::ivec3(i, j, k), weights.at(i, j, k)); }, corners);
+  SettledFlesh::CornerShifts shifts;
+  const bool shifted = settled_ && settled_->corner_shifts(brick, shifts);
+  return compute_by(brick, every, [&](int i, int j, int k) {
+    return posed(cells.corner + glm::ivec3(i, j, k), weights.at(i, j, k), shifted ? glm::dvec3(shifts[place(i, j, k)]) : glm::dvec3(0));
+  }, corners);
 }
 
 //   visit           calls its argument with the corners to be posed

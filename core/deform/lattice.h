@@ -31,6 +31,8 @@
 
 namespace limber {
 
+class SettledFlesh;
+
 constexpr int kFixedOne = 65536;  // one output voxel
 using FixedPoint = glm::ivec3;    // in 1/65536 output voxel
 
@@ -69,12 +71,13 @@ class PosedLattice {
     FixedPoint low, high;
   };
 
-  // Keeps references: volume, tissue and weights must outlive the lattice.
+  // Keeps references: volume, tissue, weights and settled must outlive the lattice.
   //   posed_from_rest  #bones of `weights`
+  //   settled          how flesh moves beyond blending; nullptr: not at all
   // throws Error when tissue is carried further than 32 000 output voxels or to a place that is not finite
   PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                const std::vector<RigidTransform>& posed_from_rest, Blend blend, const glm::dvec3& ratio,
-               Progress& progress = no_progress());
+               Progress& progress = no_progress(), const SettledFlesh* settled = nullptr);
 
   const OutputLattice& output() const { return output_; }
   const LabelVolume& volume() const { return *volume_; }
@@ -93,7 +96,7 @@ class PosedLattice {
   void split_corners(std::int64_t brick, SplitBrick& corners) const;
 
  private:
-  FixedPoint posed(const glm::ivec3& corner, std::span<const BoneWeight> influences) const;
+  FixedPoint posed(const glm::ivec3& corner, std::span<const BoneWeight> influences, const glm::dvec3& shift) const;
   FixedPoint fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const;
   [[noreturn]] void throw_torn(int bone) const;
   FixedPoint posed_by(int bone, const glm::ivec3& corner) const;
@@ -106,7 +109,6 @@ class PosedLattice {
   template <class Visit, class Posed>
   BrickBounds compute_by(std::int64_t brick, const Visit& visit, const Posed& posed, Corners& corners) const;
   AffineTransform backward(const RigidTransform& posed_from_rest) const;
-  int only_bone_around(std::int64_t brick) const;
   void choose_base();
 
   const LabelVolume* volume_;
@@ -116,13 +118,13 @@ class PosedLattice {
   std::vector<SkinTransform> bones_;
   std::vector<AffineTransform> shift_;  // per bone: posed - rest, both in voxel coordinates, of the rest point
   Blend blend_;
+  const SettledFlesh* settled_;
   OutputLattice output_;
   std::vector<FixedBox> bounds_;
   std::vector<std::uint8_t> still_, split_;  // by brick
   std::vector<AffineTransform> rest_from_posed_;  // per bone
   std::vector<int> moves_as_;        // per bone: the first that moves as it does
-  std::vector<int> only_bone_;       // by brick: what moves_as_ says of all its tissue, or kSeveral
-  std::vector<int> rigid_;           // by brick: the same of it and its neighbours
+  std::vector<int> rigid_;           // by brick: the bone that all tissue of it and around it moves as, or several
   std::unique_ptr<Corners[]> kept_;  // of the bricks that bend, or none
   std::vector<std::int32_t> kept_at_;
 };

@@ -21,7 +21,6 @@ SplitCorners::SplitCorners(const TissueVoxels& tissue, const SkinWeights& weight
       }
 }
 
-// A bit for each of the eight voxels around the corner.
 unsigned SplitCorners::joined_voxels(const glm::ivec3& voxel, int corner) const {
   const glm::ivec3 lowest = voxel - 1 + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
   unsigned joined = 1u << (~corner & 7), open = joined;  // the voxel itself lies opposite to the corner

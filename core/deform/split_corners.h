@@ -24,11 +24,12 @@ class SplitCorners {
   //   voxel   of the brick, 0 .. 7 on each axis; it must be tissue
   //   corner  bit 0 is x, bit 1 y, bit 2 z
   std::span<const BoneWeight> at(const glm::ivec3& voxel, int corner);
+  // A bit for each of the eight voxels around the corner, the lowest first, that hangs together with the voxel there.
+  unsigned joined_voxels(const glm::ivec3& voxel, int corner) const;
 
  private:
   static constexpr int kHalo = TissueVoxels::kBrick + 2;  // a brick and one voxel around it
   static int place(const glm::ivec3& v) { return v.x + 1 + kHalo * (v.y + 1 + kHalo * (v.z + 1)); }
-  unsigned joined_voxels(const glm::ivec3& voxel, int corner) const;
   void add(const Influence& influence);
 
   const Seams& seams_;

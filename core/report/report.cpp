@@ -82,6 +82,13 @@ Json total(const Report& report) {
   return row;
 }
 
+Json settled_of(const SettledFlesh::Report& settled) {
+  return {{"cells", settled.cells},
+          {"volume_error_before", settled.volume_error_before},
+          {"volume_error_after", settled.volume_error_after},
+          {"largest_shift_mm", settled.largest_shift_mm}};
+}
+
 // What a label is called in files; the label itself where no tissue was measured.
 std::string key_of(const Report& report, Label label) {
   if (report.metrics)
@@ -319,6 +326,7 @@ std::string to_json(const Report& report) {
     for (const auto& bone : report.deform->bones)
       json["bones"].push_back({{"name", bone.name}, {"rigid_residual_mm", bone.rigid_residual_mm}});
   add_body(report, json);
+  if (report.deform && report.deform->settled) json["settled_flesh"] = settled_of(*report.deform->settled);
   if (report.deform && report.deform->mass_exact) json["mass_exact"] = mass_exact_of(report, *report.deform->mass_exact);
   if (report.deform && report.deform->mesh) json["mesh"] = mesh_of(report, *report.deform->mesh);
   if (report.deform && report.deform->solve) json["solve"] = solve_of(*report.deform->solve);
@@ -354,6 +362,9 @@ void print_report(std::ostream& out, const Report& report) {
                 static_cast<long long>(deform.dropped_voxels), static_cast<long long>(deform.new_hole_voxels),
                 static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels),
                 static_cast<long long>(deform.mended_voxels));
+    if (deform.settled && deform.settled->cells > 0)
+      out << line("flesh settled: cells were off their volume by %.1f %% in the mean, and are by %.1f %%; moved by up to %.1f mm",
+                  100 * deform.settled->volume_error_before, 100 * deform.settled->volume_error_after, deform.settled->largest_shift_mm);
     if (deform.mass_exact) out << line("mass-exact: %lld voxels changed hands", static_cast<long long>(deform.mass_exact->changed_voxels));
     double worst = 0;
     for (const auto& bone : deform.bones) worst = std::max(worst, bone.rigid_residual_mm);

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "core/deform/inverse_map.h"
+#include "core/deform/settled_flesh.h"
 #include "core/resample/fem_shape.h"
 #include "core/resample/output_grid.h"
 #include "core/resample/pose_path.h"
@@ -123,7 +124,10 @@ Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<con
   DeformReport& report = posed.report;
   if (posed.shape) tell(*posed.shape, report);
 
-  const PosedLattice lattice(volume, body.tissue, weights, motions, blend_of(method), ratio, progress);
+  std::optional<SettledFlesh> settled;
+  if (std::holds_alternative<MixedBlend>(method) && can_fold(motions))
+    report.settled = settled.emplace(volume, body.tissue, weights, labels.bone, motions, blend_of(method), progress).report();
+  const PosedLattice lattice(volume, body.tissue, weights, motions, blend_of(method), ratio, progress, settled ? &*settled : nullptr);
   const RigidBones bones(lattice, weights, labels.bone, motions);
   std::optional<PosedTets> tets;
   if (posed.shape) tets.emplace(posed.shape->model.fem.mesh, posed.shape->V, lattice, posed.shape->moving.meshed, progress);

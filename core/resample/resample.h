@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/deform/settled_flesh.h"
 #include "core/pose/pose.h"
 #include "core/resample/fem.h"
 #include "core/skin/skin_weights.h"
@@ -23,7 +24,7 @@ namespace limber {
 
 struct LinearBlend {};
 struct DualQuaternion {};
-struct MixedBlend {};
+struct MixedBlend {};  // and then flesh settles (deform/settled_flesh.h)
 using Method = std::variant<LinearBlend, DualQuaternion, MixedBlend, Fem>;
 
 struct ResampleSettings {
@@ -64,6 +65,7 @@ struct DeformReport {
     std::int64_t voxels = 0;              // posed bone tissue voxels of this rig bone
   };
   std::vector<BoneResidual> bones;        // those with bone tissue
+  std::optional<SettledFlesh::Report> settled;  // by mixed blending, where anything bends
   std::optional<MassExactReport> mass_exact;
   std::optional<MeshReport> mesh;         // by finite elements, where anything bends
   std::optional<SolveReport> solve;

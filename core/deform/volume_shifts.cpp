@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/volume_shifts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kVolume = 100;  // of a cell's volume over the smoothness of shifts
+constexpr double kReach = 10;    // cells: beyond it a shift fades by itself
+constexpr double kLeast = 0.2;    // of a cell's middle, which may be bent more than the cell as a whole
+constexpr double kBone = 1e4;   // of bone that stays where the pose has it over smoothness
+constexpr int kSteps = 14;       // the mean error of volumes changes by less than a tenth after that (tests/core/deform)
+constexpr int kSolves = 10;      // steps of conjugate gradients in each
+constexpr int kGrain = 2048;
+
+using Nodes = std::array<std::int32_t, 8>;
+
+// Derivatives of the trilinear shape functions in a cell's middle, 1 / mm.
+std::array<glm::dvec3, 8> middle_gradients(const glm::dvec3& edge) {
+  std::array<glm::dvec3, 8> gradients;
+  for (int i = 0; i < 8; ++i) gradients[i] = glm::dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) / (4.0 * edge);
+  return gradients;
+}
+
+// Of |grad c|^2 over a full cell, divided by its volume; 1 / mm2.
+std::array<std::array<double, 8>, 8> smoothness(const glm::dvec3& edge) {
+  std::array<std::array<double, 8>, 8> K{};
+  for (int a = 0; a < 8; ++a)
+    for (int b = 0; b < 8; ++b)
+      for (int axis = 0; axis < 3; ++axis) {
+        double share = 1;
+        for (int other = 0; other < 3; ++other) {
+          const bool same = (a >> other & 1) == (b >> other & 1);
+          share *= other == axis ? (same ? 1 : -1) / (edge[axis] * edge[axis]) : same ? 1.0 / 3 : 1.0 / 6;
+        }
+        K[a][b] += share;
+      }
+  return K;
+}
+
+// The volume of a trilinear cell, from its sides: each the mean of the two ways to part it into triangles.
+double volume_of(const std::array<glm::dvec3, 8>& corner) {
+  constexpr int kSides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  const auto cone = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) { return glm::dot(a, glm::cross(b, c)); };
+  double sum = 0;
+  for (const auto& side : kSides) {
+    const glm::dvec3 a = corner[side[0]] - corner[0], b = corner[side[1]] - corner[0], c = corner[side[2]] - corner[0], d = corner[side[3]] - corner[0];
+    sum += cone(a, b, c) + cone(a, c, d) + cone(a, b, d) + cone(b, c, d);
+  }
+  return sum / 12;
+}
+
+glm::dmat3 cofactor(const glm::dmat3& F) { return glm::dmat3(glm::cross(F[1], F[2]), glm::cross(F[2], F[0]), glm::cross(F[0], F[1])); }
+
+// Which cells have a node, and as which of their eight.
+struct CellsOfNode {
+  std::vector<std::int64_t> begin;
+  std::vector<std::int32_t> place;  // 8 * cell + corner
+
+  explicit CellsOfNode(const FleshCells& cells) : begin(cells.rest.size() + 1), place(8 * cells.nodes.size()) {
+    for (const Nodes& nodes : cells.nodes)
+      for (const std::int32_t n : nodes) ++begin[n + 1];
+    for (std::size_t n = 0; n + 1 < begin.size(); ++n) begin[n + 1] += begin[n];
+    std::vector<std::int64_t> end(begin.begin(), begin.end() - 1);
+    for (std::size_t c = 0; c < cells.nodes.size(); ++c)
+      for (int i = 0; i < 8; ++i) place[end[cells.nodes[c][i]]++] = static_cast<std::int32_t>(8 * c) + i;
+  }
+};
+
+class Minimizer {
+ public:
+  explicit Minimizer(const FleshCells& cells) : cells_(cells), of_node_(cells), gradients_(middle_gradients(cells.edge)),
+        h2_(std::pow(cells.edge.x * cells.edge.y * cells.edge.z, 2.0 / 3)), count_(std::ssize(cells.rest)) {
+    start_.resize(cells.nodes.size());
+    pull_.resize(cells.nodes.size());
+    shift_.assign(count_, glm::vec3(0));
+    last_ = shift_;
+    for (auto* each : {&right_, &residual_, &direction_, &image_}) each->assign(count_, glm::vec3(0));
+    parallel_for(std::ssize(cells.nodes), kGrain, [&](std::int64_t first, std::int64_t last) {
+      for (auto c = first; c < last; ++c) start_[c] = glm::mat3(gradient(c, [&](std::int32_t n) { return cells_.blended[n]; }));
+    });
+    assemble();
+  }
+
+  const std::vector<glm::vec3>& shift() const { return shift_; }
+
+  // Mean |V / V0 - 1|.
+  double error() const {
+    double fill = 0;
+    for (const float each : cells_.fill) fill += each;
+    if (fill == 0) return 0;
+    return parallel_sum(std::ssize(cells_.nodes), kGrain, [&](std::int64_t first, std::int64_t last) {
+      double sum = 0;
+      for (auto c = first; c < last; ++c) sum += cells_.fill[c] * std::abs(volume_ratio(c) - 1);
+      return sum;
+    }) / fill;
+  }
+
+  void step() {
+    parallel_for(std::ssize(cells_.nodes), kGrain, [&](std::int64_t first, std::int64_t last) {
+      for (auto c = first; c < last; ++c) {
+        const glm::dmat3 F = posed_gradient(c);
+        const double wanted = glm::determinant(F) + 1 - volume_ratio(c);
+        pull_[c] = glm::mat3((with_volume(F, std::clamp(wanted, kLeast, 1 / kLeast)) - glm::dmat3(start_[c])) * (kVolume * h2_ * cells_.fill[c]));
+      }
+    });
+    parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
+      for (auto n = first; n < last; ++n) {
+        glm::vec3 sum(0);
+        if (!cells_.is_fixed[n])
+          for (auto i = of_node_.begin[n]; i < of_node_.begin[n + 1]; ++i) sum += pull_[of_node_.place[i] >> 3] * glm::vec3(gradients_[of_node_.place[i] & 7]);
+        right_[n] = sum;
+      }
+    });
+    solve();
+    run_on();
+  }
+
+ private:
+
+
+  template <class Place>
+  glm::dmat3 gradient(std::int64_t cell, const Place& place) const {
+    glm::dmat3 F(0);
+    for (int i = 0; i < 8; ++i) F += glm::outerProduct(glm::dvec3(place(cells_.nodes[cell][i])), gradients_[i]);
+    return F;
+  }
+  glm::dmat3 posed_gradient(std::int64_t cell) const {
+    return glm::dmat3(start_[cell]) + gradient(cell, [&](std::int32_t n) { return glm::dvec3(shift_[n]); });
+  }
+
+  // Of the whole cell, where the determinant is that of its middle.
+  double volume_ratio(std::int64_t cell) const {
+    std::array<glm::dvec3, 8> corner;
+    for (int i = 0; i < 8; ++i) corner[i] = cells_.blended[cells_.nodes[cell][i]] + glm::dvec3(shift_[cells_.nodes[cell][i]]);
+    return volume_of(corner) / (cells_.edge.x * cells_.edge.y * cells_.edge.z);
+  }
+
+  void assemble() {
+    const auto smooth = smoothness(cells_.edge);
+    std::array<std::array<double, 8>, 8> K;
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b < 8; ++b) K[a][b] = h2_ * (smooth[a][b] + kVolume * glm::dot(gradients_[a], gradients_[b]));
+    const double reach = 1 / (kReach * kReach);
+    // Rows of up to 27 nodes, or more where a node joins cells that lie in one place.
+    std::vector<std::vector<std::pair<std::int32_t, float>>> blocks((count_ + kGrain - 1) / kGrain);
+    row_.assign(count_ + 1, 0);
+    diagonal_.assign(count_, 1);
+    parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
+      auto& block = blocks[first / kGrain];
+      for (auto n = first; n < last; ++n) {
+        if (cells_.is_fixed[n]) continue;
+        const auto begin = std::ssize(block);
+        double own = kBone * cells_.bone[n];
+        for (auto i = of_node_.begin[n]; i < of_node_.begin[n + 1]; ++i) {
+          const std::int32_t cell = of_node_.place[i] >> 3;
+          const int a = of_node_.place[i] & 7;
+          own += cells_.fill[cell] * (K[a][a] + reach / 8);
+          for (int b = 0; b < 8; ++b) {
+            const std::int32_t column = cells_.nodes[cell][b];
+            if (b == a || cells_.is_fixed[column]) continue;
+            auto at = std::find_if(block.begin() + begin, block.end(), [&](const auto& each) { return each.first == column; });
+            if (at == block.end()) at = block.insert(at, {column, 0.0f});
+            at->second += static_cast<float>(cells_.fill[cell] * K[a][b]);
+          }
+        }
+        diagonal_[n] = static_cast<float>(own);
+        row_[n + 1] = std::ssize(block) - begin;
+      }
+    });
+    for (std::int64_t n = 0; n < count_; ++n) row_[n + 1] += row_[n];
+    column_.reserve(row_.back());
+    entry_.reserve(row_.back());
+    for (const auto& block : blocks)
+      for (const auto& [column, entry] : block) column_.push_back(column), entry_.push_back(entry);
+  }
+
+  glm::vec3 times(std::int64_t n, const std::vector<glm::vec3>& x) const {
+    glm::vec3 sum = diagonal_[n] * x[n];
+    for (auto i = row_[n]; i < row_[n + 1]; ++i) sum += entry_[i] * x[column_[i]];
+    return sum;
+  }
+
+  // Each step begins further along the way of the one before [Beck & Teboulle 2009, A fast iterative shrinkage-thresholding algorithm
+  // for linear inverse problems].
+  void run_on() {
+    ++taken_;
+    const float momentum = float(taken_ - 1) / float(taken_ + 2);
+    parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
+      for (auto n = first; n < last; ++n) {
+        const glm::vec3 here = shift_[n];
+        if (taken_ < kSteps) shift_[n] += momentum * (here - last_[n]);
+        last_[n] = here;
+      }
+    });
+  }
+
+  // Conjugate gradients from the last shifts on.
+  void solve() {
+    double rho = sum([&](std::int64_t n) {
+      residual_[n] = right_[n] - times(n, shift_);
+      direction_[n] = residual_[n] / diagonal_[n];
+      return dot(residual_[n], direction_[n]);
+    });
+    for (int k = 0; k < kSolves && rho > 0; ++k) {
+      const double curvature = sum([&](std::int64_t n) {
+        image_[n] = times(n, direction_);
+        return dot(image_[n], direction_[n]);
+      });
+      if (!(curvature > 0)) return;
+      const auto alpha = static_cast<float>(rho / curvature);
+      const double next = sum([&](std::int64_t n) {
+        shift_[n] += alpha * direction_[n];
+        residual_[n] -= alpha * image_[n];
+        return dot(residual_[n], residual_[n] / diagonal_[n]);
+      });
+      const auto beta = static_cast<float>(next / rho);
+      rho = next;
+      parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
+        for (auto n = first; n < last; ++n) direction_[n] = residual_[n] / diagonal_[n] + beta * direction_[n];
+      });
+    }
+  }
+
+  static double dot(const glm::vec3& a, const glm::vec3& b) { return glm::dot(glm::dvec3(a), glm::dvec3(b)); }
+
+  // Over all nodes, in the same order for any number of threads.
+  template <class Term>
+  double sum(const Term& term) const {
+    return parallel_sum(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
+      double part = 0;
+      for (auto n = first; n < last; ++n) part += term(n);
+      return part;
+    });
+  }
+
+  const FleshCells& cells_;
+  const CellsOfNode of_node_;
+  const std::array<glm::dvec3, 8> gradients_;
+  const double h2_;  // mm2: the square of a cell's edge, by its volume
+  const std::int64_t count_;
+  int taken_ = 0;
+  std::vector<glm::mat3> start_, pull_;  // by cell
+  std::vector<glm::vec3> shift_, last_, right_, residual_, direction_, image_;  // by node
+  std::vector<std::int64_t> row_;
+  std::vector<std::int32_t> column_;
+  std::vector<float> entry_, diagonal_;
+};
+
+}  // namespace
+
+glm::dmat3 with_volume(const glm::dmat3& F, double volume) {
+  constexpr int kMost = 6;
+  constexpr double kNear = 1e-3, kLongest = 0.5;
+  glm::dmat3 P = F;
+  for (int k = 0; k < kMost; ++k) {
+    const double off = volume - glm::determinant(P);
+    if (std::abs(off) < kNear) break;
+    const glm::dmat3 slope = cofactor(P);
+    const double steep = glm::dot(slope[0], slope[0]) + glm::dot(slope[1], slope[1]) + glm::dot(slope[2], slope[2]);
+    const double step = off / std::max(steep, 1e-3), longest = kLongest / std::sqrt(std::max(steep, 1e-12));
+    P += slope * std::clamp(step, -longest, longest);
+  }
+  return P;
+}
+
+VolumeShifts volume_shifts(const FleshCells& cells, Progress& progress) {
+  VolumeShifts found;
+  if (cells.nodes.empty()) return found;
+  Minimizer minimizer(cells);
+  found.error_before = minimizer.error();
+  for (int k = 0; k < kSteps; ++k) {
+    progress.update("flesh", double(k) / kSteps);
+    minimizer.step();
+  }
+  found.error_after = minimizer.error();
+  found.shift = minimizer.shift();
+  return found;
+}
+
+}  // namespace limber
