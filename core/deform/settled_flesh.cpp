@@ -21,7 +21,10 @@ SettledFlesh::SettledFlesh(const LabelVolume& volume, const TissueVoxels& tissue
   progress.update("flesh", 0);
   const BrickMotions motions(tissue, weights, posed_from_rest);
   cells_ = flesh_cells(volume, tissue, weights, is_bone, posed_from_rest, blend, motions);
-  const VolumeShifts found = volume_shifts(cells_, progress);
+  const PosedBones bones(volume, tissue, weights, is_bone, posed_from_rest);
+  const TissueDepth depth(tissue, volume.grid.spacing);
+  FleshContact contact(cells_, depth, volume.grid.spacing);
+  const VolumeShifts found = volume_shifts(cells_, &bones, &contact, progress);
   shift_.resize(found.shift.size());
   for (std::size_t n = 0; n < shift_.size(); ++n) {
     shift_[n] = found.shift[n] / glm::vec3(volume.grid.spacing);

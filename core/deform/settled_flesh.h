@@ -5,8 +5,9 @@
 //
 //   sum over cells  fill * ( h^2 |grad c|^2  +  kVolume |F - P|^2 )   +   sum over nodes ( |c / (kReach h)|^2  +  kBone * bone * |c|^2 )
 //
-// where P is the matrix near F by whose determinant the cell would have its volume, h the edge of a cell, and bone how much bone lies around a node: bones
-// stay where the pose has them. What weights say of how tissue follows bones stays the start, so that painted weights count. P is
+// and nodes inside a bone that they do not belong to are pulled to its surface (posed_bones.h), nodes inside other flesh half of the
+// way out of it (flesh_contact.h). P is the matrix near F by whose determinant the cell would have its volume, h the edge of a cell,
+// and bone how much bone lies around a node: bones stay where the pose has them. What weights say of how tissue follows bones stays the start, so that painted weights count. P is
 // found anew after each step of conjugate gradients on the rest, whose matrix is the same for all of them [Bouaziz, Martin, Liu,
 // Kavan & Pauly 2014, Projective dynamics]. The same bytes come out for any number of threads.
 #pragma once

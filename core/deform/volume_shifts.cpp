@@ -15,6 +15,9 @@ constexpr double kVolume = 100;  // of a cell's volume over the smoothness of sh
 constexpr double kReach = 10;    // cells: beyond it a shift fades by itself
 constexpr double kLeast = 0.2;    // of a cell's middle, which may be bent more than the cell as a whole
 constexpr double kBone = 1e4;   // of bone that stays where the pose has it over smoothness
+constexpr double kPush = 500;      // of a bone on flesh inside it
+constexpr double kMostlySoft = 0.2;  // cells of bone around a node that is not bone itself
+constexpr int kLook = 2;            // steps from one look for flesh in flesh to the next
 constexpr int kSteps = 14;       // the mean error of volumes changes by less than a tenth after that (tests/core/deform)
 constexpr int kSolves = 10;      // steps of conjugate gradients in each
 constexpr int kGrain = 2048;
@@ -75,12 +78,14 @@ struct CellsOfNode {
 
 class Minimizer {
  public:
-  explicit Minimizer(const FleshCells& cells) : cells_(cells), of_node_(cells), gradients_(middle_gradients(cells.edge)),
+  Minimizer(const FleshCells& cells, const PosedBones* bones, FleshContact* contact) : cells_(cells), bones_(bones), contact_(contact), of_node_(cells), gradients_(middle_gradients(cells.edge)),
         h2_(std::pow(cells.edge.x * cells.edge.y * cells.edge.z, 2.0 / 3)), count_(std::ssize(cells.rest)) {
     start_.resize(cells.nodes.size());
     pull_.resize(cells.nodes.size());
     shift_.assign(count_, glm::vec3(0));
-    last_ = shift_;
+    last_ = outward_ = apart_ = shift_;
+    is_inside_.assign(count_, 0);
+    push_.assign(count_, 0);
     for (auto* each : {&right_, &residual_, &direction_, &image_}) each->assign(count_, glm::vec3(0));
     parallel_for(std::ssize(cells.nodes), kGrain, [&](std::int64_t first, std::int64_t last) {
       for (auto c = first; c < last; ++c) start_[c] = glm::mat3(gradient(c, [&](std::int32_t n) { return cells_.blended[n]; }));
@@ -103,6 +108,8 @@ class Minimizer {
   }
 
   void step() {
+    leave_bones();
+    part_flesh();
     parallel_for(std::ssize(cells_.nodes), kGrain, [&](std::int64_t first, std::int64_t last) {
       for (auto c = first; c < last; ++c) {
         const glm::dmat3 F = posed_gradient(c);
@@ -115,7 +122,7 @@ class Minimizer {
         glm::vec3 sum(0);
         if (!cells_.is_fixed[n])
           for (auto i = of_node_.begin[n]; i < of_node_.begin[n + 1]; ++i) sum += pull_[of_node_.place[i] >> 3] * glm::vec3(gradients_[of_node_.place[i] & 7]);
-        right_[n] = sum;
+        right_[n] = sum + outward_[n] * push_[n];
       }
     });
     solve();
@@ -187,6 +194,46 @@ class Minimizer {
     return sum;
   }
 
+  // Nodes inside a bone are pulled to its surface.
+  void leave_bones() {
+    if (!bones_) return;
+    parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
+      for (auto n = first; n < last; ++n) {
+        diagonal_[n] -= push_[n];
+        push_[n] = 0;
+        if (!cells_.is_fixed[n] && cells_.bone[n] < kMostlySoft)
+          if (const auto way = bones_->way_out(cells_.blended[n] + glm::dvec3(shift_[n]))) {
+            push_[n] = kPush;
+            outward_[n] = shift_[n] + glm::vec3(*way);
+          }
+        diagonal_[n] += push_[n];
+      }
+    });
+  }
+
+  // Nodes inside other flesh are pulled half of the way out of it.
+  void part_flesh() {
+    if (!contact_) return;
+    if (taken_ % kLook == 0) {
+      std::vector<glm::dvec3> posed(count_);
+      for (std::int64_t n = 0; n < count_; ++n) posed[n] = cells_.blended[n] + glm::dvec3(shift_[n]);
+      contact_->look(posed);
+      parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
+        for (auto n = first; n < last; ++n) {
+          const auto way = cells_.is_fixed[n] ? std::nullopt : contact_->way_apart(static_cast<std::int32_t>(n));
+          is_inside_[n] = way.has_value();
+          if (way) apart_[n] = shift_[n] + glm::vec3(*way);
+        }
+      });
+    }
+    for (std::int64_t n = 0; n < count_; ++n)
+      if (is_inside_[n] && push_[n] == 0) {
+        push_[n] = kPush;
+        outward_[n] = apart_[n];
+        diagonal_[n] += kPush;
+      }
+  }
+
   // Each step begins further along the way of the one before [Beck & Teboulle 2009, A fast iterative shrinkage-thresholding algorithm
   // for linear inverse problems].
   void run_on() {
@@ -241,6 +288,8 @@ class Minimizer {
   }
 
   const FleshCells& cells_;
+  const PosedBones* bones_;
+  FleshContact* contact_;
   const CellsOfNode of_node_;
   const std::array<glm::dvec3, 8> gradients_;
   const double h2_;  // mm2: the square of a cell's edge, by its volume
@@ -251,6 +300,10 @@ class Minimizer {
   std::vector<std::int64_t> row_;
   std::vector<std::int32_t> column_;
   std::vector<float> entry_, diagonal_;
+  std::vector<float> push_;         // by node: how strongly it is pulled out of a bone
+  std::vector<std::uint8_t> is_inside_;  // by node: of other flesh
+  std::vector<glm::vec3> apart_;    // ... and the shift that would carry it half of the way out
+  std::vector<glm::vec3> outward_;  // ... and the shift that would carry it to the surface
 };
 
 }  // namespace
@@ -270,10 +323,10 @@ glm::dmat3 with_volume(const glm::dmat3& F, double volume) {
   return P;
 }
 
-VolumeShifts volume_shifts(const FleshCells& cells, Progress& progress) {
+VolumeShifts volume_shifts(const FleshCells& cells, const PosedBones* bones, FleshContact* contact, Progress& progress) {
   VolumeShifts found;
   if (cells.nodes.empty()) return found;
-  Minimizer minimizer(cells);
+  Minimizer minimizer(cells, bones, contact);
   found.error_before = minimizer.error();
   for (int k = 0; k < kSteps; ++k) {
     progress.update("flesh", double(k) / kSteps);

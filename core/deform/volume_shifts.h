@@ -6,6 +6,8 @@
 
 #include "core/base/progress.h"
 #include "core/deform/flesh_cells.h"
+#include "core/deform/flesh_contact.h"
+#include "core/deform/posed_bones.h"
 
 namespace limber {
 
@@ -14,7 +16,8 @@ struct VolumeShifts {
   double error_before = 0, error_after = 0;  // mean |V - V0| / V0 over the tissue of all cells
 };
 
-VolumeShifts volume_shifts(const FleshCells& cells, Progress& progress);
+//   bones    that flesh must not enter; nullptr: none      contact  of flesh with flesh; nullptr: none
+VolumeShifts volume_shifts(const FleshCells& cells, const PosedBones* bones, FleshContact* contact, Progress& progress);
 
 // The matrix of that determinant near F: steps along the gradient of the determinant. F may be inverted, `volume` is positive.
 glm::dmat3 with_volume(const glm::dmat3& F, double volume);

@@ -17,6 +17,9 @@ using enum BodyJoint;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);  // the body's left, back and up
+// Square to the left shoulder blade, which lies against the ribs 35 degrees in front of the frontal plane: turned about it, the
+// blade glides over them [Kapandji, The Physiology of the Joints].
+const glm::dvec3 kOffBlade(0.573576436351046, 0.819152044288992, 0);
 
 glm::dquat about(const glm::dvec3& axis, double angle) { return glm::angleAxis(angle, axis); }
 
@@ -36,7 +39,7 @@ glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
   switch (joint) {
     case Spine:
     case Neck: return about(kX, a) * about(kY, -b) * about(kZ, c);
-    case Girdle: return about(kZ, -b) * about(kY, -a);
+    case Girdle: return about(kZ, -b) * about(kY, -a) * about(kOffBlade, -c);
     case Shoulder:
     case Hip: return about(kX, -a) * about(kY, -b) * about(kZ, -c);
     case Elbow:
@@ -46,6 +49,25 @@ glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
     case Knee: return about(kX, a);
     default: return kNoTurn;
   }
+}
+
+// Degrees between a hanging arm and one that the shoulder turns so.
+double raise_of(const JointMotions& shoulder) {
+  const glm::dvec3 arm = turn_of(Shoulder, shoulder) * -kZ;
+  return glm::degrees(std::acos(std::clamp(-arm.z, -1.0, 1.0)));
+}
+
+// Of an arm's raise beyond the first 30 degrees a third is the shoulder blade's, and half of that is the collarbone's at its inner
+// end, the other half the joint's between both [Inman, Saunders & Abbott 1944, Observations on the function of the shoulder joint].
+// Collarbones whose own joint is not named take their share; a blade that moves as one with them would leave the ribs with more.
+JointAngles with_shoulder_rhythm(const BodyFrames& frames, JointAngles angles) {
+  constexpr double kSetting = 30, kShare = 1.0 / 6;
+  for (const BodySide side : {BodySide::Left, BodySide::Right}) {
+    const auto shoulder = angles.find({Shoulder, side});
+    const double raise = shoulder == angles.end() ? 0 : raise_of(shoulder->second) - kSetting;
+    if (raise > 0 && frames.find(BodyPart::Clavicle, side)) angles.try_emplace({Girdle, side}, JointMotions{0.0, 0.0, kShare * raise});
+  }
+  return angles;
 }
 
 // The bones that a joint turns, from the body outwards.
@@ -113,7 +135,7 @@ class Posing {
         changed_(armature.bones.size(), false) {
     for (const RigidTransform& transform : posed_from_rest(armature, base)) base_turned_.push_back(transform.rotation);
     wanted_.resize(armature.bones.size());
-    for (const auto& [joint, motions] : angles) want(joint, motions);
+    for (const auto& [joint, motions] : with_shoulder_rhythm(frames, angles)) want(joint, motions);
     follow_hands();
   }
 

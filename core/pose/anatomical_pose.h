@@ -5,7 +5,7 @@
 //
 // Hips and shoulders turn by flexion about the body's left-right axis, then abduction about the axis that this has
 // carried along, then rotation about the limb [Grood & Suntay 1983]; shoulders count from the trunk, not from the
-// collarbone. Spine and neck share their turn evenly among their bones. A forearm's pronation is shared by forearm and
+// collarbone. A raised arm takes the collarbone and the shoulder blade along, unless the shoulder girdle is named too. Spine and neck share their turn evenly among their bones. A forearm's pronation is shared by forearm and
 // hand. The body as a whole neither turns nor moves.
 #pragma once
 

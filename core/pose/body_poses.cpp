@@ -10,7 +10,6 @@ namespace limber {
 
 namespace {
 
-// Raised arms take a fifth of what is beyond 30 degrees from the shoulder girdle [Inman, Saunders & Abbott 1944].
 constexpr BodyPose kPoses[] = {
     {"stand", "Standing, arms hanging, palms to the body.",
      "shoulders abduction=8; elbows flexion=5; forearms pronation=90"},
@@ -23,14 +22,14 @@ constexpr BodyPose kPoses[] = {
      "left shoulder flexion=25; left elbow flexion=30; right shoulder extension=20; right elbow flexion=15;"
      "shoulders abduction=8; forearms pronation=90"},
     {"phone", "Standing with a telephone: the right hand is at the ear.",
-     "right shoulder girdle elevation=10; right shoulder flexion=85; right shoulder internal rotation=20;"
+     "right shoulder flexion=85; right shoulder internal rotation=20;"
      "right elbow flexion=145; right forearm pronation=108;"
      "left shoulder abduction=8; left elbow flexion=5; left forearm pronation=90"},
     {"arms-up", "Standing with both arms raised beside the head.",
-     "shoulder girdles elevation=30; shoulders abduction=160; elbows flexion=10; forearms pronation=20"},
+     "shoulders abduction=160; elbows flexion=10; forearms pronation=20"},
     {"squat", "Squatting deeply, arms forward for balance.",
      "hips flexion=110; hips abduction=15; knees flexion=120; ankles dorsiflexion=25;"
-     "shoulder girdles elevation=8; shoulders flexion=80; elbows flexion=10; forearms pronation=90"},
+     "shoulders flexion=80; elbows flexion=10; forearms pronation=90"},
     {"drive", "Sitting in a car, both hands at the wheel.",
      "hips flexion=85; hips abduction=8; knees flexion=60; ankles plantarflexion=5;"
      "shoulders flexion=55; shoulders abduction=5; elbows flexion=45; forearms pronation=100; hands curl=50"},
@@ -38,7 +37,7 @@ constexpr BodyPose kPoses[] = {
      "As on a scanner's table: straight, arms a little apart, palms forward. The body itself is not laid down.",
      "shoulders abduction=15"},
     {"reach", "Standing, the right arm stretched forward and up.",
-     "right shoulder girdle elevation=22; right shoulder flexion=135; right elbow flexion=5; right forearm "
+     "right shoulder flexion=135; right elbow flexion=5; right forearm "
      "pronation=90;"
      "left shoulder abduction=8; left elbow flexion=5; left forearm pronation=90"},
     {"T", "Arms straight to the sides, palms down.", "shoulders abduction=90; forearms pronation=90"},

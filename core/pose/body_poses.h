@@ -17,7 +17,7 @@ struct BodyPose {
   std::string_view name;         // "sit"
   std::string_view description;  // a sentence
   // Requests of joint_angles.h with a semicolon between. Limbs stand in the anatomical position where nothing is said;
-  // spine, neck, collarbones, fingers and toes keep their rest.
+  // spine, neck, fingers and toes keep their rest, collarbones go with raised arms.
   std::string_view joints;
 };
 

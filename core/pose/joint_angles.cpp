@@ -99,6 +99,8 @@ constexpr MotionWord kMotions[] = {
     {Girdle, "depression", 0, -1},
     {Girdle, "protraction", 1},
     {Girdle, "retraction", 1, -1},
+    {Girdle, "upward rotation", 2},
+    {Girdle, "downward rotation", 2, -1},
     {Shoulder, "flexion", 0},
     {Shoulder, "extension", 0, -1},
     {Shoulder, "abduction", 1},
@@ -142,7 +144,7 @@ struct UsualRange {
 
 constexpr UsualRange kUsual[] = {
     {Spine, 0, -35, 90},     {Spine, 1, -40, 40},     {Spine, 2, -50, 50},    {Neck, 0, -60, 60},
-    {Neck, 1, -45, 45},      {Neck, 2, -80, 80},      {Girdle, 0, -10, 40},   {Girdle, 1, -20, 30},
+    {Neck, 1, -45, 45},      {Neck, 2, -80, 80},      {Girdle, 0, -10, 40},   {Girdle, 1, -20, 30},     {Girdle, 2, -10, 60},
     {Shoulder, 0, -60, 180}, {Shoulder, 1, -50, 180}, {Shoulder, 2, -90, 90}, {Elbow, 0, -10, 150},
     {Forearm, 0, -10, 175},  {Wrist, 0, -75, 80},     {Wrist, 1, -20, 35},    {Hip, 0, -30, 125},
     {Hip, 1, -30, 50},       {Hip, 2, -45, 45},       {Knee, 0, -10, 150},    {Ankle, 0, -50, 30},

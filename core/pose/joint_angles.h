@@ -50,7 +50,7 @@ struct SidedJoint {
 
 // Degrees of a joint's up to three motions, in the order in which they are applied; none: not said.
 //   Spine, Neck   flexion, lateral bending to the right, axial rotation to the left
-//   Hip, Shoulder flexion, abduction, internal rotation      Girdle  elevation, protraction
+//   Hip, Shoulder flexion, abduction, internal rotation      Girdle  elevation, protraction, upward rotation
 //   Wrist         flexion, ulnar deviation                   Ankle   dorsiflexion, inversion
 //   Elbow, Knee   flexion       Forearm  pronation           Toes    extension
 //   Thumb .. Little             flexion of the knuckle, the middle joint and the last one (the thumb has two: the first

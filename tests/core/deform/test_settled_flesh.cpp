@@ -89,7 +89,7 @@ TEST_CASE("settled flesh: a bent limb keeps its volume where blending does not")
       const auto motions = limb.bent(degrees);
       const SettledFlesh settled = limb.settled(motions, blend);
       INFO("blend ", int(blend), " by ", degrees, " degrees: ", volume_error(limb, motions, blend, nullptr), " without");
-      CHECK(std::abs(volume_error(limb, motions, blend, &settled)) < (std::abs(degrees) > 90 ? 0.015 : 0.005));
+      CHECK(std::abs(volume_error(limb, motions, blend, &settled)) < (std::abs(degrees) > 90 ? 0.02 : 0.005));
       CHECK(settled.report().volume_error_after < 0.25 * settled.report().volume_error_before);
     }
   CHECK(std::abs(volume_error(limb, limb.bent(100), Blend::Linear, nullptr)) > 0.01);
@@ -126,7 +126,7 @@ TEST_CASE("settled flesh: a body that moves as one, or not at all, does not sett
 TEST_CASE("settled flesh: shifts turn with the body, and grow with it") {
   const Limb limb, large(20);
   const glm::dquat turn = glm::angleAxis(0.8, glm::normalize(glm::dvec3(2, -1, 1)));
-  const SettledFlesh still = limb.settled(limb.bent(80)), turned = limb.settled(limb.bent(80, {turn, {100, 20, 3}})), grown = large.settled(large.bent(80));
+  const SettledFlesh still = limb.settled(limb.bent(45)), turned = limb.settled(limb.bent(45, {turn, {100, 20, 3}})), grown = large.settled(large.bent(45));
   SettledFlesh::CornerShifts a, b, c;
   double off = 0, off_grown = 0;
   for (std::int64_t brick = 0; brick < std::ssize(limb.tissue.bricks()); ++brick) {
@@ -170,6 +170,80 @@ TEST_CASE("settled flesh: two sides of a seam shift on their own") {
     apart = std::max<double>(apart, glm::length(settled.corner_shift(lowest, 0x0f) - settled.corner_shift(lowest, 0xf0)));
   }
   CHECK(apart > 0.05);
+}
+
+TEST_CASE("posed bones: the way out of a bone is the shortest, wherever the pose takes it") {
+  const Limb limb;
+  const auto motions = limb.bent(70);
+  const PosedBones bones(limb.volume, limb.tissue, limb.weights, limb.is_bone, motions);
+  const double radius = 4 * 2, middle = (Limb::kMiddle - 0.5) * 2;  // mm
+  for (const bool lower : {false, true})
+    for (const double away : {3.0, 6.0}) {
+      const glm::dvec3 rest(middle + away, middle, lower ? 130 : 30);
+      const auto way = bones.way_out(motions[lower] * rest);
+      REQUIRE(way);
+      CHECK(std::abs(glm::length(*way) - (radius - away)) < 1);  // half a voxel
+      CHECK(glm::dot(glm::normalize(*way), motions[lower].rotation * glm::dvec3(1, 0, 0)) > 0.9);
+    }
+  CHECK_FALSE(bones.way_out(motions[1] * glm::dvec3(middle + 11, middle, 130)));
+  CHECK_FALSE(bones.way_out({-500, 0, 0}));
+  CHECK_FALSE(PosedBones(limb.volume, limb.tissue, limb.weights, LabelSet(65536), motions).way_out({middle, middle, 30}));
+}
+
+// Two slabs of 12 voxels with air between, each on a bone of its own; a little of each bends, so that both have cells.
+struct Slabs {
+  LabelVolume volume;
+  TissueVoxels tissue;
+  SkinWeights weights;
+
+  Slabs() {
+    volume.grid.size = {32, 32, 64};
+    volume.voxels.assign(volume.grid.voxel_count(), 0);
+    for (int z = 0; z < 64; ++z)
+      for (int y = 2; y < 30; ++y)
+        for (int x = 2; x < 30; ++x)
+          if ((z >= 8 && z < 20) || (z >= 40 && z < 52)) volume.at({x, y, z}) = kFlesh;
+    tissue = TissueVoxels(volume);
+    weights = SkinWeights({"low", "high", "still"}, tissue);
+    for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
+      SkinWeights::Influences chunk;
+      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) { chunk.push_back(quantize({{v.z > 30, 0.75}, {2, 0.25}})); });
+      weights.set_chunk(brick, chunk);
+    }
+  }
+  // Both go towards each other by `each` mm at the weight that they have.
+  std::vector<RigidTransform> together(double each) const {
+    const glm::dquat straight(1, 0, 0, 0);
+    return {{straight, {0, 0, each / 0.75}}, {straight, {0, 0, -each / 0.75}}, {}};
+  }
+};
+
+TEST_CASE("flesh contact: two sides go back by half of what they overlap by, and rest beside each other otherwise") {
+  const Slabs slabs;
+  const TissueDepth depth(slabs.tissue, glm::dvec3(1));
+  for (const double each : {8.0, 12.0}) {  // the gap is 20: an overlap of 4 mm, and a gap of 4 still open
+    const auto motions = slabs.together(20 - each);
+    const double overlap = 2 * (20 - each) - 20;
+    const BrickMotions bricks(slabs.tissue, slabs.weights, motions);
+    const FleshCells cells = flesh_cells(slabs.volume, slabs.tissue, slabs.weights, LabelSet(65536), motions, Blend::Linear, bricks);
+    FleshContact contact(cells, depth, glm::dvec3(1));
+    contact.look(cells.blended);
+    int met = 0;
+    for (std::int32_t n = 0; n < std::ssize(cells.rest); ++n) {
+      const auto way = contact.way_apart(n);
+      if (!way) continue;
+      ++met;
+      if (glm::any(glm::lessThan(glm::dvec2(cells.rest[n]), glm::dvec2(8))) || glm::any(glm::greaterThan(glm::dvec2(cells.rest[n]), glm::dvec2(23)))) continue;
+      CHECK(way->z * (cells.rest[n].z < 30 ? -1 : 1) == doctest::Approx(overlap / 2).epsilon(0.4));
+      CHECK(glm::length(glm::dvec2(*way)) < 0.5);
+    }
+    CHECK((met > 0) == (overlap > 0));
+  }
+  // Settled, they press against each other instead.
+  const auto motions = slabs.together(12);
+  const SettledFlesh settled(slabs.volume, slabs.tissue, slabs.weights, LabelSet(65536), motions, Blend::Linear, no_progress());
+  CHECK(settled.corner_shift({15, 15, 19}, 0x0f).z < -0.7);
+  CHECK(settled.corner_shift({15, 15, 39}, 0xf0).z > 0.7);
 }
 
 TEST_CASE("volume shifts: the nearest matrix of volume one") {

@@ -250,9 +250,34 @@ TEST_CASE("body poses: joints bend the way that their words say, on both sides, 
                        -kUpwards,
                    out) < -0.3);
     CHECK(at(word + "shoulder girdle elevation=20", s + "Clavicle", s + "UpperArm").z > 0.2);
+    CHECK(at(word + "shoulder girdle upward rotation=20", s + "Clavicle", s + "UpperArm").z > 0.1);
     CHECK(glm::dot(at(word + "shoulder girdle protraction=20", s + "Clavicle", s + "UpperArm") -
                        at(word + "shoulder girdle elevation=0", s + "Clavicle", s + "UpperArm"),
                    kFront) > 0.2);
+  }
+}
+
+TEST_CASE("body poses: a raised arm takes a sixth of what is beyond 30 degrees from the collarbone, unless its girdle is named") {
+  const Armature rig = body_rig();
+  const auto turned = [&](const std::vector<std::string>& joints, const std::string& bone) {
+    return posed_from_rest(rig, posed(rig, "", joints))[static_cast<std::size_t>(require_bone(rig, bone))].rotation;
+  };
+  const auto degrees = [](const glm::dquat& q) { return glm::degrees(2 * std::acos(std::min(1.0, std::abs(q.w)))); };
+  CHECK(degrees(turned({"left shoulder abduction=120"}, "LeftClavicle")) == doctest::Approx(15));
+  CHECK(degrees(turned({"right shoulder flexion=90"}, "RightClavicle")) == doctest::Approx(10));
+  CHECK(degrees(turned({"left shoulder flexion=60", "left shoulder abduction=60"}, "LeftClavicle")) ==
+        doctest::Approx((glm::degrees(std::acos(0.25)) - 30) / 6));
+  CHECK(degrees(turned({"left shoulder abduction=30"}, "LeftClavicle")) < 1e-6);
+  CHECK(degrees(turned({"left shoulder abduction=120", "left shoulder girdle elevation=0"}, "LeftClavicle")) < 1e-6);
+  CHECK(degrees(turned({"left shoulder abduction=120"}, "RightClavicle")) < 1e-6);
+  // The arm itself ends where it was asked to, and the blade glides: what lies in its plane stays in it.
+  for (const auto& [word, s, side] : {std::tuple{std::string("left "), std::string("Left"), 1.0}, {"right ", "Right", -1.0}}) {
+    const Pose pose = posed(rig, "", {word + "shoulder abduction=120"});
+    CHECK(degrees_between(between(rig, pose, s + "UpperArm", s + "Forearm"), glm::dvec3(side * std::sin(glm::radians(120.0)), 0, 0.5)) < 0.01);
+    const double blade = glm::radians(35.0);
+    const glm::dvec3 square(side * std::sin(blade), std::cos(blade), 0);
+    CHECK(degrees_between(turned({word + "shoulder abduction=120"}, s + "Clavicle") * square, square) < 0.01);
+    CHECK((turned({word + "shoulder abduction=120"}, s + "Clavicle") * glm::dvec3(side, 0, 0)).z > 0.15);
   }
 }
 
