@@ -327,6 +327,8 @@ std::string to_json(const Report& report) {
       json["bones"].push_back({{"name", bone.name}, {"rigid_residual_mm", bone.rigid_residual_mm}});
   add_body(report, json);
   if (report.deform && report.deform->settled) json["settled_flesh"] = settled_of(*report.deform->settled);
+  if (report.deform)
+    for (const auto& [label, voxels] : report.deform->kept_organs) json["kept_organs"][key_of(report, label)] = voxels;
   if (report.deform && report.deform->mass_exact) json["mass_exact"] = mass_exact_of(report, *report.deform->mass_exact);
   if (report.deform && report.deform->mesh) json["mesh"] = mesh_of(report, *report.deform->mesh);
   if (report.deform && report.deform->solve) json["solve"] = solve_of(*report.deform->solve);

@@ -16,6 +16,7 @@
 #include "core/resample/skin_at_rest.h"
 #include "core/resample/bone_volumes.h"
 #include "core/resample/mend.h"
+#include "core/resample/organ_volumes.h"
 #include "core/resample/tissue_volumes.h"
 
 namespace limber {
@@ -127,6 +128,13 @@ class PosedVoxels {
   void keep_soft_volumes(Progress& progress) {
     SoftBorders borders = soft_borders(progress);
     posed_.report.mended_voxels += keep_tissue_volumes(posed_.volume, borders.by_cell, borders.moves, labels_.soft, labels_.skin).changed;
+  }
+
+  void keep_organs() {
+    std::map<Label, std::int64_t> wanted;
+    for (const auto& [label, voxels] : soft_voxels(volume_))
+      if (voxels >= kOrgan && !labels_.skin[label]) wanted[label] = std::llround(double(voxels) * output_per_rest());
+    posed_.report.kept_organs = keep_organ_volumes(posed_.volume, wanted, labels_.soft, labels_.skin);
   }
 
   void keep_masses(const TissueTable& tissues, Progress& progress) {
@@ -540,6 +548,7 @@ void write_voxels(const PosedBody& body, const ResampleSettings& settings, Posed
   voxels.run(progress);
   if (body.mends) voxels.mend_tears();
   if (body.mends && body.tets) voxels.keep_soft_volumes(progress);
+  if (body.mends && posed.report.settled) voxels.keep_organs();
   if (settings.mass_exact) voxels.keep_masses(body.tissues, progress);
 }
 

@@ -66,6 +66,7 @@ struct DeformReport {
   };
   std::vector<BoneResidual> bones;        // those with bone tissue
   std::optional<SettledFlesh::Report> settled;  // by mixed blending, where anything bends
+  std::map<Label, std::int64_t> kept_organs;     // voxels that small organs were given, or gave, to keep their volume (organ_volumes.h)
   std::optional<MassExactReport> mass_exact;
   std::optional<MeshReport> mesh;         // by finite elements, where anything bends
   std::optional<SolveReport> solve;

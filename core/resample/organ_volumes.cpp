@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/organ_volumes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+#include <vector>
+
+namespace limber {
+
+namespace {
+
+constexpr int kLayers = 6;  // at most, on or off an organ
+constexpr std::int64_t kFrozen = 2 * kSmallestPart;  // voxels: smaller parts might come to count, or cease to
+constexpr int kRounds = 2;  // over all organs: what one gave may leave another one short
+
+// As if at random: of voxels that are equally good not all lie on one side of an organ.
+std::uint64_t shuffled(std::uint64_t at) {
+  at = (at ^ at >> 30) * 0xbf58476d1ce4e5b9;
+  return at ^ at >> 27;
+}
+
+class Organs {
+ public:
+  Organs(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted, const LabelSet& soft, const LabelSet& skin)
+      : posed_(posed), wanted_(wanted), soft_(soft), skin_(skin), parts_(connected_components(posed, nullptr, &soft)), has_(65536), box_(65536) {
+    glm::ivec3 v;
+    std::size_t at = 0;
+    for (v.z = 0; v.z < posed.grid.size.z; ++v.z)
+      for (v.y = 0; v.y < posed.grid.size.y; ++v.y)
+        for (v.x = 0; v.x < posed.grid.size.x; ++v.x, ++at)
+          if (const Label label = posed.voxels[at]) {
+            ++has_[label];
+            box_[label].low = glm::min(box_[label].low, v);
+            box_[label].high = glm::max(box_[label].high, v);
+          }
+  }
+
+  std::map<Label, std::int64_t> run() {
+    std::vector<std::pair<double, Label>> order;  // the most changed first
+    for (const auto& [label, voxels] : wanted_)
+      if (off(label) != 0) order.emplace_back(-std::abs(double(off(label))) / double(voxels), label);
+    std::sort(order.begin(), order.end());
+    std::map<Label, std::int64_t> before;
+    for (const auto& [_, label] : order) before[label] = has_[label];
+    for (int round = 0; round < kRounds; ++round)
+      for (const auto& [_, label] : order)
+        for (int layer = 0; layer < kLayers && off(label) != 0 && move_surface(label); ++layer) {
+        }
+    for (auto& [label, voxels] : before) voxels = has_[label] - voxels;
+    std::erase_if(before, [](const auto& each) { return each.second == 0; });
+    return before;
+  }
+
+ private:
+  struct Box {
+    glm::ivec3 low{INT32_MAX}, high{INT32_MIN};
+  };
+  struct Candidate {
+    int around;  // of the 26 voxels around, those of the organ
+    std::uint64_t shuffle;
+    glm::ivec3 voxel;
+  };
+
+  std::int64_t least(Label label) const { return std::llround(std::ceil(double(wanted_.at(label)) * (1 - kMostOff))); }
+  std::int64_t most(Label label) const { return std::llround(std::floor(double(wanted_.at(label)) * (1 + kMostOff))); }
+  // Voxels that it lacks, negative what it has too much.
+  std::int64_t off(Label label) const { return has_[label] < least(label) ? least(label) - has_[label] : has_[label] > most(label) ? most(label) - has_[label] : 0; }
+  bool is_flesh(Label label) const { return label && soft_[label] && !skin_[label]; }
+  bool can_give(Label label) const { return is_flesh(label) && wanted_.contains(label) && has_[label] > least(label); }
+  bool can_take(Label label) const { return is_flesh(label) && wanted_.contains(label) && has_[label] < most(label); }
+
+  // One layer of its surface, or as much of it as is asked for. False where nothing could move.
+  bool move_surface(Label label) {
+    const bool grows = off(label) > 0;
+    std::vector<Candidate> surface = surface_of(label, grows);
+    // Hollows are filled first, what sticks out goes first.
+    std::sort(surface.begin(), surface.end(), [&](const Candidate& a, const Candidate& b) {
+      if (a.around != b.around) return grows ? a.around > b.around : a.around < b.around;
+      return a.shuffle < b.shuffle;
+    });
+    bool moved = false;
+    for (const Candidate& each : surface) {
+      if (off(label) == 0) break;
+      moved |= grows ? give(each.voxel, label) : give(each.voxel, taker(each.voxel, label));
+    }
+    return moved;
+  }
+
+  // Outside it where it grows, its own voxels where it gives.
+  std::vector<Candidate> surface_of(Label label, bool grows) {
+    std::vector<Candidate> surface;
+    Box& box = box_[label];
+    box.low = glm::max(box.low - int(grows), glm::ivec3(0));
+    box.high = glm::min(box.high + int(grows), posed_.grid.size - 1);
+    glm::ivec3 v;
+    for (v.z = box.low.z; v.z <= box.high.z; ++v.z)
+      for (v.y = box.low.y; v.y <= box.high.y; ++v.y)
+        for (v.x = box.low.x; v.x <= box.high.x; ++v.x) {
+          const Label here = posed_.at(v);
+          if ((here == label) == grows || !is_flesh(here)) continue;
+          const bool at_border = std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(), [&](const glm::ivec3& step) {
+            const Label beside = posed_.at_or_air(v + step);
+            return grows ? beside == label : beside != label && is_flesh(beside);
+          });
+          if (!at_border) continue;
+          const auto around = std::count_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) { return posed_.at_or_air(v + step) == label; });
+          const auto at = static_cast<std::uint64_t>(posed_.grid.index(v));
+          surface.push_back({static_cast<int>(around), shuffled(at), v});
+        }
+    return surface;
+  }
+
+  // What is most common at its faces, of what can take a voxel; 0 where nothing can.
+  Label taker(const glm::ivec3& v, Label from) const {
+    std::map<Label, int> count;
+    for (const glm::ivec3& step : kFaceNeighbours)
+      if (const Label beside = posed_.at_or_air(v + step); beside != from && can_take(beside)) ++count[beside];
+    Label best = 0;
+    for (const auto& [label, faces] : count)
+      if (best == 0 || faces > count[best]) best = label;
+    return best;
+  }
+
+  bool give(const glm::ivec3& v, Label to) {
+    const Label from = posed_.at(v);
+    if (to == 0 || from == to || !can_give(from) || touches_air(posed_, v) || !can_spare(posed_, v) || !can_join(posed_, v, to)) return false;
+    const int leaves = part_of(v), joins = part_beside(v, to);
+    if (parts_.voxels[leaves] < kFrozen || parts_.voxels[joins] < kFrozen) return false;
+    --parts_.voxels[leaves];
+    ++parts_.voxels[joins];
+    part_of_changed_[posed_.grid.index(v)] = joins;
+    posed_.at(v) = to;
+    --has_[from];
+    ++has_[to];
+    return true;
+  }
+
+  int part_of(const glm::ivec3& v) const {
+    const auto changed = part_of_changed_.find(posed_.grid.index(v));
+    return changed != part_of_changed_.end() ? changed->second : component_at(parts_, posed_, v);
+  }
+
+  // `label` must be beside.
+  int part_beside(const glm::ivec3& v, Label label) const {
+    const auto step = std::find_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& each) { return posed_.at_or_air(v + each) == label; });
+    return part_of(v + *step);
+  }
+
+  LabelVolume& posed_;
+  const std::map<Label, std::int64_t>& wanted_;
+  const LabelSet &soft_, &skin_;
+  Components parts_;               // as they were, but for their sizes
+  std::unordered_map<std::int64_t, int> part_of_changed_;
+  std::vector<std::int64_t> has_;  // by label
+  std::vector<Box> box_;           // by label: that holds all of it
+};
+
+}  // namespace
+
+std::map<Label, std::int64_t> keep_organ_volumes(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted, const LabelSet& soft, const LabelSet& skin) {
+  return Organs(posed, wanted, soft, skin).run();
+}
+
+}  // namespace limber
