@@ -185,7 +185,7 @@ struct Editor {
   struct {
     std::string method = "mix";
     double spacing = 0;  // mm; 0: as the volume
-    bool fit_joints = false;
+    bool bones_apart = false;  // joints glide further than a voxel, where their bones need it
     bool mass_exact = false;  // soft tissues keep their volume to the voxel's accuracy
     // Of finite elements.
     bool contact = true;

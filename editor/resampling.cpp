@@ -23,7 +23,7 @@ struct Request {
   Document from;  // with a pose
   std::string method;
   double spacing = 0;  // mm; 0: as the volume
-  bool fit_joints = false, mass_exact = false, contact = false;
+  bool bones_apart = false, mass_exact = false, contact = false;
   std::string quality;  // of finite elements
   std::string scratch;
   WorkerSettings worker;
@@ -47,7 +47,7 @@ void write_inputs(const Request& request, const ScratchFolder& folder, Progress&
   nlohmann::ordered_json job{{"command", "resample"}, {"volume", "volume.nrrd"}, {"rig", "rig.json"},     {"tissues", "tissues.json"},  {"weights", "weights.nrrd"},
                              {"pose", "pose.json"},   {"method", request.method}, {"output", "posed.nrrd"}, {"report", "report.json"}, {"overlap", "overlap.nrrd"}};
   if (request.spacing > 0) job["spacing"] = request.spacing;
-  if (request.fit_joints) job["fit-joints"] = true;
+  if (request.bones_apart) job["glide"] = "joint";
   if (request.mass_exact) job["mass-exact"] = true;
   if (request.method == "fem") {
     job["quality"] = request.quality;
@@ -161,7 +161,7 @@ std::string why_no_resampling(const Editor& editor) {
 }
 
 void start_resampling(Editor& editor) {
-  Request request{editor.document(), editor.resampling.method, editor.resampling.spacing, editor.resampling.fit_joints, editor.resampling.mass_exact, editor.resampling.contact, editor.resampling.quality,
+  Request request{editor.document(), editor.resampling.method, editor.resampling.spacing, editor.resampling.bones_apart, editor.resampling.mass_exact, editor.resampling.contact, editor.resampling.quality,
                   editor.preferences.scratch_folder, {}, {}};
   if (!request.from.pose) request.from.pose = std::make_shared<const Pose>(rest_pose(*request.from.armature));
   if (request.method == "fem") request.feed = std::make_shared<SolveFeed>();

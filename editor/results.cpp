@@ -22,8 +22,9 @@ namespace {
 
 // A report speaks to the command line: what it says to add is a switch here, or better a lasting cure.
 std::string in_words_of_the_editor(std::string warning) {
-  constexpr std::string_view kOption = "add --fit-joints";
-  if (const auto place = warning.find(kOption); place != std::string::npos) warning.replace(place, kOption.size(), "choose the bone and Fit joint axis in the Rig workspace");
+  for (const auto& [said, here] : {std::pair<std::string_view, std::string_view>{"--glide MM allows longer shifts", "Keep bones apart allows longer shifts"},
+                                   {"limber fit-joint, a command of its own, moves the axis of a joint", "Fit joint axis in the Rig workspace moves the axis of a joint"}})
+    if (const auto place = warning.find(said); place != std::string::npos) warning.replace(place, said.size(), here);
   return warning;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS [--method lbs|dqs|mix|fem] [--fit-joints]
+// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS [--method lbs|dqs|mix|fem] [--glide off|voxel|joint|MM] [--fit-joints]
 //        [--contact] [--quality draft|normal|fine] [--mesher lattice|tetgen] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2]
 //        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--strict] [--threads N] [--progress json]
 #include "core/resample/resample.h"
@@ -14,6 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
+#include "core/cmd/glide_options.h"
 #include "core/cmd/pose_options.h"
 #include "core/cmd/seam_options.h"
 #include "core/deck/tet_phantom.h"
@@ -38,7 +39,7 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method = "mix", output, report, grey, field, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps, seams;
+  std::string weights, method = "mix", output, report, grey, field, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps, seams, glide;
   std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
@@ -140,6 +141,7 @@ void check_sequence(const Options& options) {
 void check_method(const Options& options) {
   if (options.mass_exact && options.nearest)
     throw Error("masses are kept by what a voxel is nearly, which --nearest does not ask", "--mass-exact", "leave one of the two out");
+  glide_settings(options.glide, options.pose, 1);
   if (options.method == "fem") return;
   for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"}, {!options.quality.empty(), "--quality"}, {!options.mesher.empty(), "--mesher"}, {!options.mesh_out.empty(), "--mesh-out"}, {options.mesh_unit != "mm", "--mesh-unit"}, {!options.steps.empty(), "--steps"}})
     if (is_given) throw Error(std::string(name) + " needs finite elements", "--method " + options.method, "use --method fem, or leave it out");
@@ -227,6 +229,7 @@ void describe(Report& report, const Options& options, const Armature& rig, const
   settings["mass_exact"] = options.mass_exact;
   if (options.mass_exact) settings["mass_limit_percent"] = options.mass_limit;
   settings["fit_joints"] = options.fit_joints;
+  settings["glide"] = glide_word(options.glide, options.pose);
   if (options.method == "fem") {
     settings["contact"] = options.contact;
     settings["quality"] = options.quality.empty() ? std::string("normal") : options.quality;
@@ -285,13 +288,6 @@ void note_masses(Report& report, const MassExactReport& exact, const TissueTable
   }
 }
 
-void note_bone_overlap(Report& report, std::int64_t voxels, bool joints_fitted) {
-  if (voxels == 0) return;
-  note(report, {joints_fitted ? std::to_string(voxels) + " voxels are still claimed by two bones"
-                              : std::to_string(voxels) + " voxels are claimed by two bones: the rig's joint is not the anatomical one: "
-                                                         "add --fit-joints, which moves its axis and with it the pose"});
-}
-
 // Of a pose, beside the posed volume.
 struct Landmarks {
   std::vector<Landmark> rest;
@@ -335,7 +331,7 @@ bool finish(const Options& options, const Body& body, const Pose& pose, const st
   report.seconds.solve = posed.report.seconds_solve;
   report.seconds.deform = posed.report.seconds_deform;
   report.seconds.rasterize = posed.report.seconds_rasterize;
-  note_bone_overlap(report, posed.report.bone_overlap_voxels, options.fit_joints);
+  if (const std::string overlap = overlap_warning(report.glide, posed.report.bone_overlap_voxels); !overlap.empty()) note(report, {overlap});
   note_shape(report, posed.report, pose, options.contact);
   if (posed.report.mass_exact) note_masses(report, *posed.report.mass_exact, body.tissues);
 
@@ -406,6 +402,13 @@ void run(const Options& options) {
     poses[0] = std::move(fitted.pose);
   }
   report.seconds.weights = weighting.seconds();
+  const Stopwatch gliding;
+  std::vector<std::vector<GlidedJoint>> glided;  // by pose; empty where joints do not glide
+  const glm::dvec3 voxel = body.file.volume.grid.spacing;
+  if (const auto settings = glide_settings(options.glide, options.pose, std::max({voxel.x, voxel.y, voxel.z}))) {
+    glided = glide_poses(poses, *settings, body, tissue, weights, progress);
+    report.seconds.glide = gliding.seconds();
+  }
 
   const ResampleSettings settings{.nearest = options.nearest, .mass_exact = options.mass_exact, .mass_limit_percent = options.mass_limit, .spacing = options.spacing,
                                   .displacement = !options.field.empty() || !options.report.empty() || options.strict, .jacobian = !options.jacobian.empty(),
@@ -420,6 +423,7 @@ void run(const Options& options) {
     if (posed.shape && frames.empty()) solve.end(*posed.shape);
     all_reached &= !posed.report.solve || posed.report.solve->converged;
     Report of_pose = report;
+    if (!glided.empty()) of_pose.glide = glided[place];
     all_passed &= finish(frames.empty() ? options : of_frame(options, frames[place]), body, poses[place], asked[place], {landmarks, tissue, weights}, posed, of_pose, total);
     if (place + 1 == poses.size()) return;
     solve.aim_at(poses[place + 1]);
@@ -446,7 +450,8 @@ void add_resample(CLI::App& app) {
   command->add_option("--mesh-out", options->mesh_out, "fem: the posed mesh as NAME.node and NAME.ele, with the tissue of each tet, and NAME.material for particle codes")->type_name("NAME");
   command->add_option("--mesh-unit", options->mesh_unit, "fem: of the mesh: mm, or cm as in the phantoms of ICRP 145")->check(CLI::IsMember({"mm", "cm"}));
   command->add_option("--steps", options->steps, "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step")->type_name("NAME");
-  command->add_flag("--fit-joints", options->fit_joints, "first move each bent joint so that its bones do not collide");
+  add_glide_option(*command, options->glide);
+  command->add_flag("--fit-joints", options->fit_joints, "first moves the axis of each bent joint, and with it the pose, so that its bones do not collide: as 'limber fit-joint'");
   command->add_option("-o,--output", options->output, "the posed volume")->required();
   command->add_option("--report", options->report, "what changed: JSON there, a table on stdout");
   command->add_flag("--strict", options->strict, "exit code 5 when a gate fails: measures the result as for --report, writes everything all the same");

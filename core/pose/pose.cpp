@@ -13,7 +13,8 @@ std::vector<RigidTransform> posed_from_rest(const Armature& armature, const Pose
   std::vector<RigidTransform> posed(armature.bones.size());
   for (size_t i = 0; i < posed.size(); ++i) {
     const Bone& bone = armature.bones[i];
-    const RigidTransform own = rotation_about(bone.head, pose.rotation[i]);
+    RigidTransform own = rotation_about(bone.head, pose.rotation[i]);
+    if (!pose.shift.empty()) own.translation += pose.shift[i];
     const bool still = own.rotation == glm::dquat(1, 0, 0, 0) && own.translation == glm::dvec3(0);
     if (bone.parent < 0)
       posed[i] = {own.rotation, own.translation + pose.root_translation};

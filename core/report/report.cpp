@@ -136,6 +136,14 @@ Json joint_of(const TurnedJoint& joint) {
   return row;
 }
 
+Json glide_of(const std::vector<GlidedJoint>& joints) {
+  Json rows = Json::array();
+  for (const GlidedJoint& joint : joints)
+    rows.push_back({{"bone", joint.bone}, {"against", joint.against}, {"shift_mm", vector_of(joint.shift)}, {"length_mm", glm::length(joint.shift)},
+                    {"most_mm", joint.most_mm}, {"free", joint.free}, {"depth_before_mm", joint.depth_before}, {"depth_after_mm", joint.depth_after}});
+  return rows;
+}
+
 bool is_whole_body(const Armature& armature) {
   std::vector<std::string> names;
   std::vector<int> parents;
@@ -208,6 +216,7 @@ Json seconds_of(const StageSeconds& seconds) {
   };
   add("read", seconds.read);
   add("weights", seconds.weights);
+  add("glide", seconds.glide);
   add("deform", seconds.deform);
   add("mesh", seconds.mesh);
   add("solve", seconds.solve);
@@ -245,6 +254,14 @@ void print_stretch(std::ostream& out, const VolumeMetrics& metrics, const MeshRe
       out << line("%8.0f  %-28.28s   %5.2f (%.2f to %.2f), %5.2f (%.2f to %.2f)", tissue.file_value, tissue.name.c_str(), least[1], least[0], least[2],
                   most[1], most[0], most[2]);
     }
+}
+
+void print_glide(std::ostream& out, const std::vector<GlidedJoint>& joints) {
+  if (joints.empty()) return;
+  out << line("%-24s %-24s %9s %9s %9s %9s", "joint that glides", "against", "shift mm", "of most", "deep mm", "after");
+  for (const GlidedJoint& joint : joints)
+    out << line("%-24.24s %-24.24s %9.1f %9.1f %9.1f %9.1f %s", joint.bone.c_str(), joint.against.c_str(), glm::length(joint.shift), joint.most_mm,
+                joint.depth_before, joint.depth_after, joint.free ? "free" : "NOT FREE");
 }
 
 void print_tissues(std::ostream& out, const VolumeMetrics& metrics) {
@@ -315,6 +332,7 @@ std::string to_json(const Report& report) {
   if (!report.inputs.empty())
     for (const InputFile& input : report.inputs) json["inputs"].push_back({{"path", input.path}, {"sha256", input.sha256}});
   for (const TurnedJoint& joint : report.joints) json["joints"].push_back(joint_of(joint));
+  if (report.glide) json["glide"] = glide_of(*report.glide);
   if (Json seconds = seconds_of(report.seconds); !seconds.empty()) json["seconds"] = seconds;
   json["peak_memory_mb"] = std::round(peak_memory_mb() * 10) / 10;
   if (report.metrics) json["tissues"] = tissue_rows(report);
@@ -358,6 +376,7 @@ void print_report(std::ostream& out, const Report& report) {
                   100 * report.metrics->skin_share_before, 100 * report.metrics->skin_share_after);
     out << line("trapped air %lld voxels", static_cast<long long>(report.metrics->trapped_air_voxels));
   }
+  if (report.glide) print_glide(out, *report.glide);
   if (report.deform) {
     const DeformReport& deform = *report.deform;
     out << line("dropped %lld, new holes %lld, overlap %lld, bone in bone %lld, mended %lld voxels",

@@ -18,6 +18,7 @@
 #include "core/report/metrics.h"
 #include "core/report/posed_bones.h"
 #include "core/report/quality_gates.h"
+#include "core/resample/glide_joints.h"
 #include "core/resample/resample.h"
 
 namespace limber {
@@ -33,7 +34,7 @@ InputFile describe_input(const Path& path);
 
 // Wall-clock seconds; a stage that did not run has none.
 struct StageSeconds {
-  std::optional<double> read, weights, deform, mesh, solve, rasterize, report, write, total;
+  std::optional<double> read, weights, glide, deform, mesh, solve, rasterize, report, write, total;
 };
 
 // A joint that a pose turns.
@@ -52,6 +53,7 @@ struct Report {
   std::map<std::string, SettingValue> settings;
   std::vector<InputFile> inputs;
   std::vector<TurnedJoint> joints;
+  std::optional<std::vector<GlidedJoint>> glide;  // those whose bones would overlap; none where joints do not glide
   StageSeconds seconds;
   std::optional<VolumeMetrics> metrics;
   std::optional<std::vector<std::string>> doubts;  // of inputs that do not belong together [input_doubts.h]; none where nobody asked

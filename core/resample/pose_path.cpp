@@ -12,6 +12,7 @@ Pose part_of_pose(const Pose& pose, double t) {
   Pose part = pose;
   for (glm::dquat& turn : part.rotation) turn = t == 0 || turn == glm::dquat(1, 0, 0, 0) ? glm::dquat(1, 0, 0, 0) : glm::slerp(glm::dquat(1, 0, 0, 0), turn, t);
   part.root_translation *= t;
+  for (glm::dvec3& shift : part.shift) shift *= t;
   return part;
 }
 
@@ -22,6 +23,10 @@ Pose pose_between(const Pose& from, const Pose& to, double t) {
   for (size_t b = 0; b < to.rotation.size(); ++b)
     if (from.rotation[b] != to.rotation[b]) between.rotation[b] = glm::slerp(from.rotation[b], to.rotation[b], t);
   between.root_translation = from.root_translation + t * (to.root_translation - from.root_translation);
+  if (from.shift.empty() && to.shift.empty()) return between;
+  between.shift.resize(to.rotation.size());
+  const auto shift_of = [](const Pose& pose, size_t b) { return pose.shift.empty() ? glm::dvec3(0) : pose.shift[b]; };
+  for (size_t b = 0; b < to.rotation.size(); ++b) between.shift[b] = glm::mix(shift_of(from, b), shift_of(to, b), t);
   return between;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The way from rest to a pose, for what must go there in steps: at t every joint has turned by the share t of its rotation,
-// about the same axis, and the root has gone the share t of its way.
+// about the same axis, and the root has gone the share t of its way, as has every joint that glides.
 #pragma once
 
 #include <string>

@@ -46,9 +46,9 @@ void draw_resample(Editor& editor, Column& column) {
     const char* format = settings.spacing > 0 ? "%.2f" : "as the volume";
     number_field(editor, "Output", spacing, settings.spacing, 0, 20, format, settings.spacing > 0 ? "mm" : "", false, committed);
     if (ImGui::IsItemHovered()) tooltip(editor, spacing, "Output", "Edge of the posed volume's voxels. 0: as the volume at rest.");
-    const Rect fit = column.property("Joints");
-    checkbox(editor, "Fit joints", fit, "Keep bones apart", settings.fit_joints);
-    if (ImGui::IsItemHovered()) tooltip(editor, fit, "Keep bones apart", "First moves each bent joint so that its bones do not collide.");
+    const Rect apart = column.property("Joints");
+    checkbox(editor, "Keep bones apart", apart, "Keep bones apart", settings.bones_apart);
+    if (ImGui::IsItemHovered()) tooltip(editor, apart, "Keep bones apart", "Shifts each bent joint by the least that frees its bones, up to 5 percent of the shorter bone. Off: by a voxel at most, so that the result lies as the view shows it. Bones keep their directions.");
     const Rect exact = column.property("Volumes");
     checkbox(editor, "Mass-exact", exact, "Mass-exact", settings.mass_exact);
     if (ImGui::IsItemHovered()) tooltip(editor, exact, "Mass-exact", "Afterwards soft tissues get their volumes at rest back: borders between them move by the fewest and least sure voxels. Bones stay as they are.");

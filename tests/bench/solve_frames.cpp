@@ -60,7 +60,7 @@ class ArmSolved {
     editor_.resampling.method = "fem";
     editor_.resampling.quality = "fine";  // that it lasts
     editor_.resampling.contact = true;
-    editor_.resampling.fit_joints = true;
+    editor_.resampling.bones_apart = true;
   }
 
   void run() {

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/bones/bone_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace limber {
+
+namespace {
+
+constexpr float kFar = 1e4f;  // mm
+
+// The lattice points of one axis, as the lower of two voxels and the share of the upper one.
+struct AxisPoint {
+  int voxel;
+  float share;
+};
+std::vector<AxisPoint> points_along(int voxels, double spacing, double edge) {
+  std::vector<AxisPoint> points(static_cast<int>(std::floor((voxels - 1) * spacing / edge + 1e-9)) + 1);
+  for (int i = 0; i < std::ssize(points); ++i) {
+    const double place = std::min(i * edge / spacing, voxels - 1.0);
+    const double voxel = std::min(std::floor(place + 1e-9), std::max(voxels - 2.0, 0.0));
+    points[i] = {static_cast<int>(voxel), static_cast<float>(std::clamp(place - voxel, 0.0, 1.0))};
+  }
+  return points;
+}
+
+// Of voxels, as seen from the points of a finer lattice.
+std::vector<std::uint8_t> refined(const std::vector<std::uint8_t>& voxels, const glm::ivec3& size, const std::array<std::vector<AxisPoint>, 3>& points) {
+  std::vector<std::uint8_t> inside;
+  inside.reserve(points[0].size() * points[1].size() * points[2].size());
+  const std::int64_t row = size.x, slice = row * size.y;
+  for (const AxisPoint& z : points[2])
+    for (const AxisPoint& y : points[1])
+      for (const AxisPoint& x : points[0]) {
+        const std::uint8_t* at = &voxels[x.voxel + row * y.voxel + slice * z.voxel];
+        const std::int64_t right = size.x > 1, back = size.y > 1 ? row : 0, up = size.z > 1 ? slice : 0;
+        const auto along_x = [&](const std::uint8_t* p) { return float(p[0]) + x.share * (float(p[right]) - float(p[0])); };
+        const auto along_y = [&](const std::uint8_t* p) { return along_x(p) + y.share * (along_x(p + back) - along_x(p)); };
+        inside.push_back(along_y(at) + z.share * (along_y(at + up) - along_y(at)) > 0.5f);
+      }
+  return inside;
+}
+
+// Each value the mean of itself and its two neighbours along one axis, in the shares 1, 2, 1.
+void blur(std::vector<float>& values, const glm::ivec3& size, int axis) {
+  const std::int64_t step = axis == 0 ? 1 : axis == 1 ? size.x : std::int64_t{size.x} * size.y;
+  const std::int64_t block = step * size[axis];
+  for (std::int64_t first = 0; first < std::ssize(values); first += block)
+    for (std::int64_t line = first; line < first + step; ++line) {
+      float before = values[line];
+      for (std::int64_t i = line; i < line + block - step; i += step) {
+        const float here = values[i];
+        values[i] = 0.25f * (before + values[i + step]) + 0.5f * here;
+        before = here;
+      }
+    }
+}
+
+}  // namespace
+
+BoneDistance::BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ivec3>& voxels, const VoxelBox& box)
+    : lowest_(glm::dvec3(box.lowest) * spacing), edge_(std::min({spacing.x, spacing.y, spacing.z})) {
+  std::vector<std::uint8_t> inside(box.voxel_count());
+  for (const glm::ivec3& v : voxels)
+    if (box.contains(v)) inside[box.index(v)] = 1;
+  lattice_.size = box.size;
+  if (spacing != glm::dvec3(edge_)) {
+    const std::array points{points_along(box.size.x, spacing.x, edge_), points_along(box.size.y, spacing.y, edge_), points_along(box.size.z, spacing.z, edge_)};
+    inside = refined(inside, box.size, points);
+    lattice_.size = glm::ivec3(points[0].size(), points[1].size(), points[2].size());
+  }
+  mm_ = signed_distance(lattice_, inside, glm::dvec3(edge_));
+  // From the centres of lattice points to the border between them; where there is none, far.
+  const auto half = static_cast<float>(edge_ / 2), least = static_cast<float>(edge_ / 10);
+  for (float& d : mm_) d = std::clamp(d + (d > 0 ? -half : half), -kFar, kFar);
+  // The steps of a surface that is drawn in voxels go, the higher ones of thick slices too; no lattice point changes sides.
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < std::lround(spacing[axis] / edge_); ++i) blur(mm_, lattice_.size, axis);
+  for (std::int64_t i = 0; i < std::ssize(mm_); ++i) mm_[i] = inside[i] ? std::min(mm_[i], -least) : std::max(mm_[i], least);
+}
+
+std::optional<BoneDistance::Sample> BoneDistance::at(const glm::dvec3& point) const {
+  const glm::dvec3 place = (point - lowest_) / edge_;
+  const glm::dvec3 floor = glm::floor(place);
+  const glm::ivec3 low(floor);
+  if (glm::any(glm::lessThan(place, glm::dvec3(0))) || glm::any(glm::greaterThanEqual(low + 1, lattice_.size))) return std::nullopt;
+  const std::int64_t row = lattice_.size.x, slice = row * lattice_.size.y;
+  const float* p = &mm_[lattice_.index(low)];
+  const glm::dvec3 f = place - floor;
+  // Along x, then y, then z; differences of the same give the slope.
+  const double x00 = p[0] + f.x * (p[1] - p[0]), x10 = p[row] + f.x * (p[row + 1] - p[row]);
+  const double x01 = p[slice] + f.x * (p[slice + 1] - p[slice]), x11 = p[slice + row] + f.x * (p[slice + row + 1] - p[slice + row]);
+  const double y0 = x00 + f.y * (x10 - x00), y1 = x01 + f.y * (x11 - x01);
+  const double dx0 = (1 - f.y) * (p[1] - p[0]) + f.y * (p[row + 1] - p[row]);
+  const double dx1 = (1 - f.y) * (p[slice + 1] - p[slice]) + f.y * (p[slice + row + 1] - p[slice + row]);
+  const glm::dvec3 slope(dx0 + f.z * (dx1 - dx0), (1 - f.z) * (x10 - x00) + f.z * (x11 - x01), y1 - y0);
+  return Sample{y0 + f.z * (y1 - y0), slope / edge_};
+}
+
+std::vector<BoneDistance::SurfacePoint> BoneDistance::surface() const {
+  std::vector<SurfacePoint> points;
+  const double beside = 0.6 * edge_;
+  std::int64_t i = 0;
+  for (int z = 0; z < lattice_.size.z; ++z)
+    for (int y = 0; y < lattice_.size.y; ++y)
+      for (int x = 0; x < lattice_.size.x; ++x, ++i)
+        if (std::abs(mm_[i]) < beside) points.push_back({lowest_ + edge_ * glm::dvec3(x, y, z), mm_[i]});
+  return points;
+}
+
+}  // namespace limber

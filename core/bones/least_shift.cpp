@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/bones/least_shift.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber {
+
+namespace {
+
+using Points = std::vector<BoneDistance::SurfacePoint>;
+
+// What a place of the shift costs: the squares of all depths beyond what is allowed, Gauss and Newton's derivatives of their
+// half, and the deepest.
+struct Overlap {
+  double cost = 0, depth = 0;
+  glm::dvec3 gradient{0};
+  glm::dmat3 hessian{0};
+};
+
+// Two bones at one place of the joint's turn.
+class TurnedBones {
+ public:
+  //   reach  mm: how far shifts can go
+  TurnedBones(const JointBones& bones, const Points& fixed, const Points& turning, const AffineTransform& motion, double reach)
+      : bones_(bones), motion_(motion), back_{glm::transpose(motion.linear), -(glm::transpose(motion.linear) * motion.offset)} {
+    const double near = 1.2 * reach;  // distances between lattice points change by little more than a millimetre a millimetre
+    for (const auto& point : turning)
+      if (const auto there = bones.fixed.at(motion_ * point.place); there && there->mm + point.mm < near) turning_.push_back({motion_ * point.place, point.mm});
+    for (const auto& point : fixed)
+      if (const auto there = bones.turning.at(back_ * point.place); there && there->mm + point.mm < near) fixed_.push_back(point);
+  }
+
+  Overlap overlap(const glm::dvec3& shift) const {
+    Overlap sum;
+    for (const auto& point : turning_)
+      if (const auto there = bones_.fixed.at(point.place + shift)) add(*there, there->slope, point.mm, sum);
+    for (const auto& point : fixed_)
+      if (const auto there = bones_.turning.at(back_ * (point.place - shift))) add(*there, -(motion_.linear * there->slope), point.mm, sum);
+    return sum;
+  }
+
+ private:
+  // Half a voxel across the contact, the mean of both bones' voxels.
+  double allowed(const glm::dvec3& normal) const {
+    return (glm::length(bones_.spacing * normal) + glm::length(bones_.spacing * (back_.linear * normal))) / 4;
+  }
+
+  void add(const BoneDistance::Sample& there, const glm::dvec3& slope, double mm, Overlap& sum) const {
+    const double gap = there.mm + mm;
+    if (gap >= 0) return;
+    const double steepness = glm::length(slope);
+    if (steepness < 1e-6) return;
+    const double depth = -gap - allowed(slope / steepness);
+    if (depth <= 0) return;
+    sum.cost += depth * depth;
+    sum.depth = std::max(sum.depth, depth);
+    sum.gradient -= depth * slope;
+    sum.hessian += glm::outerProduct(slope, slope);
+  }
+
+  const JointBones& bones_;
+  AffineTransform motion_, back_;
+  Points fixed_, turning_;  // that can come to the other bone; of the turning one where the motion takes them
+};
+
+// The part of a shift that the bound allows, towards none: both bounds hold there.
+glm::dvec3 within(glm::dvec3 shift, const ShiftBound& bound) {
+  if (const double length = glm::length(shift); length > bound.most_mm) shift *= bound.most_mm / length;
+  if (shift == glm::dvec3(0) || glm::length(bound.carried + shift) <= bound.whole_mm) return shift;
+  // |carried + s shift| = whole
+  const double a = glm::dot(shift, shift), b = glm::dot(bound.carried, shift);
+  const double c = std::min(glm::dot(bound.carried, bound.carried) - bound.whole_mm * bound.whole_mm, 0.0);
+  return shift * std::clamp((std::sqrt(b * b - a * c) - b) / a, 0.0, 1.0);
+}
+
+// From `shift` to where the square of the shift and `weight` times the squares of the depths are least together.
+glm::dvec3 descend(const TurnedBones& bones, glm::dvec3 shift, double weight, const ShiftBound& bound, int iterations) {
+  Overlap at = bones.overlap(shift);
+  double damping = 1e-3, cost = glm::dot(shift, shift) + weight * at.cost;
+  for (int i = 0; i < iterations && damping < 1e6; ++i) {
+    const glm::dvec3 gradient = shift + weight * at.gradient;
+    glm::dmat3 hessian = glm::dmat3(1) + weight * at.hessian;
+    for (int axis = 0; axis < 3; ++axis) hessian[axis][axis] *= 1 + damping;
+    const glm::dvec3 next = within(shift - glm::inverse(hessian) * gradient, bound);
+    const Overlap there = bones.overlap(next);
+    const double next_cost = glm::dot(next, next) + weight * there.cost;
+    if (next_cost >= cost) {
+      damping *= 10;
+      continue;
+    }
+    const bool settled = cost - next_cost < 1e-4 * cost;
+    shift = next, at = there, cost = next_cost;
+    damping = std::max(damping / 10, 1e-6);
+    if (settled) break;
+  }
+  return shift;
+}
+
+// As short as it can be with no more overlap than `depth`, which it has now.
+glm::dvec3 shortened(const TurnedBones& bones, const glm::dvec3& shift, double depth) {
+  double blocked = 0, free = 1;
+  for (int i = 0; i < 8; ++i) {
+    const double middle = (blocked + free) / 2;
+    (bones.overlap(middle * shift).depth <= depth ? free : blocked) = middle;
+  }
+  return free * shift;
+}
+
+}  // namespace
+
+LeastShift least_shift(const JointBones& bones, const std::vector<AffineTransform>& path, const ShiftBound& bound) {
+  const Points fixed = bones.fixed.surface(), turning = bones.turning.surface();
+  const double slack = glm::length(bones.spacing) / std::sqrt(3) / 20;
+  const TurnedBones end(bones, fixed, turning, path.back(), bound.most_mm);
+  LeastShift least;
+  least.depth_before = least.depth_after = end.overlap(glm::dvec3(0)).depth;
+  if (least.depth_before <= slack) return least;
+
+  glm::dvec3 shift(0);
+  for (std::size_t step = 0; step + 1 < path.size(); ++step)
+    shift = descend(TurnedBones(bones, fixed, turning, path[step], bound.most_mm), shift, 1, bound, 4);
+  for (const double weight : {1.0, 10.0, 100.0, 1000.0}) shift = descend(end, shift, weight, bound, 12);
+  least.depth_after = end.overlap(shift).depth;
+  least.free = least.depth_after <= slack;
+  if (least.free) {
+    shift = shortened(end, shift, slack);
+    least.depth_after = end.overlap(shift).depth;
+  }
+  least.shift = shift;
+  return least;
+}
+
+}  // namespace limber

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/glide_joints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/base/parallel.h"
+#include "core/bones/least_shift.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kStep = 10 * std::numbers::pi / 180;  // of a turn: bones come less than a voxel or two nearer in one
+constexpr int kMargin = 2;                             // voxels around a bone, where its surface is still known
+
+struct Box {
+  glm::dvec3 low{1e300}, high{-1e300};
+
+  void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
+  void add(const Box& other) { add(other.low), add(other.high); }
+  bool empty() const { return !glm::all(glm::lessThanEqual(low, high)); }  // or not finite
+  Box grown(double by) const { return {low - by, high + by}; }
+};
+Box intersection(const Box& a, const Box& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
+
+// Around the image of a box.
+Box image(const Box& box, const AffineTransform& motion) {
+  Box around;
+  for (int corner = 0; corner < 8; ++corner)
+    around.add(motion * glm::dvec3(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y, corner & 4 ? box.high.z : box.low.z));
+  return around;
+}
+
+AffineTransform back(const AffineTransform& rigid) {
+  const glm::dmat3 linear = glm::transpose(rigid.linear);
+  return {linear, -(linear * rigid.offset)};
+}
+
+// Of one rig bone.
+struct BoneTissue {
+  std::vector<glm::ivec3> voxels;
+  Box box;  // of their centres, mm along the grid's axes
+};
+
+// By rig bone.
+std::vector<BoneTissue> gather(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone, const SkinWeights& weights, const Armature& armature) {
+  std::vector<int> bone_of;
+  for (const std::string& name : weights.bones()) bone_of.push_back(require_bone(armature, name));
+  constexpr std::int64_t kGrain = 256;
+  struct Found {
+    int bone;
+    glm::ivec3 voxel;
+  };
+  std::vector<std::vector<Found>> found((weights.chunk_count() + kGrain - 1) / kGrain);
+  parallel_for(weights.chunk_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    auto& mine = found[begin / kGrain];
+    for (std::int64_t brick = begin; brick < end; ++brick) {
+      const auto& chunk = weights.chunk(brick);
+      const std::int64_t first = tissue.bricks()[brick].first;
+      tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+        if (is_bone[volume.at(v)]) mine.push_back({bone_of[chunk[place - first].bone[0]], v});
+      });
+    }
+  });
+  std::vector<BoneTissue> bones(armature.bones.size());
+  for (const auto& block : found)
+    for (const auto& [bone, voxel] : block) {
+      bones[bone].voxels.push_back(voxel);
+      bones[bone].box.add(glm::dvec3(voxel) * volume.grid.spacing);
+    }
+  return bones;
+}
+
+double angle_of(const glm::dquat& turn) { return 2 * std::atan2(glm::length(glm::dvec3(turn.x, turn.y, turn.z)), std::abs(turn.w)); }
+
+// A joint of the rig as the pose bends it.
+struct Joint {
+  int bone, against;
+  std::vector<RigidTransform> path;  // of `bone` as `against` stands, from the first step to the pose
+  double most_mm;
+  int below = 0;  // how many of these joints lie above it
+};
+
+class BentJoints {
+ public:
+  BentJoints(const Armature& armature, const Pose& pose, const std::vector<BoneTissue>& tissue, const GlideSettings& settings) : armature_(armature), pose_(pose) {
+    for (int bone = 0; bone < std::ssize(armature.bones); ++bone) {
+      const int against = above_with_tissue(bone, tissue);
+      if (tissue[bone].voxels.empty() || against < 0) continue;
+      if (auto path = path_of(bone, against); !path.empty()) add({bone, against, std::move(path), settings.most_mm.value_or(settings.most_share * shorter(bone, against))});
+    }
+  }
+
+  std::vector<Joint> joints;
+
+ private:
+  void add(Joint joint) {
+    for (const Joint& other : joints)
+      for (int b = joint.against; b >= 0; b = armature_.bones[b].parent)
+        if (b == other.bone) joint.below = std::max(joint.below, other.below + 1);
+    joints.push_back(std::move(joint));
+  }
+
+  int above_with_tissue(int bone, const std::vector<BoneTissue>& tissue) const {
+    do bone = armature_.bones[bone].parent;
+    while (bone >= 0 && tissue[bone].voxels.empty());
+    return bone;
+  }
+
+  double shorter(int bone, int against) const {
+    const auto length = [&](int b) { return glm::distance(armature_.bones[b].head, armature_.bones[b].tail); };
+    return std::min(length(bone), length(against));
+  }
+
+  // Empty where nothing turns.
+  std::vector<RigidTransform> path_of(int bone, int against) const {
+    double angle = 0;
+    for (int b = bone; b != against; b = armature_.bones[b].parent) angle += angle_of(pose_.rotation[b]);
+    const int steps = static_cast<int>(std::ceil(angle / kStep));
+    std::vector<RigidTransform> path(steps);
+    for (int step = 1; step <= steps; ++step)
+      for (int b = bone; b != against; b = armature_.bones[b].parent)
+        path[step - 1] = rotation_about(armature_.bones[b].head, glm::slerp(glm::dquat(1, 0, 0, 0), pose_.rotation[b], double(step) / steps)) * path[step - 1];
+    return path;
+  }
+
+  const Armature& armature_;
+  const Pose& pose_;
+};
+
+// The part of a bone that the other can come to, of which a shift is no longer than `reach`.
+VoxelBox reached_box(const Box& bone, const Box& other, double reach, const glm::dvec3& spacing) {
+  const Box met = intersection(bone, other.grown(reach));
+  if (met.empty()) return {};
+  const glm::ivec3 low = glm::ivec3(glm::floor((met.low - reach) / spacing)) - kMargin, high = glm::ivec3(glm::ceil((met.high + reach) / spacing)) + kMargin;
+  return {low, high - low + 1};
+}
+
+// The shift along the grid's axes as the fixed bone stands.
+LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, const Grid& grid, const ShiftBound& bound) {
+  const glm::dmat3 to_grid = glm::inverse(grid.direction);
+  std::vector<AffineTransform> path;
+  for (const RigidTransform& motion : joint.path) {
+    const glm::dmat3 turn = glm::mat3_cast(motion.rotation);
+    path.push_back({to_grid * turn * grid.direction, to_grid * (turn * grid.origin + motion.translation - grid.origin)});
+  }
+  const BoneTissue &fixed = tissue[joint.against], &turning = tissue[joint.bone];
+  const double voxel = glm::length(grid.spacing);
+  Box swept, swept_back;  // of either bone as the other one stands
+  for (const AffineTransform& motion : path) {
+    swept.add(image(turning.box.grown(voxel), motion));
+    swept_back.add(image(fixed.box.grown(voxel), back(motion)));
+  }
+  const VoxelBox of_fixed = reached_box(fixed.box, swept, joint.most_mm, grid.spacing), of_turning = reached_box(turning.box, swept_back, joint.most_mm, grid.spacing);
+  if (of_fixed.size.x == 0 || of_turning.size.x == 0) return {};
+  const BoneDistance from_fixed(grid.spacing, fixed.voxels, of_fixed), from_turning(grid.spacing, turning.voxels, of_turning);
+  return least_shift({from_fixed, from_turning, grid.spacing}, path, bound);
+}
+
+// How far each bone is carried by its own shift and by those above it.
+std::vector<glm::dvec3> carried_by(std::vector<glm::dvec3> shifts, const Armature& armature) {
+  for (std::size_t b = 0; b < shifts.size(); ++b)
+    if (const int parent = armature.bones[b].parent; parent >= 0) shifts[b] += shifts[parent];
+  return shifts;
+}
+
+// None where nothing overlaps.
+//   motions  posed from rest        carried  as far as it is known: of all bones above
+std::optional<GlidedJoint> glide_joint(const Joint& joint, const Armature& armature, const std::vector<BoneTissue>& tissue, const Grid& grid,
+                                       const std::vector<RigidTransform>& motions, const std::vector<glm::dvec3>& carried, const GlideSettings& settings) {
+  const glm::dmat3 posed_from_grid = glm::mat3_cast(motions[joint.against].rotation) * grid.direction;
+  ShiftBound bound{.most_mm = joint.most_mm};
+  if (settings.whole_mm) bound.whole_mm = *settings.whole_mm, bound.carried = glm::inverse(posed_from_grid) * carried[joint.against];
+  const LeastShift found = shift_of(joint, tissue, grid, bound);
+  if (found.free && found.shift == glm::dvec3(0)) return std::nullopt;
+  return GlidedJoint{armature.bones[joint.bone].name, armature.bones[joint.against].name, posed_from_grid * found.shift, joint.most_mm, found.free, found.depth_before, found.depth_after};
+}
+
+}  // namespace
+
+GlidedPose glide_joints(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone, const SkinWeights& weights,
+                        const Armature& armature, const Pose& pose, const GlideSettings& settings, Progress& progress) {
+  GlidedPose glided{pose, {}};
+  glided.pose.shift.clear();
+  const bool turns = std::any_of(pose.rotation.begin(), pose.rotation.end(), [](const glm::dquat& turn) { return turn != glm::dquat(1, 0, 0, 0); });
+  if (!turns) return glided;
+  progress.update("glide", 0);
+  const std::vector<BoneTissue> bones = gather(volume, tissue, is_bone, weights, armature);
+  const std::vector<Joint> joints = BentJoints(armature, pose, bones, settings).joints;
+  const std::vector<RigidTransform> motions = posed_from_rest(armature, glided.pose);
+  std::vector<glm::dvec3> shifts(armature.bones.size());  // world axes of the posed body, mm
+  std::vector<std::optional<GlidedJoint>> found(joints.size());
+  bool any = true;
+  for (int below = 0; std::exchange(any, false); ++below) {
+    const std::vector<glm::dvec3> carried = carried_by(shifts, armature);
+    parallel_for(std::ssize(joints), 1, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t j = begin; j < end; ++j)
+        if (joints[j].below == below) found[j] = glide_joint(joints[j], armature, bones, volume.grid, motions, carried, settings);
+    });
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      any |= joints[j].below > below;
+      if (joints[j].below == below && found[j]) shifts[joints[j].bone] = found[j]->shift;
+    }
+  }
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (!found[j]) continue;
+    glided.joints.push_back(*found[j]);
+    if (found[j]->shift == glm::dvec3(0)) continue;
+    const int bone = joints[j].bone;
+    glided.pose.shift.resize(armature.bones.size());
+    glided.pose.shift[bone] = glm::conjugate(motions[armature.bones[bone].parent].rotation) * found[j]->shift;
+  }
+  progress.update("glide", 1);
+  return glided;
+}
+
+}  // namespace limber
