@@ -99,6 +99,11 @@ std::optional<BoneDistance::Sample> BoneDistance::at(const glm::dvec3& point) co
   return Sample{y0 + f.z * (y1 - y0), slope / edge_};
 }
 
+double BoneDistance::outside(const glm::dvec3& point) const {
+  const glm::dvec3 above = point - lowest_ - edge_ * glm::dvec3(lattice_.size - 1), below = lowest_ - point;
+  return std::max({0.0, above.x, above.y, above.z, below.x, below.y, below.z});
+}
+
 std::vector<BoneDistance::SurfacePoint> BoneDistance::surface() const {
   std::vector<SurfacePoint> points;
   const double beside = 0.6 * edge_;

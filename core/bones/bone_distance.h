@@ -30,6 +30,8 @@ class BoneDistance {
   double edge_mm() const { return edge_; }
   // Linear between lattice points; none outside of the lattice.
   std::optional<Sample> at(const glm::dvec3& point) const;
+  // How far a point lies outside of the lattice along the axis where it is most, mm; 0 in it.
+  double outside(const glm::dvec3& point) const;
   // The lattice points next to the surface, on both sides, x fastest.
   std::vector<SurfacePoint> surface() const;
 

@@ -24,11 +24,10 @@ class TurnedBones {
   //   reach  mm: how far shifts can go
   TurnedBones(const JointBones& bones, const Points& fixed, const Points& turning, const AffineTransform& motion, double reach)
       : bones_(bones), motion_(motion), back_{glm::transpose(motion.linear), -(glm::transpose(motion.linear) * motion.offset)} {
-    const double near = 1.2 * reach;  // distances between lattice points change by little more than a millimetre a millimetre
     for (const auto& point : turning)
-      if (const auto there = bones.fixed.at(motion_ * point.place); there && there->mm + point.mm < near) turning_.push_back({motion_ * point.place, point.mm});
+      if (comes_near(bones.fixed, motion_ * point.place, point.mm, reach)) turning_.push_back({motion_ * point.place, point.mm});
     for (const auto& point : fixed)
-      if (const auto there = bones.turning.at(back_ * point.place); there && there->mm + point.mm < near) fixed_.push_back(point);
+      if (comes_near(bones.turning, back_ * point.place, point.mm, reach)) fixed_.push_back(point);
   }
 
   Overlap overlap(const glm::dvec3& shift) const {
@@ -41,6 +40,13 @@ class TurnedBones {
   }
 
  private:
+  // Whether some shift may make a surface point of one bone lie in the other: a distance between lattice points changes by little
+  // more than a millimetre a millimetre.
+  static bool comes_near(const BoneDistance& bone, const glm::dvec3& place, double mm, double reach) {
+    const auto there = bone.at(place);
+    return there ? there->mm + mm < 1.2 * reach : bone.outside(place) < reach;
+  }
+
   // Half a voxel across the contact, the mean of both bones' voxels.
   double allowed(const glm::dvec3& normal) const {
     return (glm::length(bones_.spacing * normal) + glm::length(bones_.spacing * (back_.linear * normal))) / 4;

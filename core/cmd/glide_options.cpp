@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/cmd/glide_options.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cstdio>
 
 #include "core/base/error.h"
-#include "core/resample/pose_path.h"
 #include "core/resample/posed_voxels.h"
 #include "core/resample/rigid_weights.h"
 
@@ -44,14 +42,12 @@ std::optional<GlideSettings> glide_settings(const std::string& glide, const Pose
 }
 
 std::vector<std::vector<GlidedJoint>> glide_poses(std::vector<Pose>& poses, const GlideSettings& settings, const Body& body, const TissueVoxels& tissue,
-                                                  const SkinWeights& weights, Progress& progress) {
-  const bool turns = std::any_of(poses.begin(), poses.end(), [](const Pose& pose) { return largest_angle_degrees(pose) > 0; });
-  if (!turns) return std::vector<std::vector<GlidedJoint>>(poses.size());
+                                                  SkinWeights& weights, Progress& progress) {
   const LabelSets labels(body.tissues);
-  const SkinWeights rigid = with_rigid_bones(weights, body.file.volume, tissue, body.tissues, labels.bone, body.rig, progress);
+  weights = with_rigid_bones(weights, body.file.volume, tissue, body.tissues, labels.bone, body.rig, progress);
   std::vector<std::vector<GlidedJoint>> joints;
   for (Pose& pose : poses) {
-    GlidedPose glided = glide_joints(body.file.volume, tissue, labels.bone, rigid, body.rig, pose, settings, progress);
+    GlidedPose glided = glide_joints(body.file.volume, tissue, labels.bone, weights, body.rig, pose, settings, progress);
     pose = std::move(glided.pose);
     joints.push_back(std::move(glided.joints));
   }

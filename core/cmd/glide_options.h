@@ -28,9 +28,9 @@ std::optional<GlideSettings> glide_settings(const std::string& glide, const Pose
 // What is taken: off, voxel, joint, or the length that was given.
 std::string glide_word(const std::string& glide, const PoseOptions& pose);
 
-// Shifts joints of each pose; returns which, by pose.
+// Shifts joints of each pose; returns which, by pose. Makes the weights rigid in bone tissue, as resampling does.
 std::vector<std::vector<GlidedJoint>> glide_poses(std::vector<Pose>& poses, const GlideSettings& settings, const Body& body, const TissueVoxels& tissue,
-                                                  const SkinWeights& weights, Progress& progress);
+                                                  SkinWeights& weights, Progress& progress);
 
 // How many voxels two bones claim, and which joints are not free. Empty where neither is to be told.
 //   joints  none where joints do not glide

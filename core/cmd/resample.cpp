@@ -404,9 +404,10 @@ void run(const Options& options) {
   report.seconds.weights = weighting.seconds();
   const Stopwatch gliding;
   std::vector<std::vector<GlidedJoint>> glided;  // by pose; empty where joints do not glide
+  SkinWeights resampled = weights;
   const glm::dvec3 voxel = body.file.volume.grid.spacing;
   if (const auto settings = glide_settings(options.glide, options.pose, std::max({voxel.x, voxel.y, voxel.z}))) {
-    glided = glide_poses(poses, *settings, body, tissue, weights, progress);
+    glided = glide_poses(poses, *settings, body, tissue, resampled, progress);
     report.seconds.glide = gliding.seconds();
   }
 
@@ -418,7 +419,7 @@ void run(const Options& options) {
   SolveProgress solve(progress, options, weights.bones(), body.rig, poses[0]);
   bool all_reached = true, all_passed = true;
   std::optional<CommandProgress::LeavesAtOnce> nothing_is_being_written(std::in_place);
-  resample_sequence(body.file.volume, body.tissues, body.rig, weights, poses, method_of(options, solve), settings, [&](std::size_t place, Posed posed) {
+  resample_sequence(body.file.volume, body.tissues, body.rig, resampled, poses, method_of(options, solve), settings, [&](std::size_t place, Posed posed) {
     nothing_is_being_written.reset();
     if (posed.shape && frames.empty()) solve.end(*posed.shape);
     all_reached &= !posed.report.solve || posed.report.solve->converged;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -131,12 +132,17 @@ class BentJoints {
   const Pose& pose_;
 };
 
-// The part of a bone that the other can come to, of which a shift is no longer than `reach`.
-VoxelBox reached_box(const Box& bone, const Box& other, double reach, const glm::dvec3& spacing) {
-  const Box met = intersection(bone, other.grown(reach));
-  if (met.empty()) return {};
-  const glm::ivec3 low = glm::ivec3(glm::floor((met.low - reach) / spacing)) - kMargin, high = glm::ivec3(glm::ceil((met.high + reach) / spacing)) + kMargin;
-  return {low, high - low + 1};
+// Around the part of a bone that the other can come to, of which a shift is no longer than `reach`.
+VoxelBox reached_box(const BoneTissue& bone, const Box& other, double reach, const glm::dvec3& spacing) {
+  const Box near = intersection(bone.box, other.grown(reach));
+  if (near.empty()) return {};
+  glm::ivec3 low(std::numeric_limits<int>::max()), high(std::numeric_limits<int>::min());
+  for (const glm::ivec3& v : bone.voxels) {
+    const glm::dvec3 place = glm::dvec3(v) * spacing;
+    if (glm::any(glm::lessThan(place, near.low)) || glm::any(glm::greaterThan(place, near.high))) continue;
+    low = glm::min(low, v), high = glm::max(high, v);
+  }
+  return low.x > high.x ? VoxelBox{} : VoxelBox{low - kMargin, high - low + 1 + 2 * kMargin};
 }
 
 // The shift along the grid's axes as the fixed bone stands.
@@ -154,7 +160,7 @@ LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, c
     swept.add(image(turning.box.grown(voxel), motion));
     swept_back.add(image(fixed.box.grown(voxel), back(motion)));
   }
-  const VoxelBox of_fixed = reached_box(fixed.box, swept, joint.most_mm, grid.spacing), of_turning = reached_box(turning.box, swept_back, joint.most_mm, grid.spacing);
+  const VoxelBox of_fixed = reached_box(fixed, swept, joint.most_mm, grid.spacing), of_turning = reached_box(turning, swept_back, joint.most_mm, grid.spacing);
   if (of_fixed.size.x == 0 || of_turning.size.x == 0) return {};
   const BoneDistance from_fixed(grid.spacing, fixed.voxels, of_fixed), from_turning(grid.spacing, turning.voxels, of_turning);
   return least_shift({from_fixed, from_turning, grid.spacing}, path, bound);

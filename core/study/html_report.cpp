@@ -514,7 +514,7 @@ class Page {
       fact("Processor time", fixed(seconds / 60, 1) + " min for all cells");
       fact("Weights", escaped(study_.weights));
       fact("Finite elements", "quality " + escaped(study_.quality));
-      fact("Joints", study_.fit_joints ? "fitted to the bones before each pose, so that no bone enters another" : "as the rig has them");
+      fact("Joints", study_.fit_joints ? "fitted to the bones before each pose, so that no bone enters another" : "as the rig has them, shifted where bones would enter each other");
       fact("Labels", study_.nearest ? "of the nearest rest voxel" : "with the largest interpolated membership");
     }
     html_ += "<dl>" + list + "</dl>\n";

@@ -88,6 +88,21 @@ TEST_CASE("least shift: stops at the longest shift, as near to free as it comes 
   CHECK(found.depth_after == doctest::Approx(found.depth_before - 2).epsilon(0.1));
 }
 
+TEST_CASE("least shift: what the fixed bone was carried along by counts where both together are bounded") {
+  const Inside one = ball({20, 25, 25}, 10), other = ball({46, 25, 25}, 10);
+  const VoxelBox box{glm::ivec3(0), glm::ivec3(60, 50, 50)};
+  const BoneDistance from_one(glm::dvec3(1), voxels_of(one, glm::dvec3(1), glm::dvec3(60)), box), from_other(glm::dvec3(1), voxels_of(other, glm::dvec3(1), glm::dvec3(60)), box);
+  const JointBones bones{from_one, from_other, glm::dvec3(1)};
+  for (const glm::dvec3 carried : {glm::dvec3(3, 0, 0), glm::dvec3(0, -3, 1), glm::dvec3(-4, 0, 0), glm::dvec3(4, 0, 0)}) {
+    const LeastShift found = least_shift(bones, slide({-12, 0, 0}), {.most_mm = 10, .whole_mm = 4, .carried = carried});
+    CAPTURE(carried.x);
+    CHECK(found.free == (carried.x < 0));  // then there is room for more than 4 mm
+    CHECK(glm::length(carried + found.shift) <= 4 + 1e-9);
+    CHECK(found.depth_after <= found.depth_before);
+  }
+  CHECK(least_shift(bones, slide({-12, 0, 0}), {.most_mm = 10, .whole_mm = 12, .carried = {-4, 0, 0}}).free);
+}
+
 TEST_CASE("least shift: a ball turned about a point beside its middle goes back into its socket") {
   const glm::dvec3 middle(30, 30, 30), head(30, 26, 33);
   // A block with a bowl that holds somewhat more than half of the ball, half a millimetre wider than it.

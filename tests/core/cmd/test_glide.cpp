@@ -7,24 +7,23 @@
 
 #include "core/base/file.h"
 #include "tests/support/program.h"
-#include "tests/support/shared_data.h"
 
 using namespace limber;
 using namespace limber::test;
 
 namespace {
 
-// The phantom's arm with the elbow of its rig 10 mm too far back, so that bending drives the forearm into the upper arm.
+// The phantom's arm. Where the elbow of its rig lies 10 mm too far back, bending drives the forearm into the upper arm.
 struct Arm {
   TemporaryFolder folder;
   std::string out = folder / "out.nrrd", report = folder / "report.json";
 
-  Arm() {
+  explicit Arm(double too_far_back = 10) {
     REQUIRE(run_limber({"phantom", "arm", "--spacing", "3", "-o", folder.path()}).exit_code == 0);
     auto rig = nlohmann::json::parse(read_file(folder / "rig.json"));
     for (auto& bone : rig["bones"]) {
-      if (bone["name"] == "Forearm") bone["head"][1] = bone["head"][1].get<double>() + 10;
-      if (bone["name"] == "UpperArm") bone["tail"][1] = bone["tail"][1].get<double>() + 10;
+      if (bone["name"] == "Forearm") bone["head"][1] = bone["head"][1].get<double>() + too_far_back;
+      if (bone["name"] == "UpperArm") bone["tail"][1] = bone["tail"][1].get<double>() + too_far_back;
     }
     std::ofstream(folder / "rig.json") << rig;
   }
@@ -59,6 +58,17 @@ TEST_CASE("glide: bones that would enter each other come apart where nothing is 
   CHECK(glides["total"]["bone_overlap_voxels"].get<int>() * 2 < stays["total"]["bone_overlap_voxels"].get<int>());
   for (const auto& limb : glides["limbs"]) CHECK(limb["orientation_off_degrees"].get<double>() < 0.1);
   for (const auto& bone : glides["bones"]) CHECK(bone["rigid_residual_mm"].get<double>() < 0.01);
+}
+
+TEST_CASE("glide: where no bones meet, the result is the same to the byte with and without") {
+  const Arm arm(0);
+  for (const char* method : {"mix", "lbs", "dqs"}) {
+    const auto glides = arm.posed({"--flex", "Forearm=60", "--method", method});
+    CHECK(glides["glide"].empty());
+    const std::string bytes = read_file(arm.out);
+    arm.posed({"--flex", "Forearm=60", "--method", method, "--glide", "off"});
+    CHECK(read_file(arm.out) == bytes);
+  }
 }
 
 TEST_CASE("glide: a pose file lets no bone go further than a voxel, and says what overlaps still") {
