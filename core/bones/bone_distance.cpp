@@ -27,7 +27,8 @@ std::vector<AxisPoint> points_along(int voxels, double spacing, double edge) {
 }
 
 // Of voxels, as seen from the points of a finer lattice.
-std::vector<std::uint8_t> refined(const std::vector<std::uint8_t>& voxels, const glm::ivec3& size, const std::array<std::vector<AxisPoint>, 3>& points) {
+std::vector<std::uint8_t> refined(const std::vector<std::uint8_t>& voxels, const glm::ivec3& size,
+                                  const std::array<std::vector<AxisPoint>, 3>& points) {
   std::vector<std::uint8_t> inside;
   inside.reserve(points[0].size() * points[1].size() * points[2].size());
   const std::int64_t row = size.x, slice = row * size.y;
@@ -36,8 +37,12 @@ std::vector<std::uint8_t> refined(const std::vector<std::uint8_t>& voxels, const
       for (const AxisPoint& x : points[0]) {
         const std::uint8_t* at = &voxels[x.voxel + row * y.voxel + slice * z.voxel];
         const std::int64_t right = size.x > 1, back = size.y > 1 ? row : 0, up = size.z > 1 ? slice : 0;
-        const auto along_x = [&](const std::uint8_t* p) { return float(p[0]) + x.share * (float(p[right]) - float(p[0])); };
-        const auto along_y = [&](const std::uint8_t* p) { return along_x(p) + y.share * (along_x(p + back) - along_x(p)); };
+        const auto along_x = [&](const std::uint8_t* p) {
+          return float(p[0]) + x.share * (float(p[right]) - float(p[0]));
+        };
+        const auto along_y = [&](const std::uint8_t* p) {
+          return along_x(p) + y.share * (along_x(p + back) - along_x(p));
+        };
         inside.push_back(along_y(at) + z.share * (along_y(at + up) - along_y(at)) > 0.5f);
       }
   return inside;
@@ -67,7 +72,8 @@ BoneDistance::BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ive
     if (box.contains(v)) inside[box.index(v)] = 1;
   lattice_.size = box.size;
   if (spacing != glm::dvec3(edge_)) {
-    const std::array points{points_along(box.size.x, spacing.x, edge_), points_along(box.size.y, spacing.y, edge_), points_along(box.size.z, spacing.z, edge_)};
+    const std::array points{points_along(box.size.x, spacing.x, edge_), points_along(box.size.y, spacing.y, edge_),
+                            points_along(box.size.z, spacing.z, edge_)};
     inside = refined(inside, box.size, points);
     lattice_.size = glm::ivec3(points[0].size(), points[1].size(), points[2].size());
   }
@@ -75,23 +81,27 @@ BoneDistance::BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ive
   // From the centres of lattice points to the border between them; where there is none, far.
   const auto half = static_cast<float>(edge_ / 2), least = static_cast<float>(edge_ / 10);
   for (float& d : mm_) d = std::clamp(d + (d > 0 ? -half : half), -kFar, kFar);
-  // The steps of a surface that is drawn in voxels go, the higher ones of thick slices too; no lattice point changes sides.
+  // The steps of a surface that is drawn in voxels go, the higher ones of thick slices too; no lattice point changes
+  // sides.
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < std::lround(spacing[axis] / edge_); ++i) blur(mm_, lattice_.size, axis);
-  for (std::int64_t i = 0; i < std::ssize(mm_); ++i) mm_[i] = inside[i] ? std::min(mm_[i], -least) : std::max(mm_[i], least);
+  for (std::int64_t i = 0; i < std::ssize(mm_); ++i)
+    mm_[i] = inside[i] ? std::min(mm_[i], -least) : std::max(mm_[i], least);
 }
 
 std::optional<BoneDistance::Sample> BoneDistance::at(const glm::dvec3& point) const {
   const glm::dvec3 place = (point - lowest_) / edge_;
   const glm::dvec3 floor = glm::floor(place);
   const glm::ivec3 low(floor);
-  if (glm::any(glm::lessThan(place, glm::dvec3(0))) || glm::any(glm::greaterThanEqual(low + 1, lattice_.size))) return std::nullopt;
+  if (glm::any(glm::lessThan(place, glm::dvec3(0))) || glm::any(glm::greaterThanEqual(low + 1, lattice_.size)))
+    return std::nullopt;
   const std::int64_t row = lattice_.size.x, slice = row * lattice_.size.y;
   const float* p = &mm_[lattice_.index(low)];
   const glm::dvec3 f = place - floor;
   // Along x, then y, then z; differences of the same give the slope.
   const double x00 = p[0] + f.x * (p[1] - p[0]), x10 = p[row] + f.x * (p[row + 1] - p[row]);
-  const double x01 = p[slice] + f.x * (p[slice + 1] - p[slice]), x11 = p[slice + row] + f.x * (p[slice + row + 1] - p[slice + row]);
+  const double x01 = p[slice] + f.x * (p[slice + 1] - p[slice]),
+               x11 = p[slice + row] + f.x * (p[slice + row + 1] - p[slice + row]);
   const double y0 = x00 + f.y * (x10 - x00), y1 = x01 + f.y * (x11 - x01);
   const double dx0 = (1 - f.y) * (p[1] - p[0]) + f.y * (p[row + 1] - p[row]);
   const double dx1 = (1 - f.y) * (p[slice + 1] - p[slice]) + f.y * (p[slice + row + 1] - p[slice + row]);

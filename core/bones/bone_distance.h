@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The signed distance to the surface of one bone near a joint, on a lattice of cubes, so that distances mean the same in
-// every direction also where slices are thick: there the bone's membership is interpolated between slices first, and the
-// surface runs where it is one half. Points are in mm along the axes of the volume's grid, from the centre of voxel 0.
+// The signed distance to the surface of one bone near a joint, on a lattice of cubes, so that distances mean the same
+// in every direction also where slices are thick: there the bone's membership is interpolated between slices first,
+// and the surface runs where it is one half. Points are in mm along the axes of the volume's grid, from the centre of
+// voxel 0.
 #pragma once
 
 #include <optional>
@@ -22,8 +23,8 @@ class BoneDistance {
     double mm;
   };
 
-  // The lattice covers the voxel centres of `box`, its edge is the smallest spacing. Bone outside the box is not seen: a bone that
-  // goes on beyond it has no surface there.
+  // The lattice covers the voxel centres of `box`, its edge is the smallest spacing. Bone outside the box is not
+  // seen: a bone that goes on beyond it has no surface there.
   //   voxels  of the bone; those outside the box are ignored
   BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ivec3>& voxels, const VoxelBox& box);
 

@@ -10,8 +10,8 @@ namespace {
 
 using Points = std::vector<BoneDistance::SurfacePoint>;
 
-// What a place of the shift costs: the squares of all depths beyond what is allowed, Gauss and Newton's derivatives of their
-// half, and the deepest.
+// What a place of the shift costs: the squares of all depths beyond what is allowed, Gauss and Newton's derivatives
+// of their half, and the deepest.
 struct Overlap {
   double cost = 0, depth = 0;
   glm::dvec3 gradient{0};
@@ -22,10 +22,14 @@ struct Overlap {
 class TurnedBones {
  public:
   //   reach  mm: how far shifts can go
-  TurnedBones(const JointBones& bones, const Points& fixed, const Points& turning, const AffineTransform& motion, double reach)
-      : bones_(bones), motion_(motion), back_{glm::transpose(motion.linear), -(glm::transpose(motion.linear) * motion.offset)} {
+  TurnedBones(const JointBones& bones, const Points& fixed, const Points& turning, const AffineTransform& motion,
+              double reach)
+      : bones_(bones),
+        motion_(motion),
+        back_{glm::transpose(motion.linear), -(glm::transpose(motion.linear) * motion.offset)} {
     for (const auto& point : turning)
-      if (comes_near(bones.fixed, motion_ * point.place, point.mm, reach)) turning_.push_back({motion_ * point.place, point.mm});
+      if (comes_near(bones.fixed, motion_ * point.place, point.mm, reach))
+        turning_.push_back({motion_ * point.place, point.mm});
     for (const auto& point : fixed)
       if (comes_near(bones.turning, back_ * point.place, point.mm, reach)) fixed_.push_back(point);
   }
@@ -35,13 +39,14 @@ class TurnedBones {
     for (const auto& point : turning_)
       if (const auto there = bones_.fixed.at(point.place + shift)) add(*there, there->slope, point.mm, sum);
     for (const auto& point : fixed_)
-      if (const auto there = bones_.turning.at(back_ * (point.place - shift))) add(*there, -(motion_.linear * there->slope), point.mm, sum);
+      if (const auto there = bones_.turning.at(back_ * (point.place - shift)))
+        add(*there, -(motion_.linear * there->slope), point.mm, sum);
     return sum;
   }
 
  private:
-  // Whether some shift may make a surface point of one bone lie in the other: a distance between lattice points changes by little
-  // more than a millimetre a millimetre.
+  // Whether some shift may make a surface point of one bone lie in the other: a distance between lattice points
+  // changes by little more than a millimetre a millimetre.
   static bool comes_near(const BoneDistance& bone, const glm::dvec3& place, double mm, double reach) {
     const auto there = bone.at(place);
     return there ? there->mm + mm < 1.2 * reach : bone.outside(place) < reach;

@@ -11,13 +11,16 @@
 namespace limber::cmd {
 
 namespace {
-constexpr double kLongest = 50;      // mm: no joint glides that far
+constexpr double kLongest = 50;     // mm: no joint glides that far
 constexpr double kOfAVoxel = 0.99;  // of a voxel's longest edge, so that rounding does not go beyond
 }  // namespace
 
 void add_glide_option(CLI::App& command, std::string& glide) {
-  command.add_option("--glide", glide, "how far joints are shifted whose bones would enter each other: joint (5 percent of the shorter bone), voxel (no bone further than a voxel), mm, or off "
-                                       "(default: joint; with --pose or --motion: voxel)")
+  command
+      .add_option("--glide", glide,
+                  "how far joints are shifted whose bones would enter each other: joint (5 percent of the shorter "
+                  "bone), voxel (no bone further than a voxel), mm, or off "
+                  "(default: joint; with --pose or --motion: voxel)")
       ->type_name("off|voxel|joint|MM");
 }
 
@@ -36,18 +39,21 @@ std::optional<GlideSettings> glide_settings(const std::string& glide, const Pose
   double most = 0;
   const auto [stop, error] = std::from_chars(glide.data(), glide.data() + glide.size(), most);
   if (error != std::errc() || stop != glide.data() + glide.size() || !(most > 0 && most <= kLongest))
-    throw Error("joints do not glide that way", "--glide " + glide, "write off, voxel, joint, or a length of at most 50 mm, as in --glide 20");
+    throw Error("joints do not glide that way", "--glide " + glide,
+                "write off, voxel, joint, or a length of at most 50 mm, as in --glide 20");
   settings.most_mm = most;
   return settings;
 }
 
-std::vector<std::vector<GlidedJoint>> glide_poses(std::vector<Pose>& poses, const GlideSettings& settings, const Body& body, const TissueVoxels& tissue,
-                                                  SkinWeights& weights, Progress& progress) {
+std::vector<std::vector<GlidedJoint>> glide_poses(std::vector<Pose>& poses, const GlideSettings& settings,
+                                                  const Body& body, const TissueVoxels& tissue, SkinWeights& weights,
+                                                  Progress& progress) {
   const LabelSets labels(body.tissues);
   weights = with_rigid_bones(weights, body.file.volume, tissue, body.tissues, labels.bone, body.rig, progress);
   std::vector<std::vector<GlidedJoint>> joints;
   for (Pose& pose : poses) {
-    GlidedPose glided = glide_joints(body.file.volume, tissue, labels.bone, weights, body.rig, pose, settings, progress);
+    GlidedPose glided =
+        glide_joints(body.file.volume, tissue, labels.bone, weights, body.rig, pose, settings, progress);
     pose = std::move(glided.pose);
     joints.push_back(std::move(glided.joints));
   }
@@ -65,7 +71,8 @@ std::string overlap_warning(const std::optional<std::vector<GlidedJoint>>& joint
   if (stuck.empty() && claimed_twice == 0) return "";
   const std::string claimed = std::to_string(claimed_twice) + " voxels are claimed by two bones: ";
   if (joints && stuck.empty()) return claimed + "no joint overlaps by more than half a voxel, other bones may meet";
-  return claimed + (joints ? stuck + ": --glide MM allows longer shifts" : "joints do not glide") + "; limber fit-joint, a command of its own, moves the axis of a joint";
+  return claimed + (joints ? stuck + ": --glide MM allows longer shifts" : "joints do not glide") +
+         "; limber fit-joint, a command of its own, moves the axis of a joint";
 }
 
 }  // namespace limber::cmd

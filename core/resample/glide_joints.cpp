@@ -31,7 +31,8 @@ Box intersection(const Box& a, const Box& b) { return {glm::max(a.low, b.low), g
 Box image(const Box& box, const AffineTransform& motion) {
   Box around;
   for (int corner = 0; corner < 8; ++corner)
-    around.add(motion * glm::dvec3(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y, corner & 4 ? box.high.z : box.low.z));
+    around.add(motion * glm::dvec3(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                   corner & 4 ? box.high.z : box.low.z));
   return around;
 }
 
@@ -47,7 +48,8 @@ struct BoneTissue {
 };
 
 // By rig bone.
-std::vector<BoneTissue> gather(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone, const SkinWeights& weights, const Armature& armature) {
+std::vector<BoneTissue> gather(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
+                               const SkinWeights& weights, const Armature& armature) {
   std::vector<int> bone_of;
   for (const std::string& name : weights.bones()) bone_of.push_back(require_bone(armature, name));
   constexpr std::int64_t kGrain = 256;
@@ -75,7 +77,9 @@ std::vector<BoneTissue> gather(const LabelVolume& volume, const TissueVoxels& ti
   return bones;
 }
 
-double angle_of(const glm::dquat& turn) { return 2 * std::atan2(glm::length(glm::dvec3(turn.x, turn.y, turn.z)), std::abs(turn.w)); }
+double angle_of(const glm::dquat& turn) {
+  return 2 * std::atan2(glm::length(glm::dvec3(turn.x, turn.y, turn.z)), std::abs(turn.w));
+}
 
 // A joint of the rig as the pose bends it.
 struct Joint {
@@ -87,11 +91,14 @@ struct Joint {
 
 class BentJoints {
  public:
-  BentJoints(const Armature& armature, const Pose& pose, const std::vector<BoneTissue>& tissue, const GlideSettings& settings) : armature_(armature), pose_(pose) {
+  BentJoints(const Armature& armature, const Pose& pose, const std::vector<BoneTissue>& tissue,
+             const GlideSettings& settings)
+      : armature_(armature), pose_(pose) {
     for (int bone = 0; bone < std::ssize(armature.bones); ++bone) {
       const int against = above_with_tissue(bone, tissue);
       if (tissue[bone].voxels.empty() || against < 0) continue;
-      if (auto path = path_of(bone, against); !path.empty()) add({bone, against, std::move(path), settings.most_mm.value_or(settings.most_share * shorter(bone, against))});
+      if (auto path = path_of(bone, against); !path.empty())
+        add({bone, against, std::move(path), settings.most_mm.value_or(settings.most_share * shorter(bone, against))});
     }
   }
 
@@ -124,7 +131,9 @@ class BentJoints {
     std::vector<RigidTransform> path(steps);
     for (int step = 1; step <= steps; ++step)
       for (int b = bone; b != against; b = armature_.bones[b].parent)
-        path[step - 1] = rotation_about(armature_.bones[b].head, glm::slerp(glm::dquat(1, 0, 0, 0), pose_.rotation[b], double(step) / steps)) * path[step - 1];
+        path[step - 1] = rotation_about(armature_.bones[b].head,
+                                        glm::slerp(glm::dquat(1, 0, 0, 0), pose_.rotation[b], double(step) / steps)) *
+                         path[step - 1];
     return path;
   }
 
@@ -146,12 +155,14 @@ VoxelBox reached_box(const BoneTissue& bone, const Box& other, double reach, con
 }
 
 // The shift along the grid's axes as the fixed bone stands.
-LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, const Grid& grid, const ShiftBound& bound) {
+LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, const Grid& grid,
+                    const ShiftBound& bound) {
   const glm::dmat3 to_grid = glm::inverse(grid.direction);
   std::vector<AffineTransform> path;
   for (const RigidTransform& motion : joint.path) {
     const glm::dmat3 turn = glm::mat3_cast(motion.rotation);
-    path.push_back({to_grid * turn * grid.direction, to_grid * (turn * grid.origin + motion.translation - grid.origin)});
+    path.push_back(
+        {to_grid * turn * grid.direction, to_grid * (turn * grid.origin + motion.translation - grid.origin)});
   }
   const BoneTissue &fixed = tissue[joint.against], &turning = tissue[joint.bone];
   const double voxel = glm::length(grid.spacing);
@@ -160,9 +171,11 @@ LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, c
     swept.add(image(turning.box.grown(voxel), motion));
     swept_back.add(image(fixed.box.grown(voxel), back(motion)));
   }
-  const VoxelBox of_fixed = reached_box(fixed, swept, joint.most_mm, grid.spacing), of_turning = reached_box(turning, swept_back, joint.most_mm, grid.spacing);
+  const VoxelBox of_fixed = reached_box(fixed, swept, bound.most_mm, grid.spacing),
+                 of_turning = reached_box(turning, swept_back, bound.most_mm, grid.spacing);
   if (of_fixed.size.x == 0 || of_turning.size.x == 0) return {};
-  const BoneDistance from_fixed(grid.spacing, fixed.voxels, of_fixed), from_turning(grid.spacing, turning.voxels, of_turning);
+  const BoneDistance from_fixed(grid.spacing, fixed.voxels, of_fixed),
+      from_turning(grid.spacing, turning.voxels, of_turning);
   return least_shift({from_fixed, from_turning, grid.spacing}, path, bound);
 }
 
@@ -175,36 +188,51 @@ std::vector<glm::dvec3> carried_by(std::vector<glm::dvec3> shifts, const Armatur
 
 // None where nothing overlaps.
 //   motions  posed from rest        carried  as far as it is known: of all bones above
-std::optional<GlidedJoint> glide_joint(const Joint& joint, const Armature& armature, const std::vector<BoneTissue>& tissue, const Grid& grid,
-                                       const std::vector<RigidTransform>& motions, const std::vector<glm::dvec3>& carried, const GlideSettings& settings) {
+std::optional<GlidedJoint> glide_joint(const Joint& joint, const Armature& armature,
+                                       const std::vector<BoneTissue>& tissue, const Grid& grid,
+                                       const std::vector<RigidTransform>& motions,
+                                       const std::vector<glm::dvec3>& carried, const GlideSettings& settings) {
   const glm::dmat3 posed_from_grid = glm::mat3_cast(motions[joint.against].rotation) * grid.direction;
   ShiftBound bound{.most_mm = joint.most_mm};
-  if (settings.whole_mm) bound.whole_mm = *settings.whole_mm, bound.carried = glm::inverse(posed_from_grid) * carried[joint.against];
+  if (settings.whole_mm) {
+    bound.whole_mm = *settings.whole_mm;
+    bound.carried = glm::inverse(posed_from_grid) * carried[joint.against];
+    bound.most_mm = std::min(bound.most_mm, bound.whole_mm + glm::length(bound.carried));
+  }
   const LeastShift found = shift_of(joint, tissue, grid, bound);
   if (found.free && found.shift == glm::dvec3(0)) return std::nullopt;
-  return GlidedJoint{armature.bones[joint.bone].name, armature.bones[joint.against].name, posed_from_grid * found.shift, joint.most_mm, found.free, found.depth_before, found.depth_after};
+  return GlidedJoint{armature.bones[joint.bone].name,
+                     armature.bones[joint.against].name,
+                     posed_from_grid * found.shift,
+                     bound.most_mm,
+                     found.free,
+                     found.depth_before,
+                     found.depth_after};
 }
 
 }  // namespace
 
-GlidedPose glide_joints(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone, const SkinWeights& weights,
-                        const Armature& armature, const Pose& pose, const GlideSettings& settings, Progress& progress) {
+GlidedPose glide_joints(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
+                        const SkinWeights& weights, const Armature& armature, const Pose& pose,
+                        const GlideSettings& settings, Progress& progress) {
   GlidedPose glided{pose, {}};
   glided.pose.shift.clear();
-  const bool turns = std::any_of(pose.rotation.begin(), pose.rotation.end(), [](const glm::dquat& turn) { return turn != glm::dquat(1, 0, 0, 0); });
+  const bool turns = std::any_of(pose.rotation.begin(), pose.rotation.end(),
+                                 [](const glm::dquat& turn) { return turn != glm::dquat(1, 0, 0, 0); });
   if (!turns) return glided;
   progress.update("glide", 0);
   const std::vector<BoneTissue> bones = gather(volume, tissue, is_bone, weights, armature);
   const std::vector<Joint> joints = BentJoints(armature, pose, bones, settings).joints;
   const std::vector<RigidTransform> motions = posed_from_rest(armature, glided.pose);
-  std::vector<glm::dvec3> shifts(armature.bones.size());  // world axes of the posed body, mm
+  std::vector<glm::dvec3> shifts(armature.bones.size(), glm::dvec3(0));  // world axes of the posed body, mm
   std::vector<std::optional<GlidedJoint>> found(joints.size());
   bool any = true;
   for (int below = 0; std::exchange(any, false); ++below) {
     const std::vector<glm::dvec3> carried = carried_by(shifts, armature);
     parallel_for(std::ssize(joints), 1, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t j = begin; j < end; ++j)
-        if (joints[j].below == below) found[j] = glide_joint(joints[j], armature, bones, volume.grid, motions, carried, settings);
+        if (joints[j].below == below)
+          found[j] = glide_joint(joints[j], armature, bones, volume.grid, motions, carried, settings);
     });
     for (std::size_t j = 0; j < joints.size(); ++j) {
       any |= joints[j].below > below;
@@ -216,7 +244,7 @@ GlidedPose glide_joints(const LabelVolume& volume, const TissueVoxels& tissue, c
     glided.joints.push_back(*found[j]);
     if (found[j]->shift == glm::dvec3(0)) continue;
     const int bone = joints[j].bone;
-    glided.pose.shift.resize(armature.bones.size());
+    glided.pose.shift.resize(armature.bones.size(), glm::dvec3(0));
     glided.pose.shift[bone] = glm::conjugate(motions[armature.bones[bone].parent].rotation) * found[j]->shift;
   }
   progress.update("glide", 1);

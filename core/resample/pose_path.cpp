@@ -24,7 +24,7 @@ Pose pose_between(const Pose& from, const Pose& to, double t) {
     if (from.rotation[b] != to.rotation[b]) between.rotation[b] = glm::slerp(from.rotation[b], to.rotation[b], t);
   between.root_translation = from.root_translation + t * (to.root_translation - from.root_translation);
   if (from.shift.empty() && to.shift.empty()) return between;
-  between.shift.resize(to.rotation.size());
+  between.shift.resize(to.rotation.size(), glm::dvec3(0));
   const auto shift_of = [](const Pose& pose, size_t b) { return pose.shift.empty() ? glm::dvec3(0) : pose.shift[b]; };
   for (size_t b = 0; b < to.rotation.size(); ++b) between.shift[b] = glm::mix(shift_of(from, b), shift_of(to, b), t);
   return between;

@@ -8,7 +8,8 @@
 namespace limber {
 
 SkinWeights with_rigid_bones(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
-                             const TissueTable& tissues, const LabelSet& is_bone, const Armature& armature, Progress& progress) {
+                             const TissueTable& tissues, const LabelSet& is_bone, const Armature& armature,
+                             Progress& progress) {
   auto is_rigid = [&](std::int64_t brick) {
     bool rigid = true;
     auto influence = weights.chunk(brick).begin();

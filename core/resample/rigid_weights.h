@@ -12,7 +12,8 @@
 namespace limber {
 
 //   is_bone  per label        returns  the weights themselves where their bone tissue is rigid already
-SkinWeights with_rigid_bones(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-                             const LabelSet& is_bone, const Armature& armature, Progress& progress = no_progress());
+SkinWeights with_rigid_bones(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
+                             const TissueTable& tissues, const LabelSet& is_bone, const Armature& armature,
+                             Progress& progress = no_progress());
 
 }  // namespace limber

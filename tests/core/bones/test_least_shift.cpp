@@ -32,7 +32,8 @@ AffineTransform affine(const RigidTransform& rigid) { return {glm::mat3_cast(rig
 std::vector<AffineTransform> turn(const glm::dvec3& about, const glm::dvec3& axis, double degrees) {
   std::vector<AffineTransform> path;
   const int steps = static_cast<int>(std::ceil(degrees / 10));
-  for (int i = 1; i <= steps; ++i) path.push_back(affine(rotation_about(about, glm::angleAxis(degrees * std::numbers::pi / 180 * i / steps, axis))));
+  for (int i = 1; i <= steps; ++i)
+    path.push_back(affine(rotation_about(about, glm::angleAxis(degrees * std::numbers::pi / 180 * i / steps, axis))));
   return path;
 }
 
@@ -42,8 +43,8 @@ std::vector<AffineTransform> slide(const glm::dvec3& way) {
   return path;
 }
 
-LeastShift least(const Inside& fixed, const Inside& turning, const std::vector<AffineTransform>& path, double most, const glm::dvec3& spacing = glm::dvec3(1),
-                 const glm::dvec3& size = glm::dvec3(60)) {
+LeastShift least(const Inside& fixed, const Inside& turning, const std::vector<AffineTransform>& path, double most,
+                 const glm::dvec3& spacing = glm::dvec3(1), const glm::dvec3& size = glm::dvec3(60)) {
   const VoxelBox box{-glm::ivec3(30.0 / spacing), glm::ivec3((size + 60.0) / spacing)};
   const BoneDistance from_fixed(spacing, voxels_of(fixed, spacing, size), box);
   const BoneDistance from_turning(spacing, voxels_of(turning, spacing, size), box);
@@ -91,9 +92,11 @@ TEST_CASE("least shift: stops at the longest shift, as near to free as it comes 
 TEST_CASE("least shift: what the fixed bone was carried along by counts where both together are bounded") {
   const Inside one = ball({20, 25, 25}, 10), other = ball({46, 25, 25}, 10);
   const VoxelBox box{glm::ivec3(0), glm::ivec3(60, 50, 50)};
-  const BoneDistance from_one(glm::dvec3(1), voxels_of(one, glm::dvec3(1), glm::dvec3(60)), box), from_other(glm::dvec3(1), voxels_of(other, glm::dvec3(1), glm::dvec3(60)), box);
+  const BoneDistance from_one(glm::dvec3(1), voxels_of(one, glm::dvec3(1), glm::dvec3(60)), box),
+      from_other(glm::dvec3(1), voxels_of(other, glm::dvec3(1), glm::dvec3(60)), box);
   const JointBones bones{from_one, from_other, glm::dvec3(1)};
-  for (const glm::dvec3 carried : {glm::dvec3(3, 0, 0), glm::dvec3(0, -3, 1), glm::dvec3(-4, 0, 0), glm::dvec3(4, 0, 0)}) {
+  for (const glm::dvec3 carried :
+       {glm::dvec3(3, 0, 0), glm::dvec3(0, -3, 1), glm::dvec3(-4, 0, 0), glm::dvec3(4, 0, 0)}) {
     const LeastShift found = least_shift(bones, slide({-12, 0, 0}), {.most_mm = 10, .whole_mm = 4, .carried = carried});
     CAPTURE(carried.x);
     CHECK(found.free == (carried.x < 0));  // then there is room for more than 4 mm
@@ -106,8 +109,12 @@ TEST_CASE("least shift: what the fixed bone was carried along by counts where bo
 TEST_CASE("least shift: a ball turned about a point beside its middle goes back into its socket") {
   const glm::dvec3 middle(30, 30, 30), head(30, 26, 33);
   // A block with a bowl that holds somewhat more than half of the ball, half a millimetre wider than it.
-  const Inside socket = [&](const glm::dvec3& p) { return p.z > 28 && p.z < 50 && glm::length(glm::dvec2(p - middle)) < 22 && glm::distance(p, middle) > 11.5; };
-  const Inside bone = [&](const glm::dvec3& p) { return glm::distance(p, middle) <= 11 || (p.z < 30 && glm::length(glm::dvec2(p - middle)) < 5); };
+  const Inside socket = [&](const glm::dvec3& p) {
+    return p.z > 28 && p.z < 50 && glm::length(glm::dvec2(p - middle)) < 22 && glm::distance(p, middle) > 11.5;
+  };
+  const Inside bone = [&](const glm::dvec3& p) {
+    return glm::distance(p, middle) <= 11 || (p.z < 30 && glm::length(glm::dvec2(p - middle)) < 5);
+  };
   const auto path = turn(head, glm::normalize(glm::dvec3(1, 0.3, 0)), 60);
   const LeastShift found = least(socket, bone, path, 10);
   CHECK(found.free);
@@ -121,7 +128,9 @@ TEST_CASE("least shift: a ball turned about a point beside its middle goes back 
 TEST_CASE("least shift: a ball turned about its middle in a closed socket stays, whatever the voxels") {
   for (const glm::dvec3 spacing : {glm::dvec3(1), glm::dvec3(3), glm::dvec3(2.1, 2.1, 8)}) {
     const glm::dvec3 middle(61.3, 60.2, 60.7);
-    const Inside bone = [&](const glm::dvec3& p) { return glm::distance(p, middle) <= 24 || (p.z < 60 && glm::length(glm::dvec2(p - middle)) < 12); };
+    const Inside bone = [&](const glm::dvec3& p) {
+      return glm::distance(p, middle) <= 24 || (p.z < 60 && glm::length(glm::dvec2(p - middle)) < 12);
+    };
     const Inside socket = [&](const glm::dvec3& p) { return p.z > 62 && glm::distance(p, middle) < 34 && !bone(p); };
     for (const double degrees : {10.0, 20.0, 30.0, 45.0}) {
       CAPTURE(spacing.z);
@@ -134,8 +143,8 @@ TEST_CASE("least shift: a ball turned about its middle in a closed socket stays,
 }
 
 TEST_CASE("least shift: of two boxes on a hinge, the corner is freed through the nearer face") {
-  // Turned by 90 degrees about z at (30, 30), the second covers x 20 to 40 and y from 30 on. The first reaches up to y = 36 and
-  // to x = 30: out by 6 mm along y, or by 10 along x.
+  // Turned by 90 degrees about z at (30, 30), the second covers x 20 to 40 and y from 30 on. The first reaches up to
+  // y = 36 and to x = 30: out by 6 mm along y, or by 10 along x.
   const Inside first = block({9.5, 20, 20}, {29.5, 36, 40}), second = block({29.5, 20, 20}, {49.5, 40, 40});
   const LeastShift found = least(first, second, turn({29.5, 30, 30}, {0, 0, 1}, 90), 15);
   CHECK(found.free);

@@ -29,7 +29,11 @@ struct Arm {
   }
 
   ProgramRun run(const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"resample", folder / "volume.nrrd", "--rig", folder / "rig.json", "--tissues", folder / "tissues.json", "-o", out, "--report", report};
+    std::vector<std::string> words{"resample",  folder / "volume.nrrd",
+                                   "--rig",     folder / "rig.json",
+                                   "--tissues", folder / "tissues.json",
+                                   "-o",        out,
+                                   "--report",  report};
     words.insert(words.end(), more.begin(), more.end());
     return run_limber(words);
   }
@@ -43,9 +47,12 @@ struct Arm {
 
 }  // namespace
 
-TEST_CASE("glide: bones that would enter each other come apart where nothing is said, and the report says which joints glide") {
+TEST_CASE(
+    "glide: bones that would enter each other come apart where nothing is said, and the report says which joints "
+    "glide") {
   const Arm arm;
-  const auto stays = arm.posed({"--flex", "Forearm=100", "--glide", "off"}), glides = arm.posed({"--flex", "Forearm=100"});
+  const auto stays = arm.posed({"--flex", "Forearm=100", "--glide", "off"}),
+             glides = arm.posed({"--flex", "Forearm=100"});
   CHECK_FALSE(stays.contains("glide"));
   CHECK(stays["settings"]["glide"] == "off");
   CHECK(glides["settings"]["glide"] == "joint");
@@ -92,7 +99,8 @@ TEST_CASE("glide: jobs say it as the command line does; what is no way to glide 
   const Arm arm;
   arm.posed({"--flex", "Forearm=100", "--glide", "off"});
   const std::string stays = read_file(arm.out);
-  std::ofstream(arm.folder / "job.json") << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
+  std::ofstream(arm.folder / "job.json")
+      << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
     "flex": ["Forearm=100"], "glide": "off", "output": "job.nrrd"})";
   REQUIRE(run_limber({"job", arm.folder / "job.json"}).exit_code == 0);
   CHECK(read_file(arm.folder / "job.nrrd") == stays);

@@ -16,10 +16,11 @@ namespace {
 
 constexpr Label kBone = 1, kFlesh = 2;
 
-// Two bars of bone in flesh, 2 mm voxels, that meet end to end at x = 0 with a thin joint between, and a hinge in the middle of
-// their section: bending drives a corner of one into the other. A tip hangs on the second.
+// Two bars of bone in flesh, 2 mm voxels, that meet end to end at x = 0 with a thin joint between, and a hinge in the
+// middle of their section: bending drives a corner of one into the other. A tip hangs on the second.
 struct Bars {
-  LabelVolume volume{{.size = {61, 61, 20}, .spacing = {2, 2, 2}, .origin = {-60, -60, -20}}, ZeroedVector<Label>(61 * 61 * 20)};
+  LabelVolume volume{{.size = {61, 61, 20}, .spacing = {2, 2, 2}, .origin = {-60, -60, -20}},
+                     ZeroedVector<Label>(61 * 61 * 20)};
   TissueTable tissues;
   Armature armature;
   LabelSet is_bone = LabelSet(65536, 0);
@@ -34,7 +35,8 @@ struct Bars {
       for (int y = 25; y < 36; ++y)
         for (int x = 6; x < 55; ++x)
           if (x != 30) volume.at({x, y, z}) = kBone;
-    tissues.tissues = {{.label = kBone, .name = "bone", .kind = TissueKind::CorticalBone}, {.label = kFlesh, .name = "muscle", .kind = TissueKind::Muscle}};
+    tissues.tissues = {{.label = kBone, .name = "bone", .kind = TissueKind::CorticalBone},
+                       {.label = kFlesh, .name = "muscle", .kind = TissueKind::Muscle}};
     armature.bones.push_back({"fixed", -1, {-48, 0, 0}, {0, hinge_y, 0}, 0, {}});
     armature.bones.push_back({"turning", 0, {0, hinge_y, 0}, {30, 0, 0}, 0, {}});
     armature.bones.push_back({"tip", 1, {30, 0, 0}, {48, 0, 0}, 0, {}});
@@ -43,7 +45,9 @@ struct Bars {
     weights = SkinWeights({"fixed", "turning", "tip"}, tissue);
     for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
       std::vector<Influence> influences;
-      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) { influences.push_back(rigid_influence(v.x <= 30 ? 0 : v.x < 46 ? 1 : 2)); });
+      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
+        influences.push_back(rigid_influence(v.x <= 30 ? 0 : v.x < 46 ? 1 : 2));
+      });
       weights.set_chunk(brick, influences);
     }
   }
@@ -56,7 +60,9 @@ struct Bars {
   GlidedPose glide(const Pose& pose, const GlideSettings& settings = {.most_mm = 15}) const {
     return glide_joints(volume, tissue, is_bone, weights, armature, pose, settings);
   }
-  std::int64_t bone_in_bone(const Pose& pose) const { return resample(volume, tissues, armature, weights, pose, LinearBlend{}).report.bone_overlap_voxels; }
+  std::int64_t bone_in_bone(const Pose& pose) const {
+    return resample(volume, tissues, armature, weights, pose, LinearBlend{}).report.bone_overlap_voxels;
+  }
 };
 
 }  // namespace
