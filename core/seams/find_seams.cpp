@@ -18,7 +18,8 @@ namespace {
 constexpr double kBandShare = 0.2;     // of the limb's first bone: how far from where limbs meet the cut may lie
 constexpr double kWidestBand = 50;     // mm
 constexpr double kNarrowestBand = 4;   // of the longest voxel edge
-constexpr int kCostUnit = 8;
+constexpr int kCostUnit = 64;
+constexpr double kBridge = 0.5;        // cost of a bridge between two skins: that of skin, and less towards its middle
 
 // What it costs to cut through a tissue, relative to connective tissue.
 double cost_of(TissueKind kind) {
@@ -59,6 +60,7 @@ class SeamFinder {
     held_by_ = bone_holding(volume, tissue, parts, armature);
     limb_of_bone_ = limb_of_bones(armature);
     spread_bones();
+    find_bridges();
   }
 
   Seams run(Progress& progress) {
@@ -98,6 +100,36 @@ class SeamFinder {
       distance[to] = way;
       bone_[to] = bone_[from];
       return true;
+    });
+  }
+
+  TissueKind kind_at(const glm::ivec3& v) const { return kind_[volume_.at(v)]; }
+
+  // Tissue that skin shuts off from every bone lies between the skins of two limbs: a scan that could not part them has
+  // filled the air there. Nothing is a bridge where no skin is.
+  void find_bridges() {
+    is_bridge_.assign(tissue_.size(), false);
+    std::vector<glm::ivec3> open;
+    std::vector<bool> is_inside(tissue_.size());
+    bool has_skin = false;
+    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      has_skin |= kind_at(v) == TissueKind::Skin;
+      if (held_by_[place] == kSoft) return;
+      is_inside[place] = true;
+      open.push_back(v);
+    });
+    if (!has_skin) return;
+    while (!open.empty()) {
+      const glm::ivec3 v = open.back();
+      open.pop_back();
+      for_each_joined(v, [&](int, const glm::ivec3& w, std::int64_t there) {
+        if (is_inside[there] || kind_at(w) == TissueKind::Skin) return;
+        is_inside[there] = true;
+        open.push_back(w);
+      });
+    }
+    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      is_bridge_[place] = !is_inside[place] && kind_at(v) != TissueKind::Skin;
     });
   }
 
@@ -167,16 +199,19 @@ class SeamFinder {
     }
   }
 
-  // Of each voxel of a sheet, how many steps lie between it and tissue that is not: largest in the middle.
-  std::vector<float> depth_in_sheets() const {
+  // Of each voxel of the band that is of a sheet, how many steps lie between it and what is not: largest in the middle.
+  //   is_of_sheet  tells it of a node
+  template <class IsOfSheet>
+  std::vector<float> depth_in_sheets(const IsOfSheet& is_of_sheet) const {
     std::vector<float> depth(band_.size(), std::numeric_limits<float>::infinity());
     std::vector<std::int32_t> open;
     for (size_t n = 0; n < band_.size(); ++n)
-      if (!is_sheet(kind_[volume_.at(band_[n].voxel)])) {
+      if (!is_of_sheet(band_[n])) {
         depth[n] = 0;
         open.push_back(static_cast<std::int32_t>(n));
       }
-    const glm::vec3 step = glm::vec3(volume_.grid.spacing) / static_cast<float>(std::min({volume_.grid.spacing.x, volume_.grid.spacing.y, volume_.grid.spacing.z}));
+    const glm::dvec3 spacing = volume_.grid.spacing;
+    const glm::vec3 step(spacing / std::min({spacing.x, spacing.y, spacing.z}));
     for (size_t i = 0; i < open.size(); ++i)
       for_each_joined(band_[open[i]].voxel, [&](int direction, const glm::ivec3&, std::int64_t there) {
         const std::int32_t node = node_of_[there];
@@ -187,6 +222,19 @@ class SeamFinder {
     for (float& d : depth)
       if (d == std::numeric_limits<float>::infinity()) d = 0;
     return depth;
+  }
+
+  // What it costs to cut through each voxel of the band. In a bridge the depth counts by its third power: a bridge is short,
+  // and its middle is meant.
+  std::vector<double> costs() const {
+    const std::vector<float> in_sheet = depth_in_sheets([&](const Node& node) { return is_sheet(kind_at(node.voxel)); });
+    const std::vector<float> in_bridge = depth_in_sheets([&](const Node& node) { return bool(is_bridge_[node.place]); });
+    std::vector<double> cost(band_.size());
+    for (size_t n = 0; n < band_.size(); ++n) {
+      const bool is_bridge = is_bridge_[band_[n].place];
+      cost[n] = is_bridge ? kBridge / std::pow(1 + in_bridge[n], 3) : cost_of(kind_at(band_[n].voxel)) / (1 + in_sheet[n]);
+    }
+    return cost;
   }
 
   // Bones, tissue whose name tells, and the band's ends stay what they are.
@@ -202,20 +250,19 @@ class SeamFinder {
   }
 
   std::vector<std::uint8_t> cheapest_cut(const Limb& limb) const {
-    const std::vector<float> depth = depth_in_sheets();
+    const std::vector<double> cost = costs();
     std::array<std::int32_t, 26> none, nothing{};
     none.fill(-1);
     CutGraph graph{std::vector(band_.size(), none), std::vector(band_.size(), nothing), std::vector<std::int32_t>(band_.size(), 0)};
     const glm::dvec3 s = volume_.grid.spacing, area(s.y * s.z, s.x * s.z, s.x * s.y);
     const double smallest = std::min({area.x, area.y, area.z});
-    const auto cost = [&](std::int32_t n) { return cost_of(kind_[volume_.at(band_[n].voxel)]) / (1 + depth[n]); };
     for (std::int32_t n = 0; n < std::ssize(band_); ++n) {
       const Side side = fixed_side(limb, band_[n]);
       graph.terminal[n] = side == Side::Limb ? kCertain : side == Side::Other ? -kCertain : 0;
       for_each_joined(band_[n].voxel, [&](int direction, const glm::ivec3&, std::int64_t there) {
         const std::int32_t m = node_of_[there];
         if (m < 0) return;
-        const double capacity = kCostUnit * area[direction >> 1] / smallest * (cost(n) + cost(m));
+        const double capacity = kCostUnit * area[direction >> 1] / smallest * (cost[n] + cost[m]);
         graph.neighbour[n][kEdgeTowards[direction]] = m;
         graph.capacity[n][kEdgeTowards[direction]] = std::max(1, static_cast<int>(std::lround(capacity)));
       });
@@ -270,6 +317,7 @@ class SeamFinder {
   std::vector<std::optional<LimbName>> limb_of_bone_;
   AffineTransform world_;
   std::vector<std::uint16_t> held_by_, bone_;     // by place
+  std::vector<bool> is_bridge_;                   // by place
   std::vector<std::int32_t> node_of_;             // by place, -1 outside the band
   std::vector<Node> band_;
 };

@@ -3,6 +3,7 @@
 // finger). Tissue goes to the rig bone nearest to it through the body. Where two limbs meet that way, far from where they spring
 // from each other, the surface between them is the cheapest cut through the tissue around: along skin where there is skin, else
 // through connective tissue and fat in preference to muscle and organs, by the smallest area, and in the middle of a sheet.
+// Tissue that skin shuts off from every bone is a bridge between two skins; it is cut in its middle.
 // Labels that name a limb ("Muscle, arms") settle which one they belong to.
 //
 // Where limbs are grown together by nature there is no seam: along the first part of an arm, a thigh or a finger (kGrownTogether

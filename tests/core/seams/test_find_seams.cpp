@@ -2,6 +2,8 @@
 #include "core/seams/find_seams.h"
 
 #include <filesystem>
+#include <tuple>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -12,6 +14,7 @@
 #include "core/seams/limbs.h"
 #include "core/seams/seams_io.h"
 #include "core/skin/heat_diffusion.h"
+#include "tests/core/skin/small_body.h"
 #include "tests/support/glued_arm.h"
 
 using namespace limber;
@@ -80,7 +83,67 @@ Raised raise(const test::GluedArm& body, std::shared_ptr<const Seams> seams, dou
   return raised;
 }
 
+// Two fingers along z, of bone, fat and skin, and a palm above. Between their skins, one of which is a voxel thicker, four
+// voxels of flesh join them from z 12 to 17.
+struct WebbedFingers {
+  static constexpr int kFirst = 16, kWide = 4;  // of the bridge, along x
+  enum : Label { Skin = 1, Fat = 2, Flesh = 3, BoneLabel = 4 };
+  LabelVolume volume;
+  TissueTable tissues;
+  Armature rig;
+
+  WebbedFingers() {
+    volume.grid.size = {40, 18, 90};
+    volume.voxels.assign(volume.grid.voxel_count(), 0);
+    fill({4, 3, 2}, {kFirst, 15, 90}, Skin);
+    fill({kFirst + kWide, 3, 2}, {34, 15, 90}, Skin);
+    fill({4, 3, 60}, {34, 15, 90}, Skin);
+    fill({7, 5, 4}, {13, 13, 90}, Fat);
+    fill({22, 5, 4}, {31, 13, 90}, Fat);
+    fill({7, 5, 62}, {31, 13, 90}, Fat);
+    fill({8, 7, 6}, {12, 11, 88}, BoneLabel);
+    fill({24, 7, 6}, {28, 11, 88}, BoneLabel);
+    fill({8, 7, 80}, {28, 11, 88}, BoneLabel);
+    fill({kFirst, 6, 12}, {kFirst + kWide, 10, 18}, Flesh);
+    for (const auto& [label, kind] : {std::pair{Skin, TissueKind::Skin}, {Fat, TissueKind::Fat},
+                                      {Flesh, TissueKind::Connective}, {BoneLabel, TissueKind::Bone}}) {
+      Tissue tissue;
+      tissue.label = label;
+      tissue.file_value = label;
+      tissue.kind = kind;
+      tissues.tissues.push_back(tissue);
+    }
+    rig.bones.push_back(test::bone_between("RightHand", -1, {18, 9, 88}, {18, 9, 70}));
+    for (const auto& [name, x] : {std::pair{"RightIndex", 9.5}, {"RightMiddle", 25.5}}) {
+      int parent = 0;
+      for (const auto& [part, from, to] : {std::tuple{"Proximal", 70., 45.}, {"Middle", 45., 25.}, {"Distal", 25., 4.}}) {
+        rig.bones.push_back(test::bone_between((std::string(name) + part).c_str(), parent, {x, 9, from}, {x, 9, to}));
+        parent = static_cast<int>(rig.bones.size()) - 1;
+      }
+    }
+  }
+  void fill(const glm::ivec3& from, const glm::ivec3& to, Label label) {
+    for (int z = from.z; z < to.z; ++z)
+      for (int y = from.y; y < to.y; ++y)
+        for (int x = from.x; x < to.x; ++x) volume.at({x, y, z}) = label;
+  }
+};
+
 }  // namespace
+
+TEST_CASE("seams: a bridge of flesh between the skins of two fingers is cut in its middle") {
+  const WebbedFingers body;
+  const TissueVoxels tissue(body.volume);
+  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.rig);
+  const Seams seams = find_seams(body.volume, tissue, body.tissues, body.rig, parts);
+  std::int64_t found = 0, in_the_middle = 0;
+  seams.for_each([&](const glm::ivec3& v, int axis) {
+    ++found;
+    in_the_middle += axis == 0 && v.x == WebbedFingers::kFirst + WebbedFingers::kWide / 2 - 1;
+  });
+  CHECK(found == 4 * 6);
+  CHECK(in_the_middle == found);
+}
 
 TEST_CASE("seams: an arm grown to the trunk is cut from it where the two touch, and from nowhere else") {
   for (const bool names : {false, true}) {
