@@ -31,6 +31,10 @@ constexpr double kBall = 0.02;      // of the bone's length: the smallest radius
 constexpr double kLargestBall = 0.1;
 constexpr double kBallCore = 0.8;   // of the radius of a joint's ball: so much of it is surely the ball
 constexpr double kBallWidth = 0.5;  // of it: in place of the distance to the shafts
+constexpr double kSitsAlong = 0.25;  // of a bone's length from its head: where another bone may sit on it
+constexpr double kTilt = 0.8;       // how far a finger bone's base turns from halving the angle to stand across its own bone
+constexpr double kRim = 1.3;        // of a joint's radius, squared: farther out its surface does not fall off any more
+constexpr double kJointSlice = 0.06;  // of the shorter bone's length: where the joint's radius is measured
 constexpr std::int32_t kHard = 1 << 28;
 
 // Area in mm^2 that a cut through the edge to each of the 26 neighbours stands for.
@@ -73,13 +77,21 @@ class JointCutter {
     std::vector<std::string> names;
     std::vector<int> parents;
     for (const Bone& bone : bones_) names.push_back(bone.name), parents.push_back(bone.parent);
-    for (const auto& role : joint_roles(names, parents)) is_ball_.push_back(role && (role->part == BodyPart::Thigh || role->part == BodyPart::UpperArm));
+    for (const auto& role : joint_roles(names, parents)) {
+      is_ball_.push_back(role && (role->part == BodyPart::Thigh || role->part == BodyPart::UpperArm));
+      finger_bone_.push_back(role ? finger_bone(*role) : 0);
+    }
     find_nearest();
   }
 
-  // Where a bone meets its parent.
-  void cut_joint(int child) {
-    const int parent = bones_[child].parent;
+  // Where a bone meets its parent; and where it sits on another child of that, nearer than on the parent itself, as a thumb
+  // does that the rig hangs on the forearm beside the hand, also where it meets that one.
+  void cut_joints_of(int child) {
+    cut_joint(bones_[child].parent, child);
+    if (const int other = bone_it_sits_on(child); other >= 0) cut_joint(other, child);
+  }
+
+  void cut_joint(int parent, int child) {
     const Bone &p = bones_[parent], &c = bones_[child];
     const double shorter = std::min(length_of(p), length_of(c)), longer = std::max(length_of(p), length_of(c));
     if (shorter <= 0) return;
@@ -100,7 +112,12 @@ class JointCutter {
       const glm::dvec3& spacing = volume_.grid.spacing;
       const double coarse = std::max({spacing.x, spacing.y, spacing.z}) / (kCoarse * shorter);
       const double scale = std::sqrt(1 + coarse * coarse) / (kShaft * shorter);
-      cut([&](std::int32_t, const glm::dvec3& at) { return glm::dot(at - joint, normal) * scale; });
+      if (finger_bone_[child] > 0) {
+        const Dome dome = dome_at(normal, c, finger_bone_[child] == 1, shorter);
+        cut([&](std::int32_t, const glm::dvec3& at) { return dome.height_of(at) * scale; });
+      } else {
+        cut([&](std::int32_t, const glm::dvec3& at) { return glm::dot(at - joint, normal) * scale; });
+      }
     }
     const double shaft = (kReach - kShaft) * shorter;  // mm of it that lie in the domain
     if (cut_area_ > 0 && cut_area_ >= kBroad * std::min(volume_along(parent, 0, joint, kShaft * shorter), volume_along(child, 1, joint, kShaft * shorter)) / shaft) broad_.push_back({parent, child, cut_area_});
@@ -153,6 +170,55 @@ class JointCutter {
     bool is_allowed;  // to follow that bone
     int shaft;        // 0, 1 or -1
   };
+
+  int bone_it_sits_on(int child) const {
+    const glm::dvec3& joint = bones_[child].head;
+    int found = -1;
+    double nearest = distance_to_bone(bones_[bones_[child].parent], joint);
+    for (int b = 0; b < std::ssize(bones_); ++b) {
+      if (b == child || bones_[b].parent != bones_[child].parent) continue;
+      if (along_bone(bones_[b], joint) < kSitsAlong * length_of(bones_[b])) continue;
+      if (const double d = distance_to_bone(bones_[b], joint); d < nearest) nearest = d, found = b;
+    }
+    return found;
+  }
+
+  // 1 for the first bone of a finger beyond its knuckle, and so on; 0 for others. The thumb is no such finger: it stands on
+  // a saddle, and its end bone leans back.
+  static int finger_bone(const JointRole& role) {
+    switch (role.part) {
+      case BodyPart::Index: case BodyPart::Middle: case BodyPart::Ring: case BodyPart::Little: return role.index;
+      default: return 0;
+    }
+  }
+
+  // The surface where a finger's bones meet: the rounded head of one in the hollow base of the next, which stands across its
+  // own bone rather than across the other. A knuckle is a ball of 1.9 times the radius of the bones there; the joints of a
+  // finger are flatter [measured on the hand of the BodyParts3D atlas].
+  struct Dome {
+    glm::dvec3 joint, axis;
+    double radius;            // mm, of the bones at the joint
+    double curvature, level;  // over the radius; share of its square where the surface is as high as the joint
+    double height_of(const glm::dvec3& at) const {
+      const glm::dvec3 from = at - joint;
+      const double along = glm::dot(from, axis);
+      const double aside = std::min(kRim, std::max(0.0, glm::dot(from, from) - along * along) / (radius * radius));
+      return along + curvature * radius * (aside - level);
+    }
+  };
+  Dome dome_at(const glm::dvec3& normal, const Bone& child, bool is_knuckle, double shorter) const {
+    const glm::dvec3& joint = child.head;
+    const glm::dvec3& spacing = volume_.grid.spacing;
+    const glm::dvec3 axis = glm::normalize(glm::mix(normal, glm::normalize(child.tail - child.head), kTilt));
+    const double half = std::max({spacing.x, spacing.y, spacing.z, kJointSlice * shorter});
+    const auto voxels = std::count_if(domain_.begin(), domain_.end(), [&](const Voxel& v) {
+      const glm::dvec3 from = world(v.at) - joint;
+      return std::abs(glm::dot(from, axis)) < half && glm::length(from) < shorter / 2;
+    });
+    const double area = double(voxels) * spacing.x * spacing.y * spacing.z / (2 * half);
+    const double radius = std::max(std::sqrt(area / std::numbers::pi), std::min({spacing.x, spacing.y, spacing.z}));
+    return is_knuckle ? Dome{joint, axis, radius, 0.27, 0.5} : Dome{joint, axis, radius, 0.2, 0.15};
+  }
 
   void find_nearest() {
     std::vector<Bone> inner = bones_;  // bones share the point where they meet: away from it the direction decides
@@ -304,6 +370,7 @@ class JointCutter {
   std::vector<Near> near_;                        // #graph
   std::vector<std::vector<std::int32_t>> along_;  // by rig bone: the voxels nearest to it
   std::vector<bool> is_ball_;  // by rig bone: its head is the centre of a ball
+  std::vector<int> finger_bone_;  // by rig bone, as finger_bone() says
   std::vector<float> depth_;  // #graph, mm, before the cuts; found when the first cut needs it
   std::vector<std::int32_t> local_;  // #graph, in `domain_` or -1
   std::vector<Voxel> domain_;
@@ -319,7 +386,7 @@ JointCuts cut_at_joints(BoneGraph& graph, const LabelVolume& volume, const std::
   JointCutter cutter(graph, volume, kinds, armature, group, candidates);
   for (int child = 0; child < std::ssize(armature.bones); ++child) {
     progress.update("bones", 0.4);
-    if (armature.bones[child].parent >= 0) cutter.cut_joint(child);
+    if (armature.bones[child].parent >= 0) cutter.cut_joints_of(child);
   }
   cutter.cut_sides();
   return std::move(cutter).cuts();

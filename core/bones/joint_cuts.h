@@ -4,7 +4,8 @@
 // on either side of it is found, and where bone tissue connects the two, it is cut along the surface of least area between
 // them [Boykov & Kolmogorov 2003: cut metrics measured on a voxel grid]. The area counts more away from the joint, and more
 // through marrow than through the shells of bone, so that of several necks the one at the joint is cut. Bones that do
-// not touch have a cut of no area, and nothing is changed.
+// not touch have a cut of no area, and nothing is changed. In fingers, which the rig's names tell, the cut prefers the rounded
+// head of one bone in the hollow base of the next.
 #pragma once
 
 #include <cstdint>
