@@ -22,6 +22,9 @@ constexpr double kShaftWidth = 0.1;  // of it: what lies along a rig bone, beyon
 constexpr double kFarAside = 0.35;  // of a bone's length: nothing so far from a rig bone is its shaft
 constexpr double kCoarse = 0.04;    // of the shorter bone's length: with voxels of this size the place of the joint counts twice as much
 constexpr double kAway = 8;         // area counts as much more where the shafts begin, and four times that twice as far away
+constexpr double kSteep = 0.4;      // of the way to where the shafts begin: from there on it counts more by the fourth power,
+                                    // or the thin shaft beside a broad joint would be the cheapest place
+constexpr double kSlender = 8;      // radii of the joint: shorter bones than that say less of where it is
 constexpr double kSide = 0.6;       // of the shorter bone's length: how far apart bones may run that touch side by side
 constexpr double kSideShaft = 0.5;  // of the distance to the other bone: what lies nearer to its own is surely of it
 constexpr double kBroad = 1.5;      // times the thinner bone's cross-section: from there on a cut is not sure. Bones that touch at 1 to 3 mm
@@ -107,17 +110,11 @@ class JointCutter {
     if (ball > kBall * length_of(c)) {
       for (Voxel& v : domain_)
         if (glm::distance(world(v.at), joint) < kBallCore * ball) v.shaft = 1;
-      cut([&](std::int32_t, const glm::dvec3& at) { return (glm::distance(at, joint) - ball) / (kBallWidth * ball); });
+      cut([&](std::int32_t, const glm::dvec3& at) {
+        return weight_away((glm::distance(at, joint) - ball) / (kBallWidth * ball));
+      });
     } else {
-      const glm::dvec3& spacing = volume_.grid.spacing;
-      const double coarse = std::max({spacing.x, spacing.y, spacing.z}) / (kCoarse * shorter);
-      const double scale = std::sqrt(1 + coarse * coarse) / (kShaft * shorter);
-      if (finger_bone_[child] > 0) {
-        const Dome dome = dome_at(normal, c, finger_bone_[child] == 1, shorter);
-        cut([&](std::int32_t, const glm::dvec3& at) { return dome.height_of(at) * scale; });
-      } else {
-        cut([&](std::int32_t, const glm::dvec3& at) { return glm::dot(at - joint, normal) * scale; });
-      }
+      cut_across(normal, child, shorter);
     }
     const double shaft = (kReach - kShaft) * shorter;  // mm of it that lie in the domain
     if (cut_area_ > 0 && cut_area_ >= kBroad * std::min(volume_along(parent, 0, joint, kShaft * shorter), volume_along(child, 1, joint, kShaft * shorter)) / shaft) broad_.push_back({parent, child, cut_area_});
@@ -137,7 +134,10 @@ class JointCutter {
       for (const std::int32_t i : voxels) add(i, near_[i].bone[0] == pair.second);
       for (Voxel& v : domain_)
         if (v.is_allowed && near_[v.at].distance[0] < kSideShaft * near_[v.at].distance[1]) v.shaft = v.nearest;
-      cut([&](std::int32_t i, const glm::dvec3&) { return (near_[i].distance[1] - near_[i].distance[0]) / (near_[i].distance[1] + near_[i].distance[0]); });
+      cut([&](std::int32_t i, const glm::dvec3&) {
+        const auto& [nearest, next] = near_[i].distance;
+        return weight_away((next - nearest) / (next + nearest));
+      });
     }
   }
 
@@ -170,6 +170,23 @@ class JointCutter {
     bool is_allowed;  // to follow that bone
     int shaft;        // 0, 1 or -1
   };
+
+  // At a plane across the joint, or in fingers at the surface of a dome.
+  void cut_across(const glm::dvec3& normal, int child, double shorter) {
+    const glm::dvec3& joint = bones_[child].head;
+    const glm::dvec3& spacing = volume_.grid.spacing;
+    const double coarse = std::max({spacing.x, spacing.y, spacing.z}) / (kCoarse * shorter);
+    const double scale = std::sqrt(1 + coarse * coarse) / (kShaft * shorter);
+    const double slice = std::max({spacing.x, spacing.y, spacing.z});
+    const double radius = radius_at(joint, normal, slice, std::numeric_limits<double>::infinity());
+    const double steep = scale / kSteep * std::min(1.0, shorter / (kSlender * std::max(radius, slice)));
+    const int finger = finger_bone_[child];
+    const Dome dome = finger > 0 ? dome_at(normal, bones_[child], finger == 1, shorter) : Dome{joint, normal, 1, 0, 0};
+    cut([&](std::int32_t, const glm::dvec3& at) {
+      const double height = dome.height_of(at), far = height * steep;
+      return weight_away(height * scale) * (1 + far * far * far * far);
+    });
+  }
 
   int bone_it_sits_on(int child) const {
     const glm::dvec3& joint = bones_[child].head;
@@ -206,17 +223,23 @@ class JointCutter {
       return along + curvature * radius * (aside - level);
     }
   };
+  // The radius, mm, of the bones of the domain in a slice across `axis` that is twice `half` mm thick, within `reach` mm of
+  // the joint.
+  double radius_at(const glm::dvec3& joint, const glm::dvec3& axis, double half, double reach) const {
+    const glm::dvec3& spacing = volume_.grid.spacing;
+    const auto voxels = std::count_if(domain_.begin(), domain_.end(), [&](const Voxel& v) {
+      const glm::dvec3 from = world(v.at) - joint;
+      return std::abs(glm::dot(from, axis)) < half && glm::length(from) < reach;
+    });
+    return std::sqrt(double(voxels) * spacing.x * spacing.y * spacing.z / (2 * half) / std::numbers::pi);
+  }
   Dome dome_at(const glm::dvec3& normal, const Bone& child, bool is_knuckle, double shorter) const {
     const glm::dvec3& joint = child.head;
     const glm::dvec3& spacing = volume_.grid.spacing;
     const glm::dvec3 axis = glm::normalize(glm::mix(normal, glm::normalize(child.tail - child.head), kTilt));
     const double half = std::max({spacing.x, spacing.y, spacing.z, kJointSlice * shorter});
-    const auto voxels = std::count_if(domain_.begin(), domain_.end(), [&](const Voxel& v) {
-      const glm::dvec3 from = world(v.at) - joint;
-      return std::abs(glm::dot(from, axis)) < half && glm::length(from) < shorter / 2;
-    });
-    const double area = double(voxels) * spacing.x * spacing.y * spacing.z / (2 * half);
-    const double radius = std::max(std::sqrt(area / std::numbers::pi), std::min({spacing.x, spacing.y, spacing.z}));
+    const double smallest = std::min({spacing.x, spacing.y, spacing.z});
+    const double radius = std::max(radius_at(joint, axis, half, shorter / 2), smallest);
     return is_knuckle ? Dome{joint, axis, radius, 0.27, 0.5} : Dome{joint, axis, radius, 0.2, 0.15};
   }
 
@@ -308,8 +331,12 @@ class JointCutter {
     return std::any_of(reached.begin(), reached.end(), [&](std::int32_t i) { return domain_[i].shaft == 1; });
   }
 
-  //   away  (voxel, world) how far a place lies from the surface where the two ought to part; 1 where the shafts begin
-  void cut(const auto& away) {
+  // How many times its area a place counts.
+  //   off  from the surface where the two ought to part; 1 where the shafts begin
+  static double weight_away(double off) { return 1 + kAway * off * off; }
+
+  //   weight  (voxel, world) how many times its area a place counts
+  void cut(const auto& weight) {
     cut_area_ = 0;
     if (!is_connected()) return;
     if (depth_.empty()) depth_ = bone_depth(graph_, volume_.grid.spacing);
@@ -323,8 +350,8 @@ class JointCutter {
         const std::int32_t n = graph_.neighbour[domain_[i].at][k];
         const std::int32_t m = cut.neighbour[i][k] = n >= 0 ? local_[n] : -1;
         if (m < i) continue;
-        const double off = away(domain_[i].at, (world(domain_[i].at) + world(n)) / 2.0);
-        double cost = area_[k] * (1 + kAway * off * off) * (depth_[domain_[i].at] + depth_[n]) / 2;
+        const double times = weight(domain_[i].at, (world(domain_[i].at) + world(n)) / 2.0);
+        double cost = area_[k] * times * (depth_[domain_[i].at] + depth_[n]) / 2;
         if (is_marrow(domain_[i].at) && is_marrow(n)) cost *= kMarrow;
         cut.capacity[i][k] = cut.capacity[m][25 - k] = static_cast<std::int32_t>(std::clamp(1000 * cost, 1.0, double(kHard)));
       }

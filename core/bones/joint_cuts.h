@@ -2,10 +2,10 @@
 // Cuts connected bone tissue apart where rig bones meet. In a coarse scan the bones of a limb touch along whole joint surfaces,
 // and in a hand held closed also along their sides; a watershed runs across such contacts. For each joint of the rig the shaft
 // on either side of it is found, and where bone tissue connects the two, it is cut along the surface of least area between
-// them [Boykov & Kolmogorov 2003: cut metrics measured on a voxel grid]. The area counts more away from the joint, and more
-// through marrow than through the shells of bone, so that of several necks the one at the joint is cut. Bones that do
-// not touch have a cut of no area, and nothing is changed. In fingers, which the rig's names tell, the cut prefers the rounded
-// head of one bone in the hollow base of the next.
+// them [Boykov & Kolmogorov 2003: cut metrics measured on a voxel grid]. The area counts more away from the joint, steeply
+// farther than a twelfth of the shorter bone, and more through marrow than through the shells of bone, so that of several necks the
+// one at the joint is cut, and not the thin shaft beside it. Bones that do not touch have a cut of no area, and nothing is
+// changed. In fingers, which the rig's names tell, the cut prefers the rounded head of one bone in the hollow base of the next.
 #pragma once
 
 #include <cstdint>

@@ -109,6 +109,35 @@ TEST_CASE("joint cuts: a rig's knee 5 mm off moves the cut by one 8 mm slice at 
   for (const glm::dvec3& off : {glm::dvec3(0, 0, 5), glm::dvec3(0, 0, -5), glm::dvec3(5, 0, 0), glm::dvec3(3, 3, 3)}) CHECK(worst_share(coarse_leg(off)) < 0.065);
 }
 
+// Thigh, shank and kneecap in one label, 2 x 2 x 5 mm. The kneecap leans on the femur; its tip hangs `low` mm below the joint.
+FusedBody leg_with_kneecap(double low) {
+  const glm::dvec3 hip(50, 60, 796), knee(50, 60, 404), ankle(50, 60, 12);
+  Armature rig;
+  rig.bones = {bone_between("RightThigh", -1, hip, knee), bone_between("RightShank", 0, knee, ankle)};
+  const Dumbbell thigh{hip, knee, 13, 32, 0}, shank{knee, ankle, 12, 30, 1};
+  const Dumbbell kneecap{{50, 24, 444}, {50, 24, 404 - low}, 9, 9, 0};
+  return fused({thigh, shank, kneecap}, rig, {51, 51, 164}, {2, 2, 5});
+}
+
+TEST_CASE("joint cuts: the thin shaft beside a broad joint is not cut in its place") {
+  const glm::dvec3 hip(50, 50, 796), knee(50, 50, 404), ankle(50, 50, 12);
+  for (const double off : {-8.0, 0.0, 8.0}) {
+    INFO("the rig's knee ", off, " mm too high");
+    const glm::dvec3 rig_knee = knee + glm::dvec3(0, 0, off);
+    Armature rig;
+    rig.bones = {bone_between("Thigh", -1, hip, rig_knee), bone_between("Shank", 0, rig_knee, ankle)};
+    const Dumbbell thigh{hip, knee, 11, 32, 0}, shank{knee, ankle, 10, 30, 1};
+    CHECK(worst_share(fused({thigh, shank}, rig, {35, 35, 164}, {3, 3, 5})) < 0.05);
+  }
+}
+
+TEST_CASE("joint cuts: a kneecap that leans on the femur stays whole, also where its tip hangs below the joint") {
+  for (const double low : {-5.0, 5.0, 15.0}) {
+    INFO("tip ", low, " mm below the joint");
+    CHECK(wrong_bones(leg_with_kneecap(low)).voxels < 10);
+  }
+}
+
 TEST_CASE("joint cuts: a curled finger whose joints are closed is cut at each of them") {
   const std::vector<glm::dvec3> joints = {{20, 12, 90}, {20, 12, 50}, {20, 40, 32}, {20, 60, 50}};
   Armature rig;
