@@ -14,6 +14,7 @@
 #include "core/bones/named_bones.h"
 #include "core/bones/bone_watershed.h"
 #include "core/bones/joint_cuts.h"
+#include "core/rig/joint_names.h"
 
 namespace limber {
 
@@ -527,6 +528,20 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   return result;
 }
 
+namespace {
+// Whether one of the joints is a knee, as the rig's names tell.
+bool has_knee(const std::vector<BroadCut>& cuts, const Armature& armature) {
+  std::vector<std::string> names;
+  std::vector<int> parents;
+  for (const Bone& bone : armature.bones) names.push_back(bone.name), parents.push_back(bone.parent);
+  const auto roles = joint_roles(names, parents);
+  return std::any_of(cuts.begin(), cuts.end(), [&](const BroadCut& cut) {
+    const auto &upper = roles[cut.bone], &lower = roles[cut.other];
+    return upper && lower && upper->part == BodyPart::Thigh && lower->part == BodyPart::Shank;
+  });
+}
+}  // namespace
+
 std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable& tissues, const Armature& armature) {
   std::vector<std::string> lines;
   for (const BoneParts::Identity& identity : parts.identities) {
@@ -539,7 +554,9 @@ std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable&
     const BroadCut& broadest = *std::max_element(cuts.begin(), cuts.end(), [](const BroadCut& a, const BroadCut& b) { return a.area < b.area; });
     const std::string others = cuts.size() == 1 ? "" : " and at " + std::to_string(cuts.size() - 1) + " other joint" + (cuts.size() == 2 ? "" : "s");
     lines.push_back("bones of one label touch more broadly than they are thick between " + armature.bones[broadest.bone].name + " and " + armature.bones[broadest.other].name +
-                    others + ": where they are cut apart may be a voxel or two off; give them labels of their own where that matters");
+                    others + ": where they are cut apart may be a voxel or two off" +
+                    (has_knee(cuts, armature) ? ", and the tip of a kneecap may go with the shank" : "") +
+                    "; give them labels of their own where that matters");
   }
   return lines;
 }

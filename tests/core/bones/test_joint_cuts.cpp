@@ -259,6 +259,7 @@ TEST_CASE("joint cuts: bones that touch more broadly than they are thick are tol
   const auto lines = lines_of(coarse_leg({0, 0, 0}).body);
   REQUIRE(lines.size() == 1);
   CHECK(lines[0].find("between Thigh and Shank") != std::string::npos);
+  CHECK(lines[0].find("kneecap") != std::string::npos);
 
   const glm::dvec3 top(20, 20, 110), joint(20, 20, 60), bottom(20, 20, 10);
   Armature rig;
