@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber prepare IN -o OUT [--orient CODE] [--flip x|y|z] [--merge A=B ...] [--spacing MM] [--drop-specks N] [--crop]
-//        [--pad N] [--statistics CSV] [--tissues T] [--seams SEAMS.nrrd --rig RIG]
+//        [--pad N] [--close-skin inward|outward [--skin-label L]] [--statistics CSV] [--tissues T] [--seams SEAMS.nrrd --rig RIG]
 #include "core/volume/prepare.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -17,13 +18,14 @@
 #include "core/rig/armature_io.h"
 #include "core/seams/find_seams.h"
 #include "core/seams/seams_io.h"
+#include "core/volume/close_skin.h"
 #include "core/volume/volume_io.h"
 
 namespace limber::cmd {
 
 namespace {
 struct Options {
-  std::string in, out, tissues, statistics, orientation, flip, seams, rig;
+  std::string in, out, tissues, statistics, orientation, flip, seams, rig, close_skin, skin_label;
   std::vector<std::string> merges;
   std::optional<double> spacing;
   std::int64_t specks = 0;
@@ -32,14 +34,23 @@ struct Options {
   RunOptions run;
 };
 
-// A tissue by the value it has in files, or by its name.
-const Tissue& tissue_of(const TissueTable& tissues, const std::string& text, const std::string& merge) {
+std::optional<double> number_of(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc() && end == text.data() + text.size())
-    if (const Tissue* tissue = tissues.find_file_value(value)) return *tissue;
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+// A tissue by the value it has in files, or by its name; nullptr when there is none.
+const Tissue* find_tissue(const TissueTable& tissues, const std::string& text) {
+  if (const auto value = number_of(text))
+    if (const Tissue* tissue = tissues.find_file_value(*value)) return tissue;
   for (const Tissue& tissue : tissues.tissues)
-    if (tissue.name == text) return tissue;
+    if (tissue.name == text) return &tissue;
+  return nullptr;
+}
+
+const Tissue& tissue_of(const TissueTable& tissues, const std::string& text, const std::string& merge) {
+  if (const Tissue* tissue = find_tissue(tissues, text)) return *tissue;
   throw Error("the volume has no such label", "--merge " + merge + ", " + text, "name a value or a tissue that 'limber info' lists");
 }
 
@@ -54,6 +65,61 @@ void merge(LabelVolume& volume, TissueTable& tissues, const std::string& text) {
   if (from == target) return;
   volume = merge_labels(volume, from, target);
   std::erase_if(tissues.tissues, [&](const Tissue& tissue) { return tissue.label == from; });
+}
+
+// The label that new skin gets. A whole number that no tissue has makes a new tissue.
+std::optional<Label> skin_label_of(TissueTable& tissues, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  if (const Tissue* tissue = find_tissue(tissues, text)) {
+    if (is_bone(tissue->kind)) throw Error("bone cannot be skin", "--skin-label " + text, "name a label of skin");
+    return tissue->label;
+  }
+  const auto value = number_of(text);
+  if (!value || *value < 1 || *value > 65535 || *value != std::floor(*value))
+    throw Error("the volume has no such label", "--skin-label " + text, "name a tissue that 'limber info' lists, or a number from 1 to 65535");
+  Tissue skin;
+  for (skin.label = static_cast<Label>(*value); tissues.find(skin.label) || skin.label == 0;) ++skin.label;
+  skin.file_value = *value;
+  skin.name = "Skin";
+  skin.kind = TissueKind::Skin;
+  apply_kind_defaults(skin);
+  const auto after = std::find_if(tissues.tissues.begin(), tissues.tissues.end(), [&](const Tissue& tissue) { return tissue.label > skin.label; });
+  return tissues.tissues.insert(after, skin)->label;
+}
+
+void print_by_tissue(const std::vector<std::int64_t>& voxels, const TissueTable& tissues) {
+  const char* between = "";
+  for (const Tissue& tissue : tissues.tissues) {
+    if (voxels[tissue.label] == 0) continue;
+    std::printf("%s%s %lld", between, tissue.name.c_str(), static_cast<long long>(voxels[tissue.label]));
+    between = ", ";
+  }
+}
+
+void warn_of_cuts(const ClosedSkin& closed) {
+  constexpr std::array kSides{"lowest x", "highest x", "lowest y", "highest y", "lowest z", "highest z"};
+  for (int side = 0; side < 6; ++side)
+    if (closed.cut[side] > 0)
+      warn({"skin: the body is cut by the volume's border at the " + std::string(kSides[side]) + " (" + std::to_string(closed.cut[side]) +
+            " voxels that are not skin) and stays open there; if it ends there, put air around it with --pad 1"});
+}
+
+LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, const Options& options) {
+  const bool inward = options.close_skin == "inward";
+  const auto label = skin_label_of(tissues, options.skin_label);
+  ClosedSkin closed = close_skin(volume, tissues, inward ? SkinGrowth::Inward : SkinGrowth::Outward, label);
+  warn_of_cuts(closed);
+  std::printf(inward ? "skin: %lld voxels of flesh at the air became skin" : "skin: %lld voxels of air became skin", static_cast<long long>(closed.changed_voxels));
+  if (closed.changed_voxels > 0) {
+    std::printf(inward ? " (" : ", over voxels of ");
+    print_by_tissue(closed.covered, tissues);
+    std::printf(inward ? ")" : "");
+  }
+  std::printf("\n");
+  if (closed.bare_bone_voxels > 0) std::printf("skin: %lld voxels of bone lie at the air and stay bone; --close-skin outward covers them\n", static_cast<long long>(closed.bare_bone_voxels));
+  if (closed.is_padded) std::printf("skin: the volume was grown by one voxel on every side to hold it\n");
+  if (closed.enclosed_voxels > 0) std::printf("skin: %lld voxels of air are shut in by it\n", static_cast<long long>(closed.enclosed_voxels));
+  return std::move(closed.volume);
 }
 
 // Only what is still there, so that the file names no label it lacks.
@@ -96,6 +162,7 @@ void prepare(const Options& options) {
   if (options.specks > 0) volume = drop_specks(volume, options.specks);
   if (options.crop) volume = crop_to_tissue(volume);
   if (options.pad > 0) volume = pad(volume, options.pad);
+  if (!options.close_skin.empty()) volume = with_closed_skin(volume, tissues, options);
   keep_present(tissues, volume);
 
   progress.update("write", 0);
@@ -110,7 +177,7 @@ void add_prepare(CLI::App& app) {
   auto* command = app.add_subcommand(
       "prepare",
       "makes a label volume ready; whatever is asked is done in this order: --orient, --flip, --merge, --spacing, "
-      "--drop-specks, --crop, --pad, --seams, --statistics");
+      "--drop-specks, --crop, --pad, --close-skin, --seams, --statistics");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "label volume")->required();
   command->add_option("-o,--output", options->out, "label volume to write; its format by extension")->required();
@@ -124,6 +191,11 @@ void add_prepare(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--crop", options->crop, "take away air around the tissue");
   command->add_option("--pad", options->pad, "voxels of air to put on every side")->check(CLI::NonNegativeNumber);
+  auto* close = command->add_option("--close-skin", options->close_skin,
+                                    "gives the body a closed skin of one voxel where flesh lies at the outside air: inward makes skin of the outermost flesh, outward of the air beside it; "
+                                    "bones and air inside the body stay, and where the volume's border cuts the body it stays open")
+                    ->check(CLI::IsMember({"inward", "outward"}));
+  command->add_option("--skin-label", options->skin_label, "the value or name that new skin gets (default: the nearest tissue that is skin)")->needs(close);
   auto* seams = command->add_option("--seams", options->seams, "finds where limbs touch without being one (hand on hip, thigh on thigh) and writes the faces between them as a label volume: 1 towards x, 2 towards y, 4 towards z, summed");
   auto* rig = command->add_option("--rig", options->rig, "seams: the rig that says what the limbs are");
   seams->needs(rig);

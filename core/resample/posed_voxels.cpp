@@ -199,7 +199,7 @@ class PosedVoxels {
   }
 
   // Where a seam opens or a stretch goes deeper, flesh lies bare that was covered at rest: its outermost voxels are skin now. Bone
-  // that lay right at a seam gets skin over it.
+  // that lay right at a seam or under closed skin gets skin over it.
   //   was_air  what had no tissue before is added
   std::int64_t cover_bare_flesh(std::vector<glm::ivec3>& was_air) {
     std::vector<glm::ivec3> bare, over_bone;
@@ -418,7 +418,7 @@ class PosedVoxels {
     if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
     if (mends_ && !labels_.skin[label] && may_touch_air(map, i, v)) {
       const glm::dvec3 rest = map.rest[i];
-      if (labels_.bone[label] ? skin_->was_at_seam(rest) : skin_->was_covered(rest)) counts.under_skin.push_back({at, skin_->skin_over(rest)});
+      if (labels_.bone[label] ? skin_->was_bone_covered(rest) : skin_->was_covered(rest)) counts.under_skin.push_back({at, skin_->skin_over(rest)});
     }
     if (mends_ && labels_.skin[label] && !may_touch_air(map, i, v)) counts.inner_skin.push_back({static_cast<float>((*depth_)(map.rest[i])), at});
     write_fields(map, i, v, at);

@@ -72,10 +72,10 @@ bool SkinAtRest::is_deep(const glm::ivec3& voxel) const {
 
 bool SkinAtRest::was_covered(const glm::dvec3& rest_point) const {
   const glm::ivec3 voxel = voxel_of(rest_point);
-  if (touches_air(volume_, voxel)) return !touches_outside(voxel);
-  if (is_deep(voxel)) return true;
-  if (was_at_seam(rest_point)) return true;
-  return is_closed_ && (skin_over(rest_point) || std::none_of(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) { return is_bare(voxel + step); }));
+  const bool at_air = touches_air(volume_, voxel);
+  if (at_air ? !touches_outside(voxel) : is_deep(voxel) || was_at_seam(rest_point)) return true;
+  if (!is_closed_ || is_bare(voxel)) return false;
+  return skin_over(rest_point) || std::none_of(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) { return is_bare(voxel + step); });
 }
 
 bool SkinAtRest::was_at_seam(const glm::dvec3& rest_point) const {
@@ -83,6 +83,8 @@ bool SkinAtRest::was_at_seam(const glm::dvec3& rest_point) const {
   const glm::ivec3 voxel = voxel_of(rest_point);
   return seams && volume_.grid.contains(voxel) && seams->touches(voxel);
 }
+
+bool SkinAtRest::was_bone_covered(const glm::dvec3& rest_point) const { return was_at_seam(rest_point) || (is_closed_ && skin_over(rest_point)); }
 
 Label SkinAtRest::skin_over(const glm::dvec3& rest_point) const {
   const glm::ivec3 voxel = voxel_of(rest_point);

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/volume/outside_air.h"
+
+#include <algorithm>
+
+namespace limber {
+
+namespace {
+
+// Fills stretches of air along x, one at a time.
+class AirFlood {
+ public:
+  explicit AirFlood(const LabelVolume& volume) : volume_(volume), size_(volume.grid.size), outside_(volume.voxels.size(), 0) {}
+
+  // From every border voxel that lies on at least so many of the box's sides.
+  void start(int sides) {
+    for (int z = 0; z < size_.z; ++z)
+      for (int y = 0; y < size_.y; ++y) {
+        const int here = (y == 0 || y == size_.y - 1) + (z == 0 || z == size_.z - 1);
+        if (here >= sides)
+          for (int x = 0; x < size_.x; ++x) add({x, y, z});
+        else if (here + 1 >= sides)
+          for (const int x : {0, size_.x - 1}) add({x, y, z});
+      }
+    spread();
+  }
+
+  bool found_any() const { return found_any_; }
+  std::vector<std::uint8_t> take() { return std::move(outside_); }
+
+ private:
+  bool is_new(std::int64_t index) const { return volume_.voxels[index] == 0 && !outside_[index]; }
+
+  void add(const glm::ivec3& v) {
+    if (is_new(volume_.grid.index(v))) waiting_.push_back(v);
+  }
+
+  void spread() {
+    while (!waiting_.empty()) {
+      const glm::ivec3 v = waiting_.back();
+      waiting_.pop_back();
+      if (!is_new(volume_.grid.index(v))) continue;
+      found_any_ = true;
+      int begin = v.x, end = v.x + 1;
+      const std::int64_t row = volume_.grid.index({0, v.y, v.z});
+      while (begin > 0 && is_new(row + begin - 1)) --begin;
+      while (end < size_.x && is_new(row + end)) ++end;
+      std::fill(outside_.begin() + row + begin, outside_.begin() + row + end, std::uint8_t{1});
+      for (const auto& [y, z] : {std::pair(v.y - 1, v.z), std::pair(v.y + 1, v.z), std::pair(v.y, v.z - 1), std::pair(v.y, v.z + 1)})
+        if (y >= 0 && z >= 0 && y < size_.y && z < size_.z) add_row(begin, end, y, z);
+    }
+  }
+
+  // One voxel of each stretch of air between begin and end.
+  void add_row(int begin, int end, int y, int z) {
+    const std::int64_t row = volume_.grid.index({0, y, z});
+    for (int x = begin; x < end; ++x)
+      if (is_new(row + x) && (x == begin || !is_new(row + x - 1))) waiting_.push_back({x, y, z});
+  }
+
+  const LabelVolume& volume_;
+  const glm::ivec3 size_;
+  std::vector<std::uint8_t> outside_;
+  std::vector<glm::ivec3> waiting_;
+  bool found_any_ = false;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> outside_air(const LabelVolume& volume) {
+  AirFlood flood(volume);
+  flood.start(2);
+  if (!flood.found_any()) flood.start(1);
+  return flood.take();
+}
+
+}  // namespace limber
