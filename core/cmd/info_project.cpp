@@ -45,7 +45,7 @@ Json turned_bones(const Document& document) {
 
 bool is_stale(const Result& result, const Document& document) {
   return result.from_volume != document.volume || result.from_tissues != document.tissues || result.from_armature != document.armature ||
-         result.from_weights != document.weights || result.from_pose != document.pose;
+         result.from_weights != document.weights || result.from_pose != document.pose || result.from_seams != document.seams || result.from_bone_map != document.bone_map;
 }
 
 Json results_of(const Document& document) {
@@ -69,6 +69,8 @@ std::string describe_project(const Path& file) {
   if (document.weights) json["weights"] = {{"voxels", document.weights->size()}, {"bones", document.weights->bones().size()}};
   if (document.layers)
     for (const auto& layer : document.layers->layers) json["weights"]["layers"].push_back({{"name", layer->name}, {"opacity", layer->opacity}, {"visible", layer->visible}});
+  if (document.seams) json["seams"] = {{"faces", document.seams->size()}};
+  if (document.bone_map) json["bone_map"] = *document.bone_map;
   if (document.pose) json["posed_bones"] = turned_bones(document);
   for (const auto& clip : document.clips) {
     Json one = {{"name", clip->name}, {"keys", frames_of(clip->keys).size()}};

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber project NAME.limber [inspect] [--json]           what is in it
-// limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P | --pose-name NAME] [--joint "J M=DEG"] [--motion F.bvh [--up y|z|auto]]
+// limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P | --pose-name NAME] [--joint "J M=DEG"] [--motion F.bvh [--up y|z|auto]] [--seams S.nrrd] [--bone-map M.json]
 // limber project NAME.limber verify                        checks every byte; exit code 1 when something is wrong
 // limber project NAME.limber recover -o OUT.limber         with the edits that a crash left; of a damaged one, what is whole
-// limber project NAME.limber export PART -o OUT            volume, tissues, rig, weights, pose, motion, gltf, or a result by its name
+// limber project NAME.limber export PART -o OUT            volume, tissues, rig, weights, pose, motion, gltf, seams, bone-map, or a result by its name
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/bones/bone_map.h"
 #include "core/cmd/command.h"
 #include "core/cmd/info_project.h"
 #include "core/cmd/pose_options.h"
@@ -17,6 +18,7 @@
 #include "core/project/journal.h"
 #include "core/project/project_io.h"
 #include "core/rig/armature_io.h"
+#include "core/seams/seams_io.h"
 #include "core/skin/weights_io.h"
 
 namespace limber::cmd {
@@ -25,7 +27,7 @@ namespace {
 
 struct Options {
   std::string file, action = "inspect", part;
-  std::string tissues, rig, weights, pose, motion, output, progress, up = "y";
+  std::string tissues, rig, weights, pose, motion, seams, bone_map, output, progress, up = "y";
   PoseRequest body;  // of the pose
   bool json = false, replace = false;
 };
@@ -62,6 +64,8 @@ Document read_parts(const Options& options, Progress& progress) {
           options.file, "name it behind create");
   require(options.rig.empty() ? options.weights.empty() && options.pose.empty() && options.body.empty() : true, "weights and poses belong to a rig", options.file,
           "name it with --rig");
+  require(options.part.empty() ? options.seams.empty() && options.bone_map.empty() : true, "seams and bone maps belong to a volume", options.file, "name it behind create");
+  require(options.rig.empty() ? options.bone_map.empty() : true, "a bone map belongs to a rig", options.file, "name it with --rig");
   if (!options.part.empty()) read_body_parts(options, document, progress);
   if (!options.rig.empty()) {
     ArmatureFile rig = read_armature_file(options.rig);
@@ -76,6 +80,11 @@ Document read_parts(const Options& options, Progress& progress) {
     WeightsFile weights = read_weights(options.weights, *document.volume, TissueVoxels(*document.volume), *document.armature);
     warn(weights.warnings);
     document.weights = shared(std::move(weights.weights));
+  }
+  if (!options.seams.empty()) document.seams = shared(read_seams(options.seams, *document.volume, progress));
+  if (!options.bone_map.empty()) {
+    document.bone_map = shared(read_bone_map(options.bone_map));
+    bones_of_labels(*document.tissues, *document.armature, *document.bone_map);  // throws where it names what is not there
   }
   if (!options.motion.empty()) {
     const auto motion = shared(read_motion(options.motion, options.up));
@@ -137,7 +146,7 @@ const LabelVolume& result_named(const Document& document, const Options& options
   for (const auto& result : document.results)
     if (result->name == options.part && result->volume) return *result->volume;
   throw Error("the project has no such part or result", options.file + ", " + options.part,
-              "name volume, tissues, rig, weights, pose, motion, gltf, or a result that limber project " + options.file + " lists");
+              "name volume, tissues, rig, weights, pose, motion, gltf, seams, bone-map, or a result that limber project " + options.file + " lists");
 }
 
 void export_part(const Options& options) {
@@ -162,6 +171,10 @@ void export_part(const Options& options) {
     write_pose(there(document.pose, options), *document.armature, options.output);
   else if (options.part == "motion")
     write_bvh(there(document.shown_clip() ? document.shown_clip()->motion : nullptr, options), options.output);
+  else if (options.part == "seams")
+    write_seams(there(document.seams, options), document.volume->grid, options.output);
+  else if (options.part == "bone-map")
+    write_bone_map(there(document.bone_map, options), options.output);
   else if (options.part == "gltf")
     write_glb({there(document.volume, options), tissues, there(document.armature, options), there(document.weights, options)}, document.clips, options.output, {}, progress);
   else
@@ -184,13 +197,15 @@ void add_project(CLI::App& app) {
   command->add_option("NAME", options->file, "NAME.limber")->required();
   command->add_option("ACTION", options->action, "inspect (as without), create, verify, recover or export")
       ->check(CLI::IsMember({"inspect", "info", "create", "verify", "recover", "export"}));
-  command->add_option("PART", options->part, "of create: a label volume; of export: volume, tissues, rig, weights, pose, motion, gltf, or a result's name");
+  command->add_option("PART", options->part, "of create: a label volume; of export: volume, tissues, rig, weights, pose, motion, gltf, seams, bone-map, or a result's name");
   command->add_flag("--json", options->json, "inspect as JSON");
   command->add_option("--tissues", options->tissues, "of create: tissue table");
   command->add_option("--rig", options->rig, "of create: rig");
   command->add_option("--weights", options->weights, "of create: W.nrrd, or a folder with Bender's weights");
   add_body_pose_options(*command, options->body, command->add_option("--pose", options->pose, "of create: pose (default: at rest)"));
   add_up_option(*command, options->up, command->add_option("--motion", options->motion, "of create: BVH"));
+  command->add_option("--seams", options->seams, "of create: where tissue touches without being one, as 'limber prepare --seams' writes it");
+  command->add_option("--bone-map", options->bone_map, "of create: JSON that says which rig bone a label follows");
   command->add_option("-o,--output", options->output, "of recover and export: the file to write");
   command->add_flag("--replace", options->replace, "of create and recover: write over a file of that name");
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));

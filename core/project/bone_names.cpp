@@ -113,6 +113,11 @@ void follow_names(Document& document, const Armature& before, const Armature& af
   };
   if (document.locks) take(document.locks, WeightLocks{follow(document.locks->bones)});
   if (document.anchors) take(document.anchors, Anchors{follow(document.anchors->pins), names.follow(document.anchors->poles)});
+  if (!document.bone_map) return;
+  BoneMap map;
+  for (const auto& [label, bone] : *document.bone_map)
+    if (const auto name = names.now(bone)) map[label] = *name;
+  take(document.bone_map, std::move(map));
 }
 
 void follow_mirrored(Document& document, const Armature& before, const Armature& after, const std::vector<int>& bones) {

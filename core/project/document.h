@@ -11,6 +11,7 @@
 
 #include <glm/glm.hpp>
 
+#include "core/bones/bone_identity.h"
 #include "core/pose/anchors.h"
 #include "core/pose/clip.h"
 #include "core/pose/pose.h"
@@ -19,6 +20,7 @@
 #include "core/skin/skin_weights.h"
 #include "core/skin/weight_locks.h"
 #include "core/volume/label_volume.h"
+#include "core/volume/seams.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/volume_io.h"
 
@@ -80,6 +82,8 @@ struct Result {
   std::shared_ptr<const Pose> from_pose;
   std::shared_ptr<const SolvedMesh> solved;  // by finite elements, where anything bends; else null
   std::shared_ptr<const Overlap> overlap;    // null where it was not kept
+  std::shared_ptr<const Seams> from_seams;       // as the document's
+  std::shared_ptr<const BoneMap> from_bone_map;  // as the document's
 };
 
 // Any part may be absent (null); weights, their layers, pose and results need what they belong to.
@@ -99,6 +103,8 @@ struct Document {
   std::shared_ptr<const Anchors> anchors;
   std::shared_ptr<const WeightLocks> locks;
   std::shared_ptr<const WeightLayers> layers;  // `weights` are what comes out of them; null: the weights have no layers
+  std::shared_ptr<const Seams> seams;          // as the user left them, none where they are empty; null: those that are found by themselves
+  std::shared_ptr<const BoneMap> bone_map;     // which rig bones labels follow where the user says so; null: nowhere
 
   const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 

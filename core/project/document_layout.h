@@ -11,11 +11,11 @@
 namespace limber {
 
 // 1 had one motion and no clips, 2 no library of poses, 3 no anchors, 4 nothing above the two lowest bits of a clip's reference,
-// 5 no locks of weights, 6 no layers of weights, 7 no overlap with a result.
-constexpr std::uint32_t kDocumentLayout = 8;
+// 5 no locks of weights, 6 no layers of weights, 7 no overlap with a result, 8 neither seams nor a bone map.
+constexpr std::uint32_t kDocumentLayout = 9;
 
 // A part's first byte.
-enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors, WeightLocks, WeightLayer, WeightLayers, SolvedMesh, Overlap };
+enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors, WeightLocks, WeightLayer, WeightLayers, SolvedMesh, Overlap, Seams, BoneMap };
 
 template <class T>
 struct PartKindOf;
@@ -37,6 +37,8 @@ template <> struct PartKindOf<WeightLayer> { static constexpr PartKind kKind = P
 template <> struct PartKindOf<WeightLayers> { static constexpr PartKind kKind = PartKind::WeightLayers; static constexpr const char* kName = "layers of weights"; };
 template <> struct PartKindOf<SolvedMesh>  { static constexpr PartKind kKind = PartKind::SolvedMesh; static constexpr const char* kName = "mesh of a result"; };
 template <> struct PartKindOf<Overlap>     { static constexpr PartKind kKind = PartKind::Overlap;    static constexpr const char* kName = "overlap of a result"; };
+template <> struct PartKindOf<Seams>       { static constexpr PartKind kKind = PartKind::Seams;      static constexpr const char* kName = "seams"; };
+template <> struct PartKindOf<BoneMap>     { static constexpr PartKind kKind = PartKind::BoneMap;    static constexpr const char* kName = "bone map"; };
 // clang-format on
 
 // The reference, and above it what source and rig rest in.

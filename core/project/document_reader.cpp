@@ -9,6 +9,7 @@
 #include "core/project/bytes.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
+#include "core/project/seams_codec.h"
 
 namespace limber {
 
@@ -156,6 +157,13 @@ void get(ByteReader& in, WeightLocks& locks) {
   for (const std::string& bone : get_texts(in)) locks.bones.insert(bone);
 }
 
+void get(ByteReader& in, BoneMap& map) {
+  for (std::size_t count = in.count(8); count > 0; --count) {
+    const std::string label = in.text();
+    map[label] = in.text();
+  }
+}
+
 void get(ByteReader& in, SolvedMesh& solved) {
   const std::string mesh = in.text(), step = in.text();
   try {
@@ -296,6 +304,8 @@ class Reading {
       if (layout > 3) part(document.anchors);
       if (layout > 5) part(document.locks);
       if (layout > 6) part(document.layers);
+      if (layout > 8) part(document.seams);
+      if (layout > 8) part(document.bone_map);
     }
     in.require(next == node.nodes.size());
     in.end();
@@ -553,6 +563,8 @@ class Reading {
     result.report = in.text();
     if (!in.at_end()) part(result.solved);
     if (!in.at_end()) part(result.overlap);
+    if (!in.at_end()) part(result.from_seams);
+    if (!in.at_end()) part(result.from_bone_map);
     in.require(next == node.nodes.size());
     in.end();
     if (result.overlap)
@@ -566,6 +578,13 @@ class Reading {
     get(in, solved);
     in.end();
     return solved;
+  }
+
+  Seams read_part(const Node& node, ByteReader& in, const Seams*) {
+    if (!node.leaves.empty()) return from_leaves<Seams>(node, in);
+    Seams seams = get_seams(in, [&](std::int64_t bytes) { take_memory(bytes, "seams"); });
+    in.end();
+    return seams;
   }
 
   Clip read_part(const Node& node, ByteReader& in, const Clip*) {
@@ -603,6 +622,10 @@ class Reading {
     if (document.layers && (!document.weights || !are_of_one_body(*document.layers, *document.weights))) {
       warnings_.push_back("the layers of weights do not belong to the weights and were left out");
       document.layers = nullptr;
+    }
+    if (document.seams && (!document.volume || !fit(*document.seams, *document.volume))) {
+      warnings_.push_back("the seams do not belong to the volume and were left out");
+      document.seams = nullptr;
     }
     if (document.pose && (!document.armature || document.pose->rotation.size() != document.armature->bones.size())) {
       warnings_.push_back("the pose does not belong to the rig and was left out");

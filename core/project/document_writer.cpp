@@ -5,6 +5,7 @@
 #include "core/project/bytes.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
+#include "core/project/seams_codec.h"
 
 namespace limber {
 
@@ -87,6 +88,14 @@ void put(ByteWriter& out, const Anchors& anchors) {
 void put(ByteWriter& out, const WeightLocks& locks) {
   out.count(locks.bones.size());
   for (const std::string& bone : locks.bones) out.text(bone);
+}
+
+void put(ByteWriter& out, const BoneMap& map) {
+  out.count(map.size());
+  for (const auto& [label, bone] : map) {
+    out.text(label);
+    out.text(bone);
+  }
 }
 
 void put(ByteWriter& out, const Motion& motion) {
@@ -207,6 +216,8 @@ class DocumentWriter::Writing {
     part(document.anchors);
     part(document.locks);
     part(document.layers);
+    part(document.seams);
+    part(document.bone_map);
     root.bytes = out.take();
     const ChunkHash hash = put_chunk(to_chunk(root));
     progress_.update("save", 1);
@@ -342,8 +353,12 @@ class DocumentWriter::Writing {
     out.text(result.name);
     out.text(result.method);
     out.text(result.report);
-    if (result.solved || result.overlap) part(result.solved);  // at the end: results without one are as they always were
-    if (result.overlap) part(result.overlap);
+    // At the end, as far as the last one that is there: results without one are as they always were.
+    const bool has_sources = result.from_seams || result.from_bone_map;
+    if (result.solved || result.overlap || has_sources) part(result.solved);
+    if (result.overlap || has_sources) part(result.overlap);
+    if (has_sources) part(result.from_seams);
+    if (has_sources) part(result.from_bone_map);
   }
 
   void fill(Node&, ByteWriter& out, const Overlap& overlap) {

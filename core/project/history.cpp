@@ -73,6 +73,13 @@ std::int64_t own_bytes(const WeightLocks& locks) {
   for (const std::string& bone : locks.bones) bytes += kNode + std::int64_t{sizeof bone} + heap_bytes(bone);
   return bytes;
 }
+std::int64_t own_bytes(const Seams& seams) { return seams.heap_bytes() + 2 * kBlock; }
+std::int64_t own_bytes(const BoneMap& map) {
+  constexpr std::int64_t kNode = kBlock + 32;  // of a map
+  std::int64_t bytes = 0;
+  for (const auto& [label, bone] : map) bytes += kNode + std::int64_t{sizeof label + sizeof bone} + heap_bytes(label) + heap_bytes(bone);
+  return bytes;
+}
 std::int64_t own_bytes(const WeightLayer::Mask& mask) { return heap_bytes(mask); }
 // Without chunks and masks, which are shared.
 std::int64_t own_bytes(const WeightLayer& layer) { return heap_bytes(layer.name) + own_bytes(layer.weights) + heap_bytes(layer.mask); }
@@ -139,6 +146,8 @@ class History::Ledger {
     count(result->from_pose, step);
     count(result->solved, step);
     count(result->overlap, step);
+    count(result->from_seams, step);
+    count(result->from_bone_map, step);
   }
 
   void visit(const Document& document, int step) {
@@ -156,6 +165,8 @@ class History::Ledger {
     count(document.anchors, step);
     count(document.locks, step);
     visit(document.layers, step);
+    count(document.seams, step);
+    count(document.bone_map, step);
     bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results) + heap_bytes(document.clips) + heap_bytes(document.poses));
   }
 

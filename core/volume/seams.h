@@ -40,6 +40,7 @@ class Seams {
   bool is_near_brick(const glm::ivec3& corner) const;
 
   std::int64_t size() const { return size_; }  // faces
+  std::int64_t heap_bytes() const { return static_cast<std::int64_t>(brick_of_.capacity() * sizeof(std::int32_t) + bricks_.capacity() * sizeof(Brick)); }
   bool empty() const { return size_ == 0; }
   bool operator==(const Seams& other) const;
 

@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/project/journal.h"
 #include "core/project/project_io.h"
+#include "core/project/seams_codec.h"
 
 namespace {
 
@@ -30,6 +31,7 @@ Path file_of(const std::string& bytes) {
 void check(const Document& document) {
   if (document.volume && document.volume->grid.voxel_count() != std::ssize(document.volume->voxels)) std::abort();
   if (document.weights && (!document.volume || TissueVoxels(*document.volume).size() != document.weights->size())) std::abort();
+  if (document.seams && (!document.volume || !fit(*document.seams, *document.volume))) std::abort();
   if (document.pose && (!document.armature || document.pose->rotation.size() != document.armature->bones.size())) std::abort();
 }
 

@@ -30,6 +30,8 @@ bool equal(const Anchors& a, const Anchors& b) {
   return a.pins == b.pins && std::equal(a.poles.begin(), a.poles.end(), b.poles.begin(), b.poles.end(), same_pole);
 }
 bool equal(const WeightLocks& a, const WeightLocks& b) { return a == b; }
+bool equal(const Seams& a, const Seams& b) { return a == b; }
+bool equal(const BoneMap& a, const BoneMap& b) { return a == b; }
 bool equal(const LabelVolume& a, const LabelVolume& b) { return a.grid == b.grid && a.voxels == b.voxels; }
 bool equal(const Tissue& a, const Tissue& b) {
   return a.label == b.label && same(a.file_value, b.file_value) && a.name == b.name && a.colour == b.colour && a.kind == b.kind &&
@@ -81,7 +83,7 @@ bool equal(const Clip& a, const Clip& b) {
 bool equal(const Result& a, const Result& b) {
   return a.name == b.name && a.method == b.method && a.report == b.report && equal(a.volume, b.volume) && equal(a.from_volume, b.from_volume) &&
          equal(a.from_tissues, b.from_tissues) && equal(a.from_armature, b.from_armature) && equal(a.from_weights, b.from_weights) &&
-         equal(a.from_pose, b.from_pose) && !a.overlap == !b.overlap && (!a.overlap || *a.overlap == *b.overlap);
+         equal(a.from_pose, b.from_pose) && !a.overlap == !b.overlap && (!a.overlap || *a.overlap == *b.overlap) && equal(a.from_seams, b.from_seams) && equal(a.from_bone_map, b.from_bone_map);
 }
 
 template <class T>
@@ -167,7 +169,7 @@ Result result_of(const Document& document, std::mt19937& random) {
   LabelVolume posed = *document.volume;
   for (int i = 0; i < 20; ++i) posed.voxels[random() % posed.voxels.size()] = static_cast<Label>(below(random, 3));
   return {"Result " + std::to_string(random()), "dqs", shared(std::move(posed)), "{\"schema\": \"limber-report/1\"}",
-          document.volume, document.tissues, document.armature, document.weights, document.pose};
+          document.volume, document.tissues, document.armature, document.weights, document.pose, nullptr, nullptr, document.seams, document.bone_map};
 }
 
 }  // namespace
@@ -183,7 +185,7 @@ bool same_contents(const Document& a, const Document& b) {
     return std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(), [](const auto& x, const auto& y) { return equal(x, y); });
   };
   return a.clip == b.clip && a.frame == b.frame && all_equal(a.clips, b.clips) && all_equal(a.poses, b.poses) && equal(a.anchors, b.anchors) &&
-         equal(a.locks, b.locks) && equal(a.layers, b.layers);
+         equal(a.locks, b.locks) && equal(a.layers, b.layers) && equal(a.seams, b.seams) && equal(a.bone_map, b.bone_map);
 }
 
 Document small_document() {
@@ -204,13 +206,27 @@ Document small_document() {
   document.locks = shared(WeightLocks{{"Lower", "gone \xff"}});
   document.visibility = shared(Visibility{.looks = {{2, {.visible = false, .opacity = 0.25f}}}});
   add_layers(document, random);
+  Seams seams(document.volume->grid.size);
+  for (int y = 1; y < 9; ++y) seams.cut({12, y, 4}, 0);
+  for (int x = 3; x < 20; ++x) seams.cut({x, 7, 2}, 1), seams.cut({x, 7, 6}, 2);
+  document.seams = shared(seams);
+  document.bone_map = shared(BoneMap{{"17@left", "Lower"}, {"bone \xff not UTF-8", "Upper"}});
   document.results.push_back(shared(result_of(document, random)));
   return document;
 }
 
 Document random_edit(const Document& document, std::mt19937& random) {
   Document next = document;
-  switch (below(random, 10)) {
+  switch (below(random, 11)) {
+    case 10: {
+      Seams seams = document.seams ? *document.seams : Seams(document.volume->grid.size);
+      const glm::ivec3 lower(1 + below(random, 20), 1 + below(random, 6), 1 + below(random, 5));
+      if (seams.is_cut(lower, 1)) seams.join(lower, 1);
+      else seams.cut(lower, 1);
+      next.seams = shared(std::move(seams));
+      next.bone_map = below(random, 2) ? shared(BoneMap{{"17", below(random, 2) ? "Lower" : "Upper"}}) : nullptr;
+      break;
+    }
     case 9: {
       if (!document.layers) {
         add_layers(next, random);

@@ -5,7 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/bones/bone_map.h"
 #include "core/project/session.h"
+#include "core/seams/seams_io.h"
 #include "tests/support/documents.h"
 #include "tests/support/program.h"
 #include "tests/support/shared_data.h"
@@ -53,6 +55,41 @@ TEST_CASE("project command: what create puts in, inspect and info tell and expor
   REQUIRE(project(folder, {"export", "rig", "-o", folder / "again-rig.json"}).exit_code == 0);
   CHECK(read_file(folder / "again-rig.json") == read_file(folder / "rig.json"));
   REQUIRE(project(folder, {"export", "motion", "-o", folder / "again.bvh"}).exit_code == 0);
+}
+
+TEST_CASE("project command: seams and a bone map are kept, told and given back") {
+  const TemporaryFolder folder;
+  make_arm(folder);
+  const LabelVolume volume = read_volume(folder / "volume.nrrd").volume;
+  Seams seams(volume.grid.size);
+  for (int x = 0; x + 1 < volume.grid.size.x; ++x)
+    for (int y = 0; y < volume.grid.size.y; ++y) {
+      const glm::ivec3 v(x, y, volume.grid.size.z / 2);
+      if (volume.at(v) && volume.at(v + glm::ivec3(1, 0, 0)) && (x + y) % 3 == 0) seams.cut(v, 0);
+    }
+  REQUIRE(seams.size() > 3);
+  write_seams(seams, volume.grid, folder / "seams.nrrd");
+  const auto bones = nlohmann::json::parse(read_file(folder / "rig.json"))["bones"];
+  const TissueTable tissues = merge_tissue_tables(read_volume(folder / "volume.nrrd").tissues, std::make_unique<TissueTable>(read_tissue_table(folder / "tissues.json")).get());
+  const auto bone = std::find_if(tissues.tissues.begin(), tissues.tissues.end(), [](const Tissue& tissue) { return is_bone(tissue.kind); });
+  REQUIRE(bone != tissues.tissues.end());
+  write_bone_map({{map_key(*bone), bones[0]["name"].get<std::string>()}}, folder / "bones.json");
+  const auto create = [&](const std::string& map) {
+    return run_limber({"project", folder / "two.limber", "create", folder / "volume.nrrd", "--tissues", folder / "tissues.json", "--rig", folder / "rig.json", "--seams", folder / "seams.nrrd", "--bone-map", folder / map, "--replace"});
+  };
+  const auto made = create("bones.json");
+  INFO(made.err);
+  REQUIRE(made.exit_code == 0);
+  const auto json = nlohmann::json::parse(run_limber({"project", folder / "two.limber", "--json"}).out);
+  CHECK(json["seams"]["faces"] == seams.size());
+  CHECK(json["bone_map"].size() == 1);
+  REQUIRE(run_limber({"project", folder / "two.limber", "export", "seams", "-o", folder / "again.nrrd"}).exit_code == 0);
+  CHECK(read_seams(folder / "again.nrrd", volume) == seams);
+  REQUIRE(run_limber({"project", folder / "two.limber", "export", "bone-map", "-o", folder / "again.json"}).exit_code == 0);
+  CHECK(read_bone_map(folder / "again.json") == read_bone_map(folder / "bones.json"));
+  write_bone_map({{map_key(*bone), "no such bone"}}, folder / "wrong.json");
+  CHECK(create("wrong.json").exit_code == 1);
+  CHECK(run_limber({"project", folder / "arm.limber", "export", "seams", "-o", folder / "none.nrrd"}).exit_code == 1);
 }
 
 TEST_CASE("project command: recover writes the edits that a crash left, or what is whole of a damaged project") {

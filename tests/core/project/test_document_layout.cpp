@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Projects of earlier versions.
+#include <random>
 #include <unordered_map>
 
 #include <doctest/doctest.h>
 
+#include "core/base/error.h"
 #include "core/project/bytes.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
+#include "core/project/seams_codec.h"
 #include "tests/support/documents.h"
 
 namespace limber::test {
@@ -31,6 +34,22 @@ class Chunks final : public ChunkSink, public ChunkSource {
  private:
   std::unordered_map<ChunkHash, std::string, ChunkHash::Hasher> chunks_;
 };
+
+}  // namespace
+
+namespace {
+
+// Of the document and of its results.
+void drop_seams_and_bone_map(Document& document) {
+  document.seams = nullptr;
+  document.bone_map = nullptr;
+  for (auto& result : document.results) {
+    Result without = *result;
+    without.from_seams = nullptr;
+    without.from_bone_map = nullptr;
+    result = std::make_shared<const Result>(without);
+  }
+}
 
 }  // namespace
 
@@ -68,11 +87,12 @@ TEST_CASE("project: a document of the second layout opens, with an empty library
   now.anchors = nullptr;
   now.locks = nullptr;
   now.layers = nullptr;
+  drop_seams_and_bone_map(now);
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  // The same, without the count of poses and the flags of anchors, locks and layers at its end.
-  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 3);
+  // The same, without the count of poses and the flags of anchors, locks, layers, seams and bone map at its end.
+  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 5);
   node.bytes[0] = 2;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -84,10 +104,11 @@ TEST_CASE("project: a document of the third layout opens, without pins and poles
   now.anchors = nullptr;
   now.locks = nullptr;
   now.layers = nullptr;
+  drop_seams_and_bone_map(now);
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  node.bytes.resize(node.bytes.size() - 3);
+  node.bytes.resize(node.bytes.size() - 5);
   node.bytes[0] = 3;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -98,10 +119,11 @@ TEST_CASE("project: a document of the fifth layout opens, without locks of weigh
   Document now = small_document();
   now.locks = nullptr;
   now.layers = nullptr;
+  drop_seams_and_bone_map(now);
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  node.bytes.resize(node.bytes.size() - 2);
+  node.bytes.resize(node.bytes.size() - 4);
   node.bytes[0] = 5;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -111,10 +133,11 @@ TEST_CASE("project: a document of the fifth layout opens, without locks of weigh
 TEST_CASE("project: a document of the sixth layout opens, without layers of weights") {
   Document now = small_document();
   now.layers = nullptr;
+  drop_seams_and_bone_map(now);
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  node.bytes.pop_back();
+  node.bytes.resize(node.bytes.size() - 3);
   node.bytes[0] = 6;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -132,6 +155,65 @@ TEST_CASE("project: layers that belong to other weights are left out and said so
   CHECK(!back.layers);
   CHECK(*back.weights == *now.weights);
   CHECK(warnings == std::vector<std::string>{"the layers of weights do not belong to the weights and were left out"});
+}
+
+TEST_CASE("project: a document of the eighth layout opens, without seams and bone map") {
+  Document now = small_document();
+  drop_seams_and_bone_map(now);
+  Chunks chunks;
+  DocumentWriter writer;
+  Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
+  node.bytes.resize(node.bytes.size() - 2);
+  node.bytes[0] = 8;
+  std::vector<std::string> warnings;
+  CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
+  CHECK(warnings.empty());
+}
+
+TEST_CASE("project: seams of another volume, or beside air, are left out and said so") {
+  for (const bool other_grid : {false, true}) {
+    Document now = small_document();
+    REQUIRE(now.seams);
+    Seams wrong(other_grid ? now.volume->grid.size + 1 : now.volume->grid.size);
+    wrong.cut({0, 4, 4}, 0);  // air is there
+    now.seams = std::make_shared<const Seams>(wrong);
+    Chunks chunks;
+    DocumentWriter writer;
+    std::vector<std::string> warnings;
+    const Document back = read_document(writer.write(now, chunks, Packing::Quick), chunks, "new.limber", warnings);
+    CHECK(!back.seams);
+    CHECK(*back.bone_map == *now.bone_map);
+    CHECK(warnings == std::vector<std::string>{"the seams do not belong to the volume and were left out"});
+  }
+}
+
+TEST_CASE("project: seams that are damaged are refused, whatever is wrong with them") {
+  const auto read = [](const std::string& bytes) {
+    ByteReader in(bytes, [] { throw Error("damaged", "here", ""); });
+    const Seams seams = get_seams(in, [](std::int64_t needed) {
+      if (needed > 1 << 20) throw Error("too large", "here", "");
+    });
+    in.end();
+    return seams;
+  };
+  const Seams seams = *small_document().seams;
+  ByteWriter out;
+  put(out, seams);
+  const std::string whole = out.take();
+  CHECK(read(whole) == seams);
+  std::mt19937 random(3);
+  for (std::size_t cut = 0; cut < whole.size(); ++cut) CHECK_THROWS_AS(read(whole.substr(0, cut)), Error);
+  for (int i = 0; i < 3000; ++i) {
+    std::string bytes = whole;
+    for (int changes = 1 + static_cast<int>(random() % 3); changes > 0; --changes) bytes[random() % bytes.size()] = static_cast<char>(random());
+    try {
+      const Seams changed = read(bytes);
+      ByteWriter again;
+      put(again, changed);
+      CHECK(again.take() == bytes);
+    } catch (const Error&) {
+    }
+  }
 }
 
 }  // namespace limber::test

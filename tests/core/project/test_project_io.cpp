@@ -210,7 +210,7 @@ TEST_CASE("project: a volume that would not fit into memory is refused before it
   CHECK(message_of([&] { read_project(folder / "a.limber", no_progress(), limits); }).find("MB of memory") != std::string::npos);
 }
 
-TEST_CASE("project: weights and a pose that fit no volume or rig are left out with a word, not the whole project") {
+TEST_CASE("project: weights, seams and a pose that fit no volume or rig are left out with a word, not the whole project") {
   const TemporaryFolder folder;
   DocumentWriter writer;
   Project project = small_project();
@@ -218,8 +218,9 @@ TEST_CASE("project: weights and a pose that fit no volume or rig are left out wi
   project.document.pose = std::make_shared<const Pose>();
   create_project(project, folder / "a.limber", writer);
   const Project back = read_project(folder / "a.limber");
-  CHECK(back.warnings.size() == 2);
+  CHECK(back.warnings.size() == 3);
   CHECK(back.document.weights == nullptr);
+  CHECK(back.document.seams == nullptr);
   CHECK(back.document.pose == nullptr);
   CHECK(back.document.armature != nullptr);
 }
