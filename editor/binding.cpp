@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "editor/body_seams.h"
 #include "editor/binding.h"
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include "core/skin/geodesic.h"
 #include "core/skin/recomputed.h"
 #include "core/skin/rigid.h"
+#include "editor/body_seams.h"
 #include "editor/form.h"
 #include "editor/layers.h"
 #include "editor/painting.h"
@@ -72,8 +72,8 @@ TissueRegion region_of(const Part& part, const LabelVolume& volume, const Tissue
 
 SkinWeights computed(const Document& from, TissueVoxels tissue, const Computation& computation, Progress& progress, WeightsReport& report) {
   const LabelVolume& volume = *from.volume;
-  const BoneParts parts = split_bones(volume, tissue, *from.tissues, *from.armature, progress);
-  tissue.set_seams(body_seams().of(from.volume, from.tissues, from.armature, progress));
+  const BoneParts parts = split_bones(volume, tissue, *from.tissues, *from.armature, progress, usable_bone_map(seam_source(from)));
+  tissue.set_seams(body_seams().of(seam_source(from), progress));
   switch (computation.method) {
     case BindingMethod::Rigid: return bind_rigid(volume, tissue, *from.armature, parts, progress, &report);
     case BindingMethod::Geodesic: return bind_geodesic(volume, tissue, *from.armature, parts, {.stiffness = computation.stiffness}, progress, &report);

@@ -16,6 +16,7 @@
 #include "editor/handling.h"
 #include "editor/live_pose.h"
 #include "editor/overlap.h"
+#include "editor/seam_view.h"
 #include "editor/panels/panels.h"
 #include "editor/project.h"
 #include "editor/sitting.h"
@@ -105,7 +106,7 @@ void Dialog::escape(Editor& editor) { editor.close_dialog(); }
 Editor::Editor(Host& host, const Preferences& preferences)
     : host(host), preferences(preferences), keymap(read_keymap(asset("keymap.json"))), operators(gather_operators()),
       jobs(kJobsAtOnce, [&host] { host.wake(); }), arrangements(preferences.arrangements),
-      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), fem(std::make_unique<FemView>()), difference(std::make_unique<DifferenceView>()), overlap(std::make_unique<OverlapView>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
+      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), fem(std::make_unique<FemView>()), difference(std::make_unique<DifferenceView>()), overlap(std::make_unique<OverlapView>()), seams(std::make_unique<SeamView>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
   IMGUI_CHECKVERSION();
   imgui = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();

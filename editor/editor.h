@@ -44,6 +44,7 @@ struct SkinDisplay;
 struct FemView;
 struct DifferenceView;
 struct OverlapView;
+struct SeamView;
 
 // What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
 struct Drag {
@@ -176,6 +177,7 @@ struct Editor {
   std::unique_ptr<FemView> fem;  // of fem_view.h; never null
   std::unique_ptr<DifferenceView> difference;  // of difference.h; never null
   std::unique_ptr<OverlapView> overlap;  // of overlap.h; never null
+  std::unique_ptr<SeamView> seams;       // of seam_view.h; never null
   struct {
     std::string result;  // whose name is a text field now; "" for none
     std::string text;

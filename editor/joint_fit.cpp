@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/rig/edit_armature.h"
+#include "editor/body_seams.h"
 #include "editor/handling.h"
 #include "editor/icons.h"
 #include "editor/prepare.h"
@@ -60,7 +61,7 @@ void start_joint_fit(Editor& editor) {
   const int id = start_task(editor, "Fit joint axis of " + from.armature->bones[bone].name, [=](Progress& progress) -> Finish {
     ProposedJoint proposed{.volume = from.volume, .from = from.armature, .fitted = nullptr, .bone = from.armature->bones[bone].name, .fit = {}, .tissue = nullptr, .colours = {}};
     proposed.tissue = std::make_shared<const TissueVoxels>(*from.volume);
-    const BoneParts parts = split_bones(*from.volume, *proposed.tissue, *from.tissues, *from.armature, progress);
+    const BoneParts parts = split_bones(*from.volume, *proposed.tissue, *from.tissues, *from.armature, progress, usable_bone_map(seam_source(from)));
     proposed.fit = fit_joint(*from.volume, *proposed.tissue, parts, *from.armature, bone, settings, progress);
     proposed.fitted = std::make_shared<const Armature>(both_sides ? with_mirrored_changes(*from.armature, proposed.fit.armature) : proposed.fit.armature);
     proposed.colours = {coloured(*from.volume, *proposed.tissue, *from.tissues, proposed.fit.colliding_before), coloured(*from.volume, *proposed.tissue, *from.tissues, proposed.fit.colliding_after)};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/bones/bone_identity.h"
 #include "core/deform/skinning.h"
 #include "core/pose/pose.h"
 #include "core/resample/resample.h"
@@ -26,6 +27,8 @@ struct DenseWish {
   std::shared_ptr<const SkinWeights> weights;
   Pose pose;
   Blend blend = Blend::DualQuaternion;
+  std::shared_ptr<const Seams> seams = nullptr;       // as the document keeps them; null: those that are found
+  std::shared_ptr<const BoneMap> bone_map = nullptr;  // of the document
 
   bool operator==(const DenseWish&) const = default;
 };

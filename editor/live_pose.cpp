@@ -46,7 +46,7 @@ ReadyBody make_ready(const PosedBody& body, int divisor) {
   bool fits = weights.chunk_count() == std::ssize(tissue.bricks());
   for (std::int64_t brick = 0; fits && brick < weights.chunk_count(); ++brick) fits = std::ssize(weights.chunk(brick)) == tissue.bricks()[brick].count();
   if (!fits) throw Error("the weights belong to another volume", "while the volume follows the pose", "compute them again");
-  tissue.set_seams(body_seams().of(body.volume, body.tissues, body.armature));
+  tissue.set_seams(body_seams().of({body.volume, body.tissues, body.armature, body.seams, body.bone_map}));
   return {body, std::make_unique<LivePreview>(body.volume, *body.tissues, tissue, weights, preview_step(tissue) / divisor)};
 }
 
@@ -165,7 +165,7 @@ std::shared_ptr<const SkinnedSurface> LivePose::surface_of(Editor& editor, const
 // Tissue where the mesh of a solve carries it.
 void LivePose::follow(const Solve& solve, double now) {
   const SolveFeed::Seen seen = solve.feed->seen();
-  PoseWish wish{{solve.from.volume, solve.from.tissues, solve.from.weights, nullptr}, seen.motions, Blend::Linear, nullptr, seen.mesh};
+  PoseWish wish{{solve.from.volume, solve.from.tissues, solve.from.weights, nullptr, nullptr, nullptr}, seen.motions, Blend::Linear, nullptr, seen.mesh};
   if (!(wish == wish_)) {
     wish_ = std::move(wish);
     since_ = now;
@@ -191,7 +191,7 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
     trouble_ = "No weights yet";
     return {};
   }
-  PoseWish wish{{document.volume, document.tissues, document.weights, document.armature}, {}, preview_blend(editor), nullptr};
+  PoseWish wish{{document.volume, document.tissues, document.weights, document.armature, document.seams, document.bone_map}, {}, preview_blend(editor), nullptr};
   // No weights are seen on a surface.
   if (!painting) wish.surface = surface_of(editor, wish.body);
   const Pose pose = shown_pose(editor);
@@ -216,7 +216,7 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
   else if (editor.now < since_ + kRest) editor.wake_at(since_ + kRest);
   else if (shown_) thorough_.ask(wish_);
   if (painting) return {};
-  return DenseWish{document.volume, document.tissues, document.armature, document.weights, pose, wish_.blend};
+  return DenseWish{document.volume, document.tissues, document.armature, document.weights, pose, wish_.blend, document.seams, document.bone_map};
 }
 
 }  // namespace limber::editor

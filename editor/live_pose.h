@@ -21,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/bones/bone_identity.h"
 #include "core/deform/preview_map.h"
 #include "core/deform/skinned_surface.h"
 #include "editor/live_metrics.h"
@@ -36,6 +37,8 @@ struct PosedBody {
   std::shared_ptr<const TissueTable> tissues;
   std::shared_ptr<const SkinWeights> weights;
   std::shared_ptr<const Armature> armature;  // that says which limbs touch without being one; null: none
+  std::shared_ptr<const Seams> seams;        // as the document keeps them; null: those that are found
+  std::shared_ptr<const BoneMap> bone_map;   // of the document
 
   bool operator==(const PosedBody&) const = default;
 };

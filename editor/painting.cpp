@@ -13,6 +13,7 @@
 #include "editor/handling.h"
 #include "editor/layers.h"
 #include "editor/project.h"
+#include "editor/seam_view.h"
 #include "editor/skin_display.h"
 
 namespace limber::editor {
@@ -321,7 +322,8 @@ void follow_brush(Editor& editor) {
   if (!painting.running) {
     painting.place.reset();
     const ViewPlace* view = hovered_view(editor);
-    if (editor.workspace != Workspace::Skin || !view || editor.drag || editor.dialog || !why_not_paint(editor).empty()) return;
+    const bool works = editor.seams->brush ? why_not_cut(editor).empty() : why_not_paint(editor).empty();
+    if (editor.workspace != Workspace::Skin || !view || (editor.drag && !editor.seams->running) || editor.dialog || !works) return;
     painting.place = brush_place(editor, *view, editor.input.pointer);
   }
   if (!painting.place) return;
@@ -362,7 +364,7 @@ void draw_brush(Editor& editor, const ViewPlace& view) {
   ring(place.seen, 1);
   painter.dot(place.seen, 0xFFFFFFFF, with_alpha(0xFF000000, 0.55f), 2.5f);
   if (view.id == ViewId::Body) painter.line(place.seen, place.seen + place.normal * (22.0 * editor.look.scale * seen.millimetres_per_pixel(place.seen)), with_alpha(0xFFFFFFFF, 0.8f), 1.5f);
-  if (editor.handling->x_mirror && !editor.views->scene.pose) {
+  if (editor.handling->x_mirror && !editor.views->scene.pose && !editor.seams->brush) {
     const glm::dvec3 other = mirrored(*editor.document().armature, place.seen);
     if (seen.shows(other)) ring(other, 0.5f);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/project/seams_codec.h"
 #include "core/volume/prepare.h"
 
 namespace limber::editor {
@@ -65,6 +66,10 @@ Document with_volume(const Document& now, std::shared_ptr<const LabelVolume> vol
     next.visibility = std::make_shared<const Visibility>(std::move(shown));
   }
   next.volume = std::move(volume);
+  if (next.seams && !fit(*next.seams, *next.volume)) {
+    next.seams.reset();
+    note += note.empty() ? "The seams belonged to the old voxels and are gone" : "; the seams as well";
+  }
   return next;
 }
 
@@ -93,7 +98,7 @@ void start_preparation(Editor& editor, Preparation preparation) {
   editor.step_of_job[id] = StepOfWork::Prepare;
   editor.after_job[id] = [label, note](Editor& e, const JobStatus& job) {
     if (job.state != JobState::Done) return;
-    const bool lost = note->ends_with("gone");
+    const bool lost = note->ends_with("gone") || note->ends_with("as well");
     lost ? e.messages.warn(label, *note) : e.messages.ok(label, *note);
   };
   editor.touch();

@@ -4,13 +4,16 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/bones/bone_map.h"
 #include "core/pose/pose_io.h"
 #include "core/project/worker.h"
 #include "core/resample/fem_steps.h"
 #include "core/resample/pose_path.h"
 #include "core/rig/armature_io.h"
+#include "core/seams/seams_io.h"
 #include "core/skin/weights_io.h"
 #include "core/volume/volume_io.h"
+#include "editor/body_seams.h"
 #include "editor/fem_view.h"
 #include "editor/results.h"
 #include "editor/scratch_folder.h"
@@ -44,8 +47,13 @@ void write_inputs(const Request& request, const ScratchFolder& folder, Progress&
   write_armature(*from.armature, folder / "rig.json");
   write_pose(*from.pose, *from.armature, folder / "pose.json");
   write_weights(*from.weights, *from.volume, TissueVoxels(*from.volume), folder / "weights.nrrd");
+  if (from.seams) write_seams(*from.seams, from.volume->grid, folder / "seams.nrrd");
+  const BoneMap bone_map = usable_bone_map(seam_source(from));
+  if (!bone_map.empty()) write_bone_map(bone_map, folder / "bones.json");
   nlohmann::ordered_json job{{"command", "resample"}, {"volume", "volume.nrrd"}, {"rig", "rig.json"},     {"tissues", "tissues.json"},  {"weights", "weights.nrrd"},
                              {"pose", "pose.json"},   {"method", request.method}, {"output", "posed.nrrd"}, {"report", "report.json"}, {"overlap", "overlap.nrrd"}};
+  if (from.seams) job["seams"] = "seams.nrrd";
+  if (!bone_map.empty()) job["bone-map"] = "bones.json";
   if (request.spacing > 0) job["spacing"] = request.spacing;
   if (request.bones_apart) job["glide"] = "joint";
   if (request.mass_exact) job["mass-exact"] = true;
@@ -126,6 +134,8 @@ Edit resample_in_worker(Request& request, std::shared_ptr<std::string>& name, Pr
   result->from_armature = request.from.armature;
   result->from_weights = request.from.weights;
   result->from_pose = request.from.pose;
+  result->from_seams = request.from.seams;
+  result->from_bone_map = request.from.bone_map;
   if (request.feed) result->solved = read_solved(folder / kSteps);
   const std::string wanted = name_of_pose(*request.from.armature, *request.from.pose) + ", " + method_name(result->method) + (request.mass_exact ? ", mass-exact" : "");
   return [result, wanted, name](const Document& now) {

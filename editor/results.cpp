@@ -179,6 +179,8 @@ std::string stale_reason(const Document& document, const Result& result) {
   if (!same_tissues(result.from_tissues, document.tissues, result.method.starts_with("fem"))) return "tissues changed";
   if (!same(result.from_armature, document.armature)) return "rig changed";
   if (!same(result.from_weights, document.weights)) return "weights changed";
+  if (!same(result.from_seams, document.seams)) return "seams changed";
+  if (!same(result.from_bone_map, document.bone_map)) return "bone map changed";
   return "";
 }
 

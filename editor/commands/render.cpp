@@ -26,6 +26,7 @@
 #include "core/rig/armature_io.h"
 #include "core/bones/bone_parts.h"
 #include "core/seams/find_seams.h"
+#include "editor/body_seams.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
 #include "editor/commands/command.h"
@@ -136,6 +137,7 @@ Document read_document(const Options& options, Progress& progress) {
 }
 
 std::shared_ptr<const Seams> seams_of(const Document& document, const TissueVoxels& tissue, const BoneParts& parts, Progress& progress) {
+  if (document.seams) return document.seams;
   return std::make_shared<const Seams>(find_seams(*document.volume, tissue, *document.tissues, *document.armature, parts, progress));
 }
 
@@ -143,7 +145,7 @@ SkinWeights weights_of(const Options& options, const Document& document, Progres
   if (document.weights) return *document.weights;
   TissueVoxels tissue(*document.volume);
   if (options.weights.empty()) {
-    const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress);
+    const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress, usable_bone_map(seam_source(document)));
     tissue.set_seams(seams_of(document, tissue, parts, progress));
     return diffuse_heat(*document.volume, tissue, *document.tissues, *document.armature, parts, {}, progress);
   }
@@ -199,7 +201,7 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
     result.tissue = box_of_posed(document.volume->grid, document.volume->grid, tissue, weights, scene.posed_from_rest, blend);
     return result;
   }
-  const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress);
+  const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress, usable_bone_map(seam_source(document)));
   Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose, method, {.seams = seams_of(document, tissue, parts, progress)}, progress);
   scene.volume = std::make_shared<const LabelVolume>(std::move(posed.volume));
   result.tissue = box_of_posed(document.volume->grid, scene.volume->grid, tissue, weights, scene.posed_from_rest, blend);

@@ -47,6 +47,7 @@ std::vector<Operator> skin_display_operators();
 std::vector<Operator> layer_operators();
 std::vector<Operator> test_pose_operators();
 std::vector<Operator> weight_problem_operators();
+std::vector<Operator> seam_operators();
 std::vector<Operator> rig_operators();
 std::vector<Operator> pose_operators();
 std::vector<Operator> motion_operators();

@@ -6,6 +6,7 @@
 #include "editor/icons.h"
 #include "editor/layers.h"
 #include "editor/painting.h"
+#include "editor/seam_view.h"
 #include "editor/skin_display.h"
 #include "editor/tools/brush_tools.h"
 #include "editor/tools/transform_tool.h"
@@ -17,6 +18,10 @@ namespace {
 constexpr double kGrowth = 1.15, kStep = 0.05;  // of the radius; of the strength
 
 std::string needs_paint_below(const Editor& editor) {
+  if (editor.seams->brush) {
+    const std::string why = why_not_cut(editor);
+    return !why.empty() || editor.views->hover.view ? why : "Put the pointer on the body";
+  }
   for (const auto& why_not : {why_not_paint, why_brush_reaches_nothing})
     if (std::string why = why_not(editor); !why.empty()) return why;
   return editor.views->hover.view ? "" : "Put the pointer on the body";
@@ -28,7 +33,7 @@ void begin_number(Editor& editor, BrushNumber which) {
 }
 
 Operator brush(const char* id, const char* icon, BrushKind kind, const char* sentence) {
-  return {id, name_of(kind), icon, "Brush", sentence, [kind](Editor& e) { e.skin->painting->kind = kind; }, nullptr, [kind](const Editor& e) { return e.skin->painting->kind == kind; }};
+  return {id, name_of(kind), icon, "Brush", sentence, [kind](Editor& e) { e.skin->painting->kind = kind, e.seams->brush = false; }, nullptr, [kind](const Editor& e) { return e.skin->painting->kind == kind && !e.seams->brush; }};
 }
 
 // One of several settings.
@@ -78,10 +83,10 @@ void sample(Editor& editor) {
 
 std::vector<Operator> paint_operators() {
   return {
-      {"skin.paint", "Paint", icon::kSkin, "Brush", "Paints the active bone's weight with the brush, until the button is let go.", [](Editor& e) { begin_stroke(e, e.skin->painting->kind); }, needs_paint_below},
+      {"skin.paint", "Paint", icon::kSkin, "Brush", "Paints the active bone's weight with the brush, until the button is let go.", [](Editor& e) { e.seams->brush ? begin_seam_stroke(e, SeamStroke::Cut) : begin_stroke(e, e.skin->painting->kind); }, needs_paint_below},
       {"skin.paint_subtract", "Paint less", "", "Brush", "Takes weight away with the brush, or adds where the brush takes away.",
-       [](Editor& e) { begin_stroke(e, e.skin->painting->kind == BrushKind::Subtract ? BrushKind::Add : BrushKind::Subtract); }, needs_paint_below},
-      {"skin.paint_smooth", "Paint smooth", "", "Brush", "Smooths weights with the brush.", [](Editor& e) { begin_stroke(e, BrushKind::Smooth); }, needs_paint_below},
+       [](Editor& e) { e.seams->brush ? begin_seam_stroke(e, SeamStroke::Join) : begin_stroke(e, e.skin->painting->kind == BrushKind::Subtract ? BrushKind::Add : BrushKind::Subtract); }, needs_paint_below},
+      {"skin.paint_smooth", "Paint smooth", "", "Brush", "Smooths weights with the brush.", [](Editor& e) { e.seams->brush ? begin_seam_stroke(e, SeamStroke::Join) : begin_stroke(e, BrushKind::Smooth); }, needs_paint_below},
       brush("skin.brush_add", icon::kBrushAdd, BrushKind::Add, "Adds to the active bone's weight."),
       brush("skin.brush_subtract", icon::kBrushSubtract, BrushKind::Subtract, "Takes from the active bone's weight."),
       brush("skin.brush_set", icon::kBrushSet, BrushKind::Set, "Sets the active bone's weight to the brush's value."),
@@ -92,7 +97,7 @@ std::vector<Operator> paint_operators() {
       brush("skin.brush_smear", icon::kBrushSmear, BrushKind::Smear, "Drags weights along."),
       brush("skin.brush_capsule", icon::kBrushCapsule, BrushKind::JointCapsule, "Blends the active bone with its parent over so many mm about their joint."),
       {"skin.brush_pie", "Brushes", icon::kSkin, "Brush", "Lists the brushes at the pointer.", [](Editor& e) { e.open_popup = "Brushes"; }},
-      {"skin.radius", "Radius", "", "Brush", "Sets the brush's radius with the pointer.", [](Editor& e) { begin_number(e, BrushNumber::Radius); }, why_not_paint},
+      {"skin.radius", "Radius", "", "Brush", "Sets the brush's radius with the pointer.", [](Editor& e) { begin_number(e, BrushNumber::Radius); }, [](const Editor& e) { return e.seams->brush ? why_not_cut(e) : why_not_paint(e); }},
       {"skin.strength", "Strength", "", "Brush", "Sets the brush's strength with the pointer.", [](Editor& e) { begin_number(e, BrushNumber::Strength); }, why_not_paint},
       {"skin.value", "Value", "", "Brush", "Sets the brush's value with the pointer.", [](Editor& e) { begin_number(e, BrushNumber::Value); }, why_not_paint},
       {"skin.radius_down", "Smaller", "", "Brush", "Makes the brush smaller.", [](Editor& e) { scale_radius(e, 1 / kGrowth); }},

@@ -5,6 +5,7 @@
 
 #include "editor/fields.h"
 #include "editor/painting.h"
+#include "editor/seam_view.h"
 #include "editor/panels/column.h"
 #include "editor/panels/panels.h"
 #include "editor/skin_display.h"
@@ -83,7 +84,7 @@ void draw_test_pose(Editor& editor, Column& column) {
 }  // namespace
 
 void draw_brush_section(Editor& editor, Column& column) {
-  if (!column.begin_section("Brush", name_of(editor.skin->painting->kind))) return column.end_section();
+  if (!column.begin_section("Brush", editor.seams->brush ? "Seam" : name_of(editor.skin->painting->kind))) return column.end_section();
   column.space(6);
   Painting& painting = *editor.skin->painting;
   bool committed = false;

@@ -46,6 +46,7 @@ void draw_sidebar(Editor& editor) {
       draw_brush_section(editor, column);
       draw_weight_problems(editor, column);
     }
+    if (editor.workspace == Workspace::Skin) draw_seam_section(editor, column);
     if (editor.workspace == Workspace::Pose) {
       draw_pose_library(editor, column);
       draw_posed_bone(editor, column);

@@ -12,6 +12,7 @@
 #include "editor/live_pose.h"
 #include "editor/panels/change.h"
 #include "editor/painting.h"
+#include "editor/seam_view.h"
 #include "editor/panels/panels.h"
 #include "editor/skin_display.h"
 #include "editor/tissues.h"
@@ -51,7 +52,9 @@ std::vector<KeyHint> hints(const Editor& editor) {
   if (!(editor.input.modifiers() == Modifiers{}) && !editor.dialog) return held_hints(editor);
   std::vector<std::pair<const char*, const char*>> operators;
   const ViewPlace* view = hovered_view(editor);
-  if (view && editor.workspace == Workspace::Skin && why_not_paint(editor).empty())
+  if (view && editor.workspace == Workspace::Skin && editor.seams->brush)
+    operators = {{"skin.paint", "Cut a seam"}, {"skin.paint_subtract", "Erase"}, {"skin.radius", "Radius"}, {"edit.undo", "Undo"}, {"skin.brush_pie", "Brushes"}};
+  else if (view && editor.workspace == Workspace::Skin && why_not_paint(editor).empty())
     operators = {{"skin.paint", name_of(editor.skin->painting->kind)}, {"skin.paint_subtract", "Take away"}, {"skin.paint_smooth", "Smooth"}, {"skin.radius", "Radius"},
                  painted_region(editor) ? std::pair{"skin.region_clear", "Clear region"} : std::pair{"skin.strength", "Strength"}, {"skin.pick_bone", "Pick bone"}, {"skin.flood", "Flood"}, {"skin.display_pie", "Display"}};
   else if (view && view->id != ViewId::Body)

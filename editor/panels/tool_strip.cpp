@@ -15,7 +15,7 @@ void draw_tool_strip(Editor& editor) {
   std::vector<const char*> tools = {"tool.select", "tool.cross_hair", "-", "view.clip_box", "view.clip_plane"};
   if (editor.workspace == Workspace::Pose) tools = {"tool.select", "tool.cross_hair", "-", "tool.move", "tool.rotate", "tool.reach", "-", "pose.breakdown", "-", "view.clip_box", "view.clip_plane"};
   if (editor.workspace == Workspace::Skin)
-    tools = {"skin.brush_add", "skin.brush_subtract", "skin.brush_set", "skin.brush_multiply", "-", "skin.brush_smooth", "skin.brush_sharpen", "skin.brush_average", "skin.brush_smear", "skin.brush_capsule", "-", "skin.gradient", "skin.region_box", "skin.pick_bone", "-", "view.clip_box", "view.clip_plane"};
+    tools = {"skin.brush_add", "skin.brush_subtract", "skin.brush_set", "skin.brush_multiply", "-", "skin.brush_smooth", "skin.brush_sharpen", "skin.brush_average", "skin.brush_smear", "skin.brush_capsule", "-", "skin.gradient", "skin.region_box", "skin.seam_brush", "skin.pick_bone", "-", "view.clip_box", "view.clip_plane"};
   if (editor.workspace == Workspace::Rig)
     tools = {"tool.select", "tool.cross_hair", "-", "tool.move", "tool.rotate", "tool.scale", "-", "rig.add", "tool.extrude", "-", "view.clip_box", "view.clip_plane"};
   for (const char* id : tools) {

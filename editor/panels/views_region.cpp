@@ -13,6 +13,7 @@
 #include "editor/panels/panels.h"
 #include "editor/results.h"
 #include "editor/painting.h"
+#include "editor/seam_view.h"
 #include "editor/skin_display.h"
 #include "editor/tissues.h"
 #include "editor/wipe.h"
@@ -276,6 +277,7 @@ void draw_views_region(Editor& editor) {
     ImGui::PushClipRect(im(place.rect.low), im(place.rect.high), true);
     if (place.id == ViewId::Body) draw_body_overlay(editor, place);
     else draw_slice_overlay(editor, place);
+    draw_seams(editor, place);
     draw_gizmo(editor, place);
     draw_brush(editor, place);
     draw_wipe(editor, place.rect);

@@ -75,6 +75,7 @@ std::vector<Proof> proofs_of_regions();
 std::vector<Proof> proofs_of_layers();
 std::vector<Proof> proofs_of_test_poses();
 std::vector<Proof> proofs_of_weight_problems();
+std::vector<Proof> proofs_of_seams();
 std::vector<Proof> proofs_of_comparing();
 std::vector<Proof> proofs_of_motion();
 std::vector<Proof> proofs_of_clips();
