@@ -6,6 +6,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "editor/bone_table.h"
 #include "editor/adjust.h"
 #include "editor/assets.h"
 #include "editor/difference.h"
@@ -106,7 +107,7 @@ void Dialog::escape(Editor& editor) { editor.close_dialog(); }
 Editor::Editor(Host& host, const Preferences& preferences)
     : host(host), preferences(preferences), keymap(read_keymap(asset("keymap.json"))), operators(gather_operators()),
       jobs(kJobsAtOnce, [&host] { host.wake(); }), arrangements(preferences.arrangements),
-      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), fem(std::make_unique<FemView>()), difference(std::make_unique<DifferenceView>()), overlap(std::make_unique<OverlapView>()), seams(std::make_unique<SeamView>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
+      handling(std::make_unique<Handling>()), skin(std::make_unique<SkinDisplay>()), fem(std::make_unique<FemView>()), difference(std::make_unique<DifferenceView>()), overlap(std::make_unique<OverlapView>()), seams(std::make_unique<SeamView>()), bone_table(std::make_unique<BoneTable>()), timeline(std::make_unique<Timeline>()), last_operation(std::make_unique<LastOperation>()) {
   IMGUI_CHECKVERSION();
   imgui = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -177,6 +178,7 @@ void Editor::draw_views() {
   show_fem(*this);
   show_difference(*this);
   show_overlap(*this);
+  show_bone_table(*this);
   show_proposed_joint(*this);
   move_camera(views->body, now, preferences.reduce_motion);
   ended(*this, "pose");

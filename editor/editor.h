@@ -45,6 +45,7 @@ struct FemView;
 struct DifferenceView;
 struct OverlapView;
 struct SeamView;
+struct BoneTable;
 
 // What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
 struct Drag {
@@ -178,6 +179,7 @@ struct Editor {
   std::unique_ptr<DifferenceView> difference;  // of difference.h; never null
   std::unique_ptr<OverlapView> overlap;  // of overlap.h; never null
   std::unique_ptr<SeamView> seams;       // of seam_view.h; never null
+  std::unique_ptr<BoneTable> bone_table;  // of bone_table.h; never null
   struct {
     std::string result;  // whose name is a text field now; "" for none
     std::string text;

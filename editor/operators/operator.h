@@ -48,6 +48,7 @@ std::vector<Operator> layer_operators();
 std::vector<Operator> test_pose_operators();
 std::vector<Operator> weight_problem_operators();
 std::vector<Operator> seam_operators();
+std::vector<Operator> bone_table_operators();
 std::vector<Operator> rig_operators();
 std::vector<Operator> pose_operators();
 std::vector<Operator> motion_operators();

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "editor/adjust.h"
+#include "editor/bone_table.h"
 #include "editor/clip_handles.h"
 #include "editor/fem_view.h"
 #include "editor/joint_fit.h"
@@ -79,6 +80,7 @@ std::string state_of(const Editor& editor) {
   if (!editor.document().volume) return "";
   if (editor.views->scene.weights && editor.views->scene.weights->weights) return std::string(name_of(editor.skin->display)) + " \u00b7 " + grouped(editor.views->scene.weights->weights->size()) + " tissue voxels" + (painted_region(editor) ? " \u00b7 region of " + grouped(painted_region_voxels(editor)) : "");
   if (const ProposedJoint* proposed = proposed_joint(editor)) return std::string("X-ray \u00b7 bone in bone about the axis ") + (proposed->shows_after ? "as fitted" : "as it is");
+  if (editor.bone_table->coloured && editor.workspace == Workspace::Rig && editor.views->scene.weights) return "X-ray \u00b7 bones by the rig bone that they follow";
   std::string state = editor.views->display == render::Display::Solid ? "Solid" : editor.views->display == render::Display::XRay ? "X-ray" : "Tissue";
   if (const auto posed = shown_result(editor); posed && !comparing(editor)) state += " \u00b7 " + posed->name;
   if (const Solve* solve = watched_solve(editor)) state += " \u00b7 settling, " + progress_text(*solve);

@@ -50,6 +50,7 @@ void draw_motion(Editor& editor, Column& column);
 void draw_layers(Editor& editor, Column& column);
 void draw_weight_problems(Editor& editor, Column& column);
 void draw_seam_section(Editor& editor, Column& column);
+void draw_bone_table(Editor& editor, Column& column);
 void draw_brush_section(Editor& editor, Column& column);
 void draw_history(Editor& editor, Column& column);
 void draw_live_volume(Editor& editor, Column& column);

@@ -56,6 +56,7 @@ void draw_sidebar(Editor& editor) {
     draw_outliner(editor, column);
     draw_bone(editor, column);
     draw_fit_check(editor, column);
+    if (editor.workspace == Workspace::Rig) draw_bone_table(editor, column);
     draw_display(editor, column);
     draw_tissues(editor, column);
     draw_tissue(editor, column);

@@ -105,8 +105,8 @@ std::vector<Proof> proofs_of_navigation() {
       {"view.opposite", "key Num9", [](Stage& s, const Seen& b) { return turned(s, b) > 179; }, Shows::InBody},
       {"view.centre_on_pick", "drag \"3D view/view\" 0 0 MMB Alt", [](Stage& s, const Seen& b) { return glm::distance(camera(s).centre, b.camera.centre) > 20; }, Shows::Nothing,
        "key Home\n wait-idle\n move \"3D view/view\""},
-      {"view.frame_selected", "key Num.", [](Stage& s, const Seen& b) { return camera(s).distance < b.camera.distance * 0.6; }, Shows::InBody, "click \"Cortical bone/111/name\""},
-      {"view.frame_all", "key Home", [](Stage& s, const Seen& b) { return camera(s).distance > b.camera.distance * 1.6; }, Shows::InBody},
+      {"view.frame_selected", "key Num.", [](Stage& s, const Seen& b) { return camera(s).distance < b.camera.distance * 0.6; }, Shows::InBody, "click \"sidebar/sections/Outliner/fold\"\n wait-idle\n click \"Cortical bone/111/name\"\n move \"3D view/view\""},
+      {"view.frame_all", "key Home", [](Stage& s, const Seen& b) { return camera(s).distance > b.camera.distance * 1.6; }, Shows::InBody, "click \"sidebar/sections/Outliner/fold\"\n move \"3D view/view\"\n wait-idle"},
 
       {"slice.step", "wheel Axial/view 1", [](Stage& s, const Seen& b) { return std::abs(stepped(s, b)) > 0.5 && std::abs(stepped(s, b)) < 5; }, Shows::Nothing, four},
       {"slice.step_five", "wheel Axial/view 1 Shift", [](Stage& s, const Seen& b) { return std::abs(stepped(s, b) - 15) < 1e-6; }, Shows::Nothing, four},
