@@ -52,7 +52,8 @@ void for_each_around(const TissueVoxels& tissue, std::int64_t brick, const Body&
 
 }  // namespace
 
-BrickMotions::BrickMotions(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<RigidTransform>& posed_from_rest)
+BrickMotions::BrickMotions(const TissueVoxels& tissue, const SkinWeights& weights,
+                           const std::vector<RigidTransform>& posed_from_rest)
     : moves_as(first_alike(posed_from_rest)) {
   const std::int64_t count = std::ssize(tissue.bricks());
   std::vector<int> own(count);

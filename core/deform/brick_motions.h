@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which motion the tissue of each brick follows. Much of a posed limb follows one bone wholly, or bones that move as one: they are
-// counted as one, the first of them.
+// Which motion the tissue of each brick follows. Much of a posed limb follows one bone wholly, or bones that move as
+// one: they are counted as one, the first of them.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,8 @@ struct BrickMotions {
   std::vector<int> around;    // by brick: what all tissue of it and of the bricks around it moves as, or kSeveral
 
   //   posed_from_rest  by bone of `weights`
-  BrickMotions(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<RigidTransform>& posed_from_rest);
+  BrickMotions(const TissueVoxels& tissue, const SkinWeights& weights,
+               const std::vector<RigidTransform>& posed_from_rest);
 };
 
 }  // namespace limber

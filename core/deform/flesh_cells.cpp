@@ -64,7 +64,9 @@ std::int32_t number_nodes(const std::vector<CellPiece>& pieces, const glm::ivec3
         if (!touch(pieces[a], other, axis, cells.step)) continue;
         const auto b = &other - pieces.data();
         for (int corner = 0; corner < 8; ++corner)
-          if (corner >> axis & 1) joined.join(static_cast<std::int32_t>(8 * a) + corner, static_cast<std::int32_t>(8 * b) + (corner ^ 1 << axis));
+          if (corner >> axis & 1)
+            joined.join(static_cast<std::int32_t>(8 * a) + corner,
+                        static_cast<std::int32_t>(8 * b) + (corner ^ 1 << axis));
       }
     }
   std::vector<std::int32_t> number(8 * pieces.size(), -1);
@@ -80,8 +82,8 @@ std::int32_t number_nodes(const std::vector<CellPiece>& pieces, const glm::ivec3
 }
 
 // What each node follows: all that the cells around it say of it.
-void blend_nodes(const std::vector<CellPiece>& pieces, const Grid& grid, const std::vector<RigidTransform>& posed_from_rest, Blend blend,
-                 FleshCells& cells) {
+void blend_nodes(const std::vector<CellPiece>& pieces, const Grid& grid,
+                 const std::vector<RigidTransform>& posed_from_rest, Blend blend, FleshCells& cells) {
   std::vector<std::int64_t> begin(cells.rest.size() + 1);
   for (std::size_t p = 0; p < pieces.size(); ++p)
     for (const CellPiece::Share& share : pieces[p].shares) ++begin[cells.nodes[p][share.corner] + 1];
@@ -89,12 +91,16 @@ void blend_nodes(const std::vector<CellPiece>& pieces, const Grid& grid, const s
   std::vector<BoneWeight> influences(begin.back());
   std::vector<std::int64_t> end(begin.begin(), begin.end() - 1);
   for (std::size_t p = 0; p < pieces.size(); ++p)
-    for (const CellPiece::Share& share : pieces[p].shares) influences[end[cells.nodes[p][share.corner]]++] = {share.bone, share.weight};
+    for (const CellPiece::Share& share : pieces[p].shares)
+      influences[end[cells.nodes[p][share.corner]]++] = {share.bone, share.weight};
   const AffineTransform world = world_from_voxel(grid), voxel = voxel_from_world(grid);
   const auto bones = skin_transforms(posed_from_rest);
   parallel_for(std::ssize(cells.rest), kGrain, [&](std::int64_t first, std::int64_t last) {
     for (auto n = first; n < last; ++n) {
-      std::sort(influences.begin() + begin[n], influences.begin() + begin[n + 1], [](const BoneWeight& a, const BoneWeight& b) { return a.bone != b.bone ? a.bone < b.bone : a.weight < b.weight; });
+      std::sort(influences.begin() + begin[n], influences.begin() + begin[n + 1],
+                [](const BoneWeight& a, const BoneWeight& b) {
+                  return a.bone != b.bone ? a.bone < b.bone : a.weight < b.weight;
+                });
       const glm::dvec3 rest = world * (cells.rest[n] / grid.spacing);
       const std::span<const BoneWeight> mine(&influences[begin[n]], static_cast<std::size_t>(begin[n + 1] - begin[n]));
       cells.blended[n] = (voxel * blend_point(blend, bones, mine, rest)) * grid.spacing;
@@ -113,7 +119,8 @@ bool is_beside_rigid(const TissueVoxels& tissue, const BrickMotions& motions, co
   return false;
 }
 
-void add_bone(const CellPiece& piece, const LabelVolume& volume, const LabelSet& is_bone, const std::array<std::int32_t, 8>& nodes, FleshCells& cells) {
+void add_bone(const CellPiece& piece, const LabelVolume& volume, const LabelSet& is_bone,
+              const std::array<std::int32_t, 8>& nodes, FleshCells& cells) {
   const double step = cells.step;
   for (int z = 0; z < 8; ++z)
     for (std::uint64_t bits = piece.voxels[z]; bits; bits &= bits - 1) {
@@ -122,14 +129,16 @@ void add_bone(const CellPiece& piece, const LabelVolume& volume, const LabelSet&
       if (!is_bone[volume.at(piece.cell * cells.step + in)]) continue;
       const glm::dvec3 t = (glm::dvec3(in) + 0.5) / step;
       for (int i = 0; i < 8; ++i)
-        cells.bone[nodes[i]] += static_cast<float>((i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z) / (step * step * step));
+        cells.bone[nodes[i]] += static_cast<float>((i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) *
+                                                   (i & 4 ? t.z : 1 - t.z) / (step * step * step));
     }
 }
 
 }  // namespace
 
-FleshCells flesh_cells(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& is_bone,
-                       const std::vector<RigidTransform>& posed_from_rest, Blend blend, const BrickMotions& motions) {
+FleshCells flesh_cells(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+                       const LabelSet& is_bone, const std::vector<RigidTransform>& posed_from_rest, Blend blend,
+                       const BrickMotions& motions) {
   FleshCells cells;
   const std::vector<std::int64_t> bricks = bending_bricks(motions);
   cells.step = step_for(tissue, bricks);

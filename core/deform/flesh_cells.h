@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tissue that a pose bends, as coarse cells of step^3 voxels: one cell for each piece of tissue that hangs together inside one
-// (cell_pieces.h). Cells whose tissue touches share the four nodes of the side between them; where tissue only lies side by side,
-// as two fingers or the two sides of a seam do, each has nodes of its own [the virtual nodes of Molino, Bao & Fedkiw 2004, A
-// virtual node algorithm for changing mesh topology].
+// The tissue that a pose bends, as coarse cells of step^3 voxels: one cell for each piece of tissue that hangs together
+// inside one (cell_pieces.h). Cells whose tissue touches share the four nodes of the side between them; where tissue
+// only lies side by side, as two fingers or the two sides of a seam do, each has nodes of its own [the virtual nodes of
+// Molino, Bao & Fedkiw 2004, A virtual node algorithm for changing mesh topology].
 //
 // Lengths in mm along the volume's own axes; the centre of voxel (0, 0, 0) is the origin.
 #pragma once
@@ -18,14 +18,14 @@
 namespace limber {
 
 struct FleshCells {
-  int step = 2;                    // voxels an edge: 2, 4 or 8
-  glm::dvec3 edge{0};              // mm
+  int step = 2;                                    // voxels an edge: 2, 4 or 8
+  glm::dvec3 edge{0};                              // mm
   std::vector<std::array<std::int32_t, 8>> nodes;  // by cell; bit 0 of the place is x, bit 1 y, bit 2 z
-  std::vector<float> fill;         // by cell: how much of it is tissue, (0, 1]
-  std::vector<glm::dvec3> rest;    // by node
-  std::vector<glm::dvec3> blended; // by node: where blending carries it
-  std::vector<float> bone;         // by node: how much bone lies around it, in cells
-  std::vector<std::uint8_t> is_fixed;  // by node: whether tissue beside it follows one bone as a whole
+  std::vector<float> fill;                         // by cell: how much of it is tissue, (0, 1]
+  std::vector<glm::dvec3> rest;                    // by node
+  std::vector<glm::dvec3> blended;                 // by node: where blending carries it
+  std::vector<float> bone;                         // by node: how much bone lies around it, in cells
+  std::vector<std::uint8_t> is_fixed;              // by node: whether tissue beside it follows one bone as a whole
 
   // By brick: the place in cell_of_voxel of its first voxel, -1 of bricks that do not bend.
   std::vector<std::int32_t> bending;
@@ -38,7 +38,8 @@ struct FleshCells {
 };
 
 //   is_bone  by label
-FleshCells flesh_cells(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& is_bone,
-                       const std::vector<RigidTransform>& posed_from_rest, Blend blend, const BrickMotions& motions);
+FleshCells flesh_cells(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+                       const LabelSet& is_bone, const std::vector<RigidTransform>& posed_from_rest, Blend blend,
+                       const BrickMotions& motions);
 
 }  // namespace limber

@@ -11,11 +11,11 @@ namespace limber {
 namespace {
 
 constexpr int kGrain = 2048;
-constexpr double kApart = 1.5;         // of both depths together: nearer at rest, flesh is pressed or bent, not gone through
-constexpr double kMostlyBone = 0.2;    // cells of bone around a node
-constexpr double kLeastVolume = 0.1;   // of a cell whose inside is looked at
-constexpr double kLeastSlope = 0.3;    // of the depth: in the middle of a limb no side is nearest
-constexpr double kFurthest = 3;        // cells that one look moves a node by
+constexpr double kApart = 1.5;  // of both depths together: nearer at rest, flesh is pressed or bent, not gone through
+constexpr double kMostlyBone = 0.2;   // cells of bone around a node
+constexpr double kLeastVolume = 0.1;  // of a cell whose inside is looked at
+constexpr double kLeastSlope = 0.3;   // of the depth: in the middle of a limb no side is nearest
+constexpr double kFurthest = 3;       // cells that one look moves a node by
 constexpr std::int64_t kMostBins = 8'000'000;
 
 glm::dvec3 middle_of(const FleshCells& cells, std::int64_t cell, const std::vector<glm::dvec3>& at) {
@@ -26,7 +26,8 @@ glm::dvec3 middle_of(const FleshCells& cells, std::int64_t cell, const std::vect
 
 }  // namespace
 
-FleshContact::FleshContact(const FleshCells& cells, const TissueDepth& depth, const glm::dvec3& spacing) : cells_(cells) {
+FleshContact::FleshContact(const FleshCells& cells, const TissueDepth& depth, const glm::dvec3& spacing)
+    : cells_(cells) {
   depth_.resize(cells.rest.size());
   depth_slope_.resize(cells.nodes.size());
   middle_depth_.resize(cells.nodes.size());
@@ -74,7 +75,8 @@ void FleshContact::look(const std::vector<glm::dvec3>& posed) {
       cell.middle = middle_of(cells_, c, posed);
       cell.is_flesh = glm::determinant(F) > kLeastVolume && bone < kMostlyBone;
       if (cell.is_flesh) cell.rest_from_posed = glm::inverse(F);
-      boxes[c] = cell.is_flesh ? std::pair(glm::clamp(bin_of(low), glm::ivec3(0), bins_ - 1), glm::clamp(bin_of(high), glm::ivec3(0), bins_ - 1))
+      boxes[c] = cell.is_flesh ? std::pair(glm::clamp(bin_of(low), glm::ivec3(0), bins_ - 1),
+                                           glm::clamp(bin_of(high), glm::ivec3(0), bins_ - 1))
                                : std::pair(glm::ivec3(0), glm::ivec3(-1));
     }
   });
@@ -86,7 +88,8 @@ void FleshContact::fill_bins(const std::vector<std::pair<glm::ivec3, glm::ivec3>
     for (std::size_t c = 0; c < boxes.size(); ++c)
       for (int z = boxes[c].first.z; z <= boxes[c].second.z; ++z)
         for (int y = boxes[c].first.y; y <= boxes[c].second.y; ++y)
-          for (int x = boxes[c].first.x; x <= boxes[c].second.x; ++x) body(place({x, y, z}), static_cast<std::int32_t>(c));
+          for (int x = boxes[c].first.x; x <= boxes[c].second.x; ++x)
+            body(place({x, y, z}), static_cast<std::int32_t>(c));
   };
   begin_.assign(std::size_t(bins_.x) * bins_.y * bins_.z + 1, 0);
   every([&](std::size_t bin, std::int32_t) { ++begin_[bin + 1]; });

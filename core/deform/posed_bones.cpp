@@ -9,14 +9,14 @@ namespace limber {
 
 namespace {
 
-constexpr double kBin = 16;            // voxels an edge, by their mean edge
+constexpr double kBin = 16;  // voxels an edge, by their mean edge
 constexpr std::int64_t kMostBins = 4'000'000;
-constexpr double kHalf = 0.5;          // voxels: the surface lies between a bone voxel's centre and its neighbour's
+constexpr double kHalf = 0.5;  // voxels: the surface lies between a bone voxel's centre and its neighbour's
 
 }  // namespace
 
-PosedBones::PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& is_bone,
-                       const std::vector<RigidTransform>& posed_from_rest)
+PosedBones::PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+                       const LabelSet& is_bone, const std::vector<RigidTransform>& posed_from_rest)
     : tissue_(&tissue), weights_(&weights), spacing_(volume.grid.spacing) {
   LabelVolume bones{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
   tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
@@ -49,7 +49,8 @@ PosedBones::PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, co
   for (std::int64_t b = 0; b < std::ssize(bone_tissue_.bricks()); ++b) {
     std::map<int, std::pair<glm::dvec3, glm::dvec3>> boxes;
     bone_tissue_.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
-      const int brick = tissue.brick_at(v), bone = weights.chunk(brick)[tissue.index_of(v) - tissue.bricks()[brick].first].bone[0];
+      const int brick = tissue.brick_at(v),
+                bone = weights.chunk(brick)[tissue.index_of(v) - tissue.bricks()[brick].first].bone[0];
       const glm::dvec3 posed = posed_from_rest_mm[bone] * (glm::dvec3(v) * spacing_);
       auto [box, is_new] = boxes.try_emplace(bone, posed, posed);
       box->second = {glm::min(box->second.first, posed), glm::max(box->second.second, posed)};
@@ -69,7 +70,8 @@ PosedBones::PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, co
     if (double(bins_.x) * bins_.y * bins_.z <= double(kMostBins)) break;
   }
   std::vector<Box> boxes;
-  for (const Around& each : around) boxes.push_back({each.bone, bin_of(each.low), glm::min(bin_of(each.high), bins_ - 1)});
+  for (const Around& each : around)
+    boxes.push_back({each.bone, bin_of(each.low), glm::min(bin_of(each.high), bins_ - 1)});
   fill_bins(boxes);
 }
 
@@ -94,7 +96,8 @@ void PosedBones::fill_bins(const std::vector<Box>& boxes) {
 //   rest  voxel coordinates
 bool PosedBones::holds(int bone, const glm::dvec3& rest) const {
   const glm::ivec3 voxel(glm::floor(rest + 0.5));
-  if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, tissue_->grid_size()))) return false;
+  if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, tissue_->grid_size())))
+    return false;
   if (bone_tissue_.brick_at(voxel) < 0 || bone_tissue_.index_of(voxel) < 0) return false;
   const int brick = tissue_->brick_at(voxel);
   return weights_->chunk(brick)[tissue_->index_of(voxel) - tissue_->bricks()[brick].first].bone[0] == bone;
@@ -110,7 +113,7 @@ std::optional<glm::dvec3> PosedBones::way_out(const glm::dvec3& posed) const {
     const int bone = bones_[i];
     const glm::dvec3 rest = (rest_from_posed_[bone] * posed) / spacing_;
     if (!holds(bone, rest)) continue;
-    const double deep = (*depth_)(rest) - surface;
+    const double deep = (*depth_)(rest)-surface;
     if (deep <= 0) continue;
     glm::dvec3 slope;
     for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where rigid bones lie in a pose, and the way out of them: flesh that blending carries into a bone is pushed out again.
+// Where rigid bones lie in a pose, and the way out of them: flesh that blending carries into a bone is pushed out
+// again.
 //
 // Lengths in mm along the volume's own axes, as in flesh_cells.h.
 #pragma once
@@ -19,7 +20,8 @@ class PosedBones {
   PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& is_bone,
              const std::vector<RigidTransform>& posed_from_rest);
 
-  // From a posed point inside a bone to that bone's surface, the shortest way as its depth field shows it; none outside all bones.
+  // From a posed point inside a bone to that bone's surface, the shortest way as its depth field shows it; none outside
+  // all bones.
   std::optional<glm::dvec3> way_out(const glm::dvec3& posed) const;
 
  private:
@@ -35,7 +37,7 @@ class PosedBones {
   const SkinWeights* weights_;
   glm::dvec3 spacing_;
   TissueVoxels bone_tissue_;
-  std::optional<TissueDepth> depth_;  // below the surface of bone
+  std::optional<TissueDepth> depth_;              // below the surface of bone
   std::vector<AffineTransform> rest_from_posed_;  // by bone
   std::vector<glm::dmat3> turn_;                  // by bone: posed directions of rest directions
   double bin_ = 0;

@@ -15,8 +15,9 @@ constexpr float kNothing = 1e-3f;  // voxels: what rounding alone would shift
 
 }  // namespace
 
-SettledFlesh::SettledFlesh(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& is_bone,
-                           const std::vector<RigidTransform>& posed_from_rest, Blend blend, Progress& progress)
+SettledFlesh::SettledFlesh(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+                           const LabelSet& is_bone, const std::vector<RigidTransform>& posed_from_rest, Blend blend,
+                           Progress& progress)
     : tissue_(&tissue) {
   progress.update("flesh", 0);
   const BrickMotions motions(tissue, weights, posed_from_rest);
@@ -50,7 +51,8 @@ glm::vec3 SettledFlesh::shift_in(std::int32_t cell, const glm::ivec3& corner) co
 
 // -1 in air, and where tissue moves as one.
 std::int32_t SettledFlesh::cell_at(const glm::ivec3& voxel, bool& is_rigid) const {
-  if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, tissue_->grid_size()))) return -1;
+  if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, tissue_->grid_size())))
+    return -1;
   const int brick = tissue_->brick_at(voxel);
   if (brick < 0) return -1;
   const glm::ivec3 in = voxel & 7;

@@ -11,15 +11,15 @@ namespace limber {
 
 namespace {
 
-constexpr double kVolume = 100;  // of a cell's volume over the smoothness of shifts
-constexpr double kReach = 10;    // cells: beyond it a shift fades by itself
-constexpr double kLeast = 0.2;    // of a cell's middle, which may be bent more than the cell as a whole
-constexpr double kBone = 1e4;   // of bone that stays where the pose has it over smoothness
-constexpr double kPush = 500;      // of a bone on flesh inside it
+constexpr double kVolume = 100;      // of a cell's volume over the smoothness of shifts
+constexpr double kReach = 10;        // cells: beyond it a shift fades by itself
+constexpr double kLeast = 0.2;       // of a cell's middle, which may be bent more than the cell as a whole
+constexpr double kBone = 1e4;        // of bone that stays where the pose has it over smoothness
+constexpr double kPush = 500;        // of a bone on flesh inside it
 constexpr double kMostlySoft = 0.2;  // cells of bone around a node that is not bone itself
-constexpr int kLook = 2;            // steps from one look for flesh in flesh to the next
-constexpr int kSteps = 14;       // the mean error of volumes changes by less than a tenth after that (tests/core/deform)
-constexpr int kSolves = 10;      // steps of conjugate gradients in each
+constexpr int kLook = 2;             // steps from one look for flesh in flesh to the next
+constexpr int kSteps = 14;   // the mean error of volumes changes by less than a tenth after that (tests/core/deform)
+constexpr int kSolves = 10;  // steps of conjugate gradients in each
 constexpr int kGrain = 2048;
 
 using Nodes = std::array<std::int32_t, 8>;
@@ -50,16 +50,21 @@ std::array<std::array<double, 8>, 8> smoothness(const glm::dvec3& edge) {
 // The volume of a trilinear cell, from its sides: each the mean of the two ways to part it into triangles.
 double volume_of(const std::array<glm::dvec3, 8>& corner) {
   constexpr int kSides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-  const auto cone = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) { return glm::dot(a, glm::cross(b, c)); };
+  const auto cone = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return glm::dot(a, glm::cross(b, c));
+  };
   double sum = 0;
   for (const auto& side : kSides) {
-    const glm::dvec3 a = corner[side[0]] - corner[0], b = corner[side[1]] - corner[0], c = corner[side[2]] - corner[0], d = corner[side[3]] - corner[0];
+    const glm::dvec3 a = corner[side[0]] - corner[0], b = corner[side[1]] - corner[0], c = corner[side[2]] - corner[0],
+                     d = corner[side[3]] - corner[0];
     sum += cone(a, b, c) + cone(a, c, d) + cone(a, b, d) + cone(b, c, d);
   }
   return sum / 12;
 }
 
-glm::dmat3 cofactor(const glm::dmat3& F) { return glm::dmat3(glm::cross(F[1], F[2]), glm::cross(F[2], F[0]), glm::cross(F[0], F[1])); }
+glm::dmat3 cofactor(const glm::dmat3& F) {
+  return glm::dmat3(glm::cross(F[1], F[2]), glm::cross(F[2], F[0]), glm::cross(F[0], F[1]));
+}
 
 // Which cells have a node, and as which of their eight.
 struct CellsOfNode {
@@ -78,8 +83,14 @@ struct CellsOfNode {
 
 class Minimizer {
  public:
-  Minimizer(const FleshCells& cells, const PosedBones* bones, FleshContact* contact) : cells_(cells), bones_(bones), contact_(contact), of_node_(cells), gradients_(middle_gradients(cells.edge)),
-        h2_(std::pow(cells.edge.x * cells.edge.y * cells.edge.z, 2.0 / 3)), count_(std::ssize(cells.rest)) {
+  Minimizer(const FleshCells& cells, const PosedBones* bones, FleshContact* contact)
+      : cells_(cells),
+        bones_(bones),
+        contact_(contact),
+        of_node_(cells),
+        gradients_(middle_gradients(cells.edge)),
+        h2_(std::pow(cells.edge.x * cells.edge.y * cells.edge.z, 2.0 / 3)),
+        count_(std::ssize(cells.rest)) {
     start_.resize(cells.nodes.size());
     pull_.resize(cells.nodes.size());
     shift_.assign(count_, glm::vec3(0));
@@ -88,7 +99,8 @@ class Minimizer {
     push_.assign(count_, 0);
     for (auto* each : {&right_, &residual_, &direction_, &image_}) each->assign(count_, glm::vec3(0));
     parallel_for(std::ssize(cells.nodes), kGrain, [&](std::int64_t first, std::int64_t last) {
-      for (auto c = first; c < last; ++c) start_[c] = glm::mat3(gradient(c, [&](std::int32_t n) { return cells_.blended[n]; }));
+      for (auto c = first; c < last; ++c)
+        start_[c] = glm::mat3(gradient(c, [&](std::int32_t n) { return cells_.blended[n]; }));
     });
     assemble();
   }
@@ -100,11 +112,13 @@ class Minimizer {
     double fill = 0;
     for (const float each : cells_.fill) fill += each;
     if (fill == 0) return 0;
-    return parallel_sum(std::ssize(cells_.nodes), kGrain, [&](std::int64_t first, std::int64_t last) {
-      double sum = 0;
-      for (auto c = first; c < last; ++c) sum += cells_.fill[c] * std::abs(volume_ratio(c) - 1);
-      return sum;
-    }) / fill;
+    return parallel_sum(std::ssize(cells_.nodes), kGrain,
+                        [&](std::int64_t first, std::int64_t last) {
+                          double sum = 0;
+                          for (auto c = first; c < last; ++c) sum += cells_.fill[c] * std::abs(volume_ratio(c) - 1);
+                          return sum;
+                        }) /
+           fill;
   }
 
   void step() {
@@ -114,14 +128,16 @@ class Minimizer {
       for (auto c = first; c < last; ++c) {
         const glm::dmat3 F = posed_gradient(c);
         const double wanted = glm::determinant(F) + 1 - volume_ratio(c);
-        pull_[c] = glm::mat3((with_volume(F, std::clamp(wanted, kLeast, 1 / kLeast)) - glm::dmat3(start_[c])) * (kVolume * h2_ * cells_.fill[c]));
+        pull_[c] = glm::mat3((with_volume(F, std::clamp(wanted, kLeast, 1 / kLeast)) - glm::dmat3(start_[c])) *
+                             (kVolume * h2_ * cells_.fill[c]));
       }
     });
     parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
       for (auto n = first; n < last; ++n) {
         glm::vec3 sum(0);
         if (!cells_.is_fixed[n])
-          for (auto i = of_node_.begin[n]; i < of_node_.begin[n + 1]; ++i) sum += pull_[of_node_.place[i] >> 3] * glm::vec3(gradients_[of_node_.place[i] & 7]);
+          for (auto i = of_node_.begin[n]; i < of_node_.begin[n + 1]; ++i)
+            sum += pull_[of_node_.place[i] >> 3] * glm::vec3(gradients_[of_node_.place[i] & 7]);
         right_[n] = sum + outward_[n] * push_[n];
       }
     });
@@ -130,8 +146,6 @@ class Minimizer {
   }
 
  private:
-
-
   template <class Place>
   glm::dmat3 gradient(std::int64_t cell, const Place& place) const {
     glm::dmat3 F(0);
@@ -145,7 +159,8 @@ class Minimizer {
   // Of the whole cell, where the determinant is that of its middle.
   double volume_ratio(std::int64_t cell) const {
     std::array<glm::dvec3, 8> corner;
-    for (int i = 0; i < 8; ++i) corner[i] = cells_.blended[cells_.nodes[cell][i]] + glm::dvec3(shift_[cells_.nodes[cell][i]]);
+    for (int i = 0; i < 8; ++i)
+      corner[i] = cells_.blended[cells_.nodes[cell][i]] + glm::dvec3(shift_[cells_.nodes[cell][i]]);
     return volume_of(corner) / (cells_.edge.x * cells_.edge.y * cells_.edge.z);
   }
 
@@ -172,7 +187,8 @@ class Minimizer {
           for (int b = 0; b < 8; ++b) {
             const std::int32_t column = cells_.nodes[cell][b];
             if (b == a || cells_.is_fixed[column]) continue;
-            auto at = std::find_if(block.begin() + begin, block.end(), [&](const auto& each) { return each.first == column; });
+            auto at = std::find_if(block.begin() + begin, block.end(),
+                                   [&](const auto& each) { return each.first == column; });
             if (at == block.end()) at = block.insert(at, {column, 0.0f});
             at->second += static_cast<float>(cells_.fill[cell] * K[a][b]);
           }
@@ -234,8 +250,8 @@ class Minimizer {
       }
   }
 
-  // Each step begins further along the way of the one before [Beck & Teboulle 2009, A fast iterative shrinkage-thresholding algorithm
-  // for linear inverse problems].
+  // Each step begins further along the way of the one before [Beck & Teboulle 2009, A fast iterative
+  // shrinkage-thresholding algorithm for linear inverse problems].
   void run_on() {
     ++taken_;
     const float momentum = float(taken_ - 1) / float(taken_ + 2);
@@ -295,15 +311,15 @@ class Minimizer {
   const double h2_;  // mm2: the square of a cell's edge, by its volume
   const std::int64_t count_;
   int taken_ = 0;
-  std::vector<glm::mat3> start_, pull_;  // by cell
+  std::vector<glm::mat3> start_, pull_;                                         // by cell
   std::vector<glm::vec3> shift_, last_, right_, residual_, direction_, image_;  // by node
   std::vector<std::int64_t> row_;
   std::vector<std::int32_t> column_;
   std::vector<float> entry_, diagonal_;
-  std::vector<float> push_;         // by node: how strongly it is pulled out of a bone
+  std::vector<float> push_;              // by node: how strongly it is pulled out of a bone
   std::vector<std::uint8_t> is_inside_;  // by node: of other flesh
-  std::vector<glm::vec3> apart_;    // ... and the shift that would carry it half of the way out
-  std::vector<glm::vec3> outward_;  // ... and the shift that would carry it to the surface
+  std::vector<glm::vec3> apart_;         // ... and the shift that would carry it half of the way out
+  std::vector<glm::vec3> outward_;       // ... and the shift that would carry it to the surface
 };
 
 }  // namespace
@@ -323,7 +339,8 @@ glm::dmat3 with_volume(const glm::dmat3& F, double volume) {
   return P;
 }
 
-VolumeShifts volume_shifts(const FleshCells& cells, const PosedBones* bones, FleshContact* contact, Progress& progress) {
+VolumeShifts volume_shifts(const FleshCells& cells, const PosedBones* bones, FleshContact* contact,
+                           Progress& progress) {
   VolumeShifts found;
   if (cells.nodes.empty()) return found;
   Minimizer minimizer(cells, bones, contact);

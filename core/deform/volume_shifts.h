@@ -12,14 +12,15 @@
 namespace limber {
 
 struct VolumeShifts {
-  std::vector<glm::vec3> shift;  // by node, mm along the volume's axes; zero where it is fixed
+  std::vector<glm::vec3> shift;              // by node, mm along the volume's axes; zero where it is fixed
   double error_before = 0, error_after = 0;  // mean |V - V0| / V0 over the tissue of all cells
 };
 
 //   bones    that flesh must not enter; nullptr: none      contact  of flesh with flesh; nullptr: none
 VolumeShifts volume_shifts(const FleshCells& cells, const PosedBones* bones, FleshContact* contact, Progress& progress);
 
-// The matrix of that determinant near F: steps along the gradient of the determinant. F may be inverted, `volume` is positive.
+// The matrix of that determinant near F: steps along the gradient of the determinant. F may be inverted, `volume` is
+// positive.
 glm::dmat3 with_volume(const glm::dmat3& F, double volume);
 
 }  // namespace limber

@@ -10,9 +10,9 @@ namespace limber {
 
 namespace {
 
-constexpr int kLayers = 6;  // at most, on or off an organ
+constexpr int kLayers = 6;                           // at most, on or off an organ
 constexpr std::int64_t kFrozen = 2 * kSmallestPart;  // voxels: smaller parts might come to count, or cease to
-constexpr int kRounds = 2;  // over all organs: what one gave may leave another one short
+constexpr int kRounds = 2;                           // over all organs: what one gave may leave another one short
 
 // As if at random: of voxels that are equally good not all lie on one side of an organ.
 std::uint64_t shuffled(std::uint64_t at) {
@@ -23,7 +23,13 @@ std::uint64_t shuffled(std::uint64_t at) {
 class Organs {
  public:
   Organs(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted, const LabelSet& soft, const LabelSet& skin)
-      : posed_(posed), wanted_(wanted), soft_(soft), skin_(skin), parts_(connected_components(posed, nullptr, &soft)), has_(65536), box_(65536) {
+      : posed_(posed),
+        wanted_(wanted),
+        soft_(soft),
+        skin_(skin),
+        parts_(connected_components(posed, nullptr, &soft)),
+        has_(65536),
+        box_(65536) {
     glm::ivec3 v;
     std::size_t at = 0;
     for (v.z = 0; v.z < posed.grid.size.z; ++v.z)
@@ -65,7 +71,11 @@ class Organs {
   std::int64_t least(Label label) const { return std::llround(std::ceil(double(wanted_.at(label)) * (1 - kMostOff))); }
   std::int64_t most(Label label) const { return std::llround(std::floor(double(wanted_.at(label)) * (1 + kMostOff))); }
   // Voxels that it lacks, negative what it has too much.
-  std::int64_t off(Label label) const { return has_[label] < least(label) ? least(label) - has_[label] : has_[label] > most(label) ? most(label) - has_[label] : 0; }
+  std::int64_t off(Label label) const {
+    return has_[label] < least(label)  ? least(label) - has_[label]
+           : has_[label] > most(label) ? most(label) - has_[label]
+                                       : 0;
+  }
   bool is_flesh(Label label) const { return label && soft_[label] && !skin_[label]; }
   bool can_give(Label label) const { return is_flesh(label) && wanted_.contains(label) && has_[label] > least(label); }
   bool can_take(Label label) const { return is_flesh(label) && wanted_.contains(label) && has_[label] < most(label); }
@@ -99,12 +109,15 @@ class Organs {
         for (v.x = box.low.x; v.x <= box.high.x; ++v.x) {
           const Label here = posed_.at(v);
           if ((here == label) == grows || !is_flesh(here)) continue;
-          const bool at_border = std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(), [&](const glm::ivec3& step) {
-            const Label beside = posed_.at_or_air(v + step);
-            return grows ? beside == label : beside != label && is_flesh(beside);
-          });
+          const bool at_border =
+              std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(), [&](const glm::ivec3& step) {
+                const Label beside = posed_.at_or_air(v + step);
+                return grows ? beside == label : beside != label && is_flesh(beside);
+              });
           if (!at_border) continue;
-          const auto around = std::count_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) { return posed_.at_or_air(v + step) == label; });
+          const auto around = std::count_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
+            return posed_.at_or_air(v + step) == label;
+          });
           const auto at = static_cast<std::uint64_t>(posed_.grid.index(v));
           surface.push_back({static_cast<int>(around), shuffled(at), v});
         }
@@ -124,7 +137,9 @@ class Organs {
 
   bool give(const glm::ivec3& v, Label to) {
     const Label from = posed_.at(v);
-    if (to == 0 || from == to || !can_give(from) || touches_air(posed_, v) || !can_spare(posed_, v) || !can_join(posed_, v, to)) return false;
+    if (to == 0 || from == to || !can_give(from) || touches_air(posed_, v) || !can_spare(posed_, v) ||
+        !can_join(posed_, v, to))
+      return false;
     const int leaves = part_of(v), joins = part_beside(v, to);
     if (parts_.voxels[leaves] < kFrozen || parts_.voxels[joins] < kFrozen) return false;
     --parts_.voxels[leaves];
@@ -143,14 +158,15 @@ class Organs {
 
   // `label` must be beside.
   int part_beside(const glm::ivec3& v, Label label) const {
-    const auto step = std::find_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& each) { return posed_.at_or_air(v + each) == label; });
+    const auto step = std::find_if(neighbours().begin(), neighbours().end(),
+                                   [&](const glm::ivec3& each) { return posed_.at_or_air(v + each) == label; });
     return part_of(v + *step);
   }
 
   LabelVolume& posed_;
   const std::map<Label, std::int64_t>& wanted_;
   const LabelSet &soft_, &skin_;
-  Components parts_;               // as they were, but for their sizes
+  Components parts_;  // as they were, but for their sizes
   std::unordered_map<std::int64_t, int> part_of_changed_;
   std::vector<std::int64_t> has_;  // by label
   std::vector<Box> box_;           // by label: that holds all of it
@@ -158,7 +174,8 @@ class Organs {
 
 }  // namespace
 
-std::map<Label, std::int64_t> keep_organ_volumes(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted, const LabelSet& soft, const LabelSet& skin) {
+std::map<Label, std::int64_t> keep_organ_volumes(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted,
+                                                 const LabelSet& soft, const LabelSet& skin) {
   return Organs(posed, wanted, soft, skin).run();
 }
 

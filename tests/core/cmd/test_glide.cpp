@@ -95,7 +95,7 @@ TEST_CASE("glide: a pose file lets no bone go further than a voxel, and says wha
   CHECK(run.err.find("--fit-joints") == std::string::npos);
 }
 
-TEST_CASE("glide: jobs say it as the command line does; what is no way to glide is refused") {
+TEST_CASE("glide: jobs say it as the command line does, and what is no way to glide is refused") {
   const Arm arm;
   arm.posed({"--flex", "Forearm=100", "--glide", "off"});
   const std::string stays = read_file(arm.out);

@@ -65,7 +65,10 @@ double posed_volume(const Limb& limb, const PosedLattice& lattice) {
     const PosedLattice::Corners& corners = lattice.corners(brick, room);
     limb.tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
       const glm::ivec3 v = voxel - limb.tissue.bricks()[brick].corner;
-      const auto at = [&](int c) { return glm::dvec3(corners[PosedLattice::place(v.x + (c & 1), v.y + (c >> 1 & 1), v.z + (c >> 2))]) / double(kFixedOne); };
+      const auto at = [&](int c) {
+        return glm::dvec3(corners[PosedLattice::place(v.x + (c & 1), v.y + (c >> 1 & 1), v.z + (c >> 2))]) /
+               double(kFixedOne);
+      };
       for (int c = 0; c < 8; ++c) {  // an eighth of the parallelepiped at each corner
         const double sign = (c & 1 ? -1 : 1) * (c & 2 ? -1 : 1) * (c & 4 ? -1 : 1);
         sum += sign * glm::dot(at(c ^ 1) - at(c), glm::cross(at(c ^ 2) - at(c), at(c ^ 4) - at(c))) / 8;
@@ -75,8 +78,10 @@ double posed_volume(const Limb& limb, const PosedLattice& lattice) {
   return sum;
 }
 
-double volume_error(const Limb& limb, const std::vector<RigidTransform>& motions, Blend blend, const SettledFlesh* settled) {
-  const PosedLattice lattice(limb.volume, limb.tissue, limb.weights, motions, blend, glm::dvec3(1), no_progress(), settled);
+double volume_error(const Limb& limb, const std::vector<RigidTransform>& motions, Blend blend,
+                    const SettledFlesh* settled) {
+  const PosedLattice lattice(limb.volume, limb.tissue, limb.weights, motions, blend, glm::dvec3(1), no_progress(),
+                             settled);
   return posed_volume(limb, lattice) / double(limb.tissue.size()) - 1;
 }
 
@@ -88,7 +93,8 @@ TEST_CASE("settled flesh: a bent limb keeps its volume where blending does not")
     for (const double degrees : {60.0, 100.0, -100.0}) {
       const auto motions = limb.bent(degrees);
       const SettledFlesh settled = limb.settled(motions, blend);
-      INFO("blend ", int(blend), " by ", degrees, " degrees: ", volume_error(limb, motions, blend, nullptr), " without");
+      INFO("blend ", int(blend), " by ", degrees, " degrees: ", volume_error(limb, motions, blend, nullptr),
+           " without");
       CHECK(std::abs(volume_error(limb, motions, blend, &settled)) < (std::abs(degrees) > 90 ? 0.02 : 0.005));
       CHECK(settled.report().volume_error_after < 0.25 * settled.report().volume_error_before);
     }
@@ -106,7 +112,8 @@ TEST_CASE("settled flesh: bones stay where the pose has them") {
     limb.tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
       const glm::ivec3 v = voxel - limb.tissue.bricks()[brick].corner;
       const double across = glm::length(glm::dvec2(voxel) + 0.5 - double(Limb::kMiddle));
-      if (limb.volume.at(voxel) == kBone && across < 2) furthest = std::max<double>(furthest, glm::length(shifts[PosedLattice::place(v.x, v.y, v.z)]));
+      if (limb.volume.at(voxel) == kBone && across < 2)
+        furthest = std::max<double>(furthest, glm::length(shifts[PosedLattice::place(v.x, v.y, v.z)]));
     });
   }
   CHECK(furthest < 0.1);  // voxels
@@ -126,7 +133,8 @@ TEST_CASE("settled flesh: a body that moves as one, or not at all, does not sett
 TEST_CASE("settled flesh: shifts turn with the body, and grow with it") {
   const Limb limb, large(20);
   const glm::dquat turn = glm::angleAxis(0.8, glm::normalize(glm::dvec3(2, -1, 1)));
-  const SettledFlesh still = limb.settled(limb.bent(45)), turned = limb.settled(limb.bent(45, {turn, {100, 20, 3}})), grown = large.settled(large.bent(45));
+  const SettledFlesh still = limb.settled(limb.bent(45)), turned = limb.settled(limb.bent(45, {turn, {100, 20, 3}})),
+                     grown = large.settled(large.bent(45));
   SettledFlesh::CornerShifts a, b, c;
   double off = 0, off_grown = 0;
   for (std::int64_t brick = 0; brick < std::ssize(limb.tissue.bricks()); ++brick) {
@@ -167,7 +175,8 @@ TEST_CASE("settled flesh: two sides of a seam shift on their own") {
   double apart = 0;
   for (int y = 8; y < 24; ++y) {
     const glm::ivec3 lowest(Limb::kMiddle, y, Limb::kJoint + 3);
-    apart = std::max<double>(apart, glm::length(settled.corner_shift(lowest, 0x0f) - settled.corner_shift(lowest, 0xf0)));
+    apart =
+        std::max<double>(apart, glm::length(settled.corner_shift(lowest, 0x0f) - settled.corner_shift(lowest, 0xf0)));
   }
   CHECK(apart > 0.05);
 }
@@ -187,7 +196,8 @@ TEST_CASE("posed bones: the way out of a bone is the shortest, wherever the pose
     }
   CHECK_FALSE(bones.way_out(motions[1] * glm::dvec3(middle + 11, middle, 130)));
   CHECK_FALSE(bones.way_out({-500, 0, 0}));
-  CHECK_FALSE(PosedBones(limb.volume, limb.tissue, limb.weights, LabelSet(65536), motions).way_out({middle, middle, 30}));
+  CHECK_FALSE(
+      PosedBones(limb.volume, limb.tissue, limb.weights, LabelSet(65536), motions).way_out({middle, middle, 30}));
 }
 
 // Two slabs of 12 voxels with air between, each on a bone of its own; a little of each bends, so that both have cells.
@@ -207,7 +217,9 @@ struct Slabs {
     weights = SkinWeights({"low", "high", "still"}, tissue);
     for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
       SkinWeights::Influences chunk;
-      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) { chunk.push_back(quantize({{v.z > 30, 0.75}, {2, 0.25}})); });
+      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
+        chunk.push_back(quantize({{v.z > 30, 0.75}, {2, 0.25}}));
+      });
       weights.set_chunk(brick, chunk);
     }
   }
@@ -225,7 +237,8 @@ TEST_CASE("flesh contact: two sides go back by half of what they overlap by, and
     const auto motions = slabs.together(20 - each);
     const double overlap = 2 * (20 - each) - 20;
     const BrickMotions bricks(slabs.tissue, slabs.weights, motions);
-    const FleshCells cells = flesh_cells(slabs.volume, slabs.tissue, slabs.weights, LabelSet(65536), motions, Blend::Linear, bricks);
+    const FleshCells cells =
+        flesh_cells(slabs.volume, slabs.tissue, slabs.weights, LabelSet(65536), motions, Blend::Linear, bricks);
     FleshContact contact(cells, depth, glm::dvec3(1));
     contact.look(cells.blended);
     int met = 0;
@@ -233,7 +246,9 @@ TEST_CASE("flesh contact: two sides go back by half of what they overlap by, and
       const auto way = contact.way_apart(n);
       if (!way) continue;
       ++met;
-      if (glm::any(glm::lessThan(glm::dvec2(cells.rest[n]), glm::dvec2(8))) || glm::any(glm::greaterThan(glm::dvec2(cells.rest[n]), glm::dvec2(23)))) continue;
+      if (glm::any(glm::lessThan(glm::dvec2(cells.rest[n]), glm::dvec2(8))) ||
+          glm::any(glm::greaterThan(glm::dvec2(cells.rest[n]), glm::dvec2(23))))
+        continue;
       CHECK(way->z * (cells.rest[n].z < 30 ? -1 : 1) == doctest::Approx(overlap / 2).epsilon(0.4));
       CHECK(glm::length(glm::dvec2(*way)) < 0.5);
     }
@@ -241,7 +256,8 @@ TEST_CASE("flesh contact: two sides go back by half of what they overlap by, and
   }
   // Settled, they press against each other instead.
   const auto motions = slabs.together(12);
-  const SettledFlesh settled(slabs.volume, slabs.tissue, slabs.weights, LabelSet(65536), motions, Blend::Linear, no_progress());
+  const SettledFlesh settled(slabs.volume, slabs.tissue, slabs.weights, LabelSet(65536), motions, Blend::Linear,
+                             no_progress());
   CHECK(settled.corner_shift({15, 15, 19}, 0x0f).z < -0.7);
   CHECK(settled.corner_shift({15, 15, 39}, 0xf0).z > 0.7);
 }
@@ -259,7 +275,9 @@ TEST_CASE("volume shifts: the nearest matrix of volume one") {
     // Nearer than F made larger or smaller as a whole.
     if (glm::determinant(F) > 0) {
       const glm::dmat3 scaled = F / std::cbrt(glm::determinant(F));
-      const auto square = [](const glm::dmat3& M) { return glm::dot(M[0], M[0]) + glm::dot(M[1], M[1]) + glm::dot(M[2], M[2]); };
+      const auto square = [](const glm::dmat3& M) {
+        return glm::dot(M[0], M[0]) + glm::dot(M[1], M[1]) + glm::dot(M[2], M[2]);
+      };
       CHECK(square(P - F) <= square(scaled - F) * 1.05 + 1e-9);
     }
   }

@@ -38,10 +38,12 @@ struct Block {
 TEST_CASE("organ volumes: what is pressed small or drawn out comes within five percent, from its neighbours alone") {
   for (const double scale : {0.6, 1.5}) {
     Block block(6);
-    const std::int64_t organ = block.count(kOrganLabel), muscle = block.count(kMuscle), bone = block.count(kBone), skin = block.count(kSkin);
+    const std::int64_t organ = block.count(kOrganLabel), muscle = block.count(kMuscle), bone = block.count(kBone),
+                       skin = block.count(kSkin);
     const auto wanted = std::llround(double(organ) / scale);
     const auto parts = connected_components(block.posed).voxels.size();
-    const auto given = keep_organ_volumes(block.posed, {{kOrganLabel, wanted}, {kMuscle, muscle}}, block.soft, block.skin);
+    const auto given =
+        keep_organ_volumes(block.posed, {{kOrganLabel, wanted}, {kMuscle, muscle}}, block.soft, block.skin);
     CHECK(std::abs(double(block.count(kOrganLabel)) / double(wanted) - 1) <= 0.05 + 1e-9);
     CHECK(given.at(kOrganLabel) == block.count(kOrganLabel) - organ);
     CHECK(block.count(kOrganLabel) + block.count(kMuscle) == organ + muscle);
@@ -55,7 +57,8 @@ TEST_CASE("organ volumes: what is within its bounds stays as it is, and nobody g
   Block block(6);
   const LabelVolume before = block.posed;
   const std::int64_t organ = block.count(kOrganLabel), muscle = block.count(kMuscle);
-  CHECK(keep_organ_volumes(block.posed, {{kOrganLabel, organ * 103 / 100}, {kMuscle, muscle}}, block.soft, block.skin).empty());
+  CHECK(keep_organ_volumes(block.posed, {{kOrganLabel, organ * 103 / 100}, {kMuscle, muscle}}, block.soft, block.skin)
+            .empty());
   CHECK(block.posed.voxels == before.voxels);
   // Muscle is short itself: it gives nothing.
   keep_organ_volumes(block.posed, {{kOrganLabel, organ * 2}, {kMuscle, muscle * 100 / 95}}, block.soft, block.skin);
@@ -71,7 +74,9 @@ TEST_CASE("organ volumes: a crumb stays a crumb") {
   std::int64_t near = 0;
   for (int z = 5; z < 12; ++z)
     for (int y = 5; y < 13; ++y)
-      for (int x = 5; x < 12; ++x) near += glm::distance(glm::dvec3(x, y, z), glm::dvec3(9.5, 8.5, 8)) < 4 && block.posed.at({x, y, z}) == kOrganLabel;
+      for (int x = 5; x < 12; ++x)
+        near +=
+            glm::distance(glm::dvec3(x, y, z), glm::dvec3(9.5, 8.5, 8)) < 4 && block.posed.at({x, y, z}) == kOrganLabel;
   CHECK(near == 8);
   CHECK(block.count(kOrganLabel) > organ * 18 / 10);
 }
