@@ -191,7 +191,7 @@ TEST_CASE("close skin: at the volume's border a cut stays open, and what only to
   CHECK_FALSE(close_skin(volume, table(), SkinGrowth::Outward).is_padded);
 }
 
-TEST_CASE("close skin: bone at the air stays bone inward and is covered outward; nails stay as they are") {
+TEST_CASE("close skin: bone at the air stays bone inward and is covered outward, and nails stay as they are") {
   LabelVolume limb = sliced_limb();
   for_each_voxel(limb.grid.size, [&](const glm::ivec3& v) {
     if (limb.at(v) == kFlesh && v.z == 3 && v.x > 29) limb.at(v) = kUpper;
