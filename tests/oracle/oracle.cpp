@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An oracle: Limber that is told which bone each voxel truly is and where tissue truly touches without being one. What it still
+// gets wrong is not the fault of parting bones or of finding seams: it is what blending costs. It is never shipped.
+//
+// It takes the command line of `limber weights` and `limber resample`, VOLUME first, and finds the truth of a hard body beside
+// the volume [body_truth.h]. So the check of the hard bodies judges it in place of the program:
+//   check_hard.py BODY --limber build/tests/limber_oracle --rows 3
+// Only bone parts and seams are replaced; weights come from the same heat, and everything after is the program's own command.
+// LIMBER_ORACLE_BONES=found and LIMBER_ORACLE_SEAMS=found or none in the environment take back one of the two truths, which tells
+// what each is worth. Both are `truth` where nothing is said.
+//
+// glue.nrrd leaves out what lies within 50 mm (5 mm for fingers) of where two parts are one by nature, so a glued face there stays
+// joined here: seams that Limber finds may reach further than the true ones.
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/cmd/body_options.h"
+#include "core/cmd/command.h"
+#include "core/rig/armature_io.h"
+#include "core/seams/find_seams.h"
+#include "core/seams/seams_io.h"
+#include "core/skin/heat_diffusion.h"
+#include "core/skin/weights_io.h"
+#include "tests/oracle/body_truth.h"
+
+namespace {
+
+using namespace limber;
+
+enum class Source { Truth, Found, None };
+
+Source source_named(const char* variable, bool may_be_none) {
+  const char* value = std::getenv(variable);
+  const std::string name = value ? value : "truth";
+  if (name == "truth") return Source::Truth;
+  if (name == "found") return Source::Found;
+  if (name == "none" && may_be_none) return Source::None;
+  throw Error("this is no source of what the oracle tells", std::string(variable) + "=" + name,
+              may_be_none ? "use truth, found or none" : "use truth or found");
+}
+
+struct Options {
+  cmd::BodyOptions body;
+  cmd::RunOptions run;
+  std::string weights, output;
+};
+
+// A body with its bones and seams told.
+struct ToldBody {
+  cmd::Body body;
+  TissueVoxels tissue;
+  BoneParts parts;
+
+  ToldBody(const Options& options, Progress& progress) : body(cmd::read_body(options.body, progress)), tissue(body.file.volume) {
+    const LabelVolume& volume = body.file.volume;
+    const Path folder = Path(options.body.volume).parent_path();
+    const Source bones = source_named("LIMBER_ORACLE_BONES", false), seams = source_named("LIMBER_ORACLE_SEAMS", true);
+    parts = bones == Source::Truth ? oracle::true_bones(folder, volume, tissue, body.tissues, body.rig)
+                                   : split_bones(volume, tissue, body.tissues, body.rig, progress, body.bone_map);
+    if (seams == Source::None) return;
+    tissue.set_seams(std::make_shared<const Seams>(
+        seams == Source::Truth ? oracle::true_seams(folder, volume)
+                               : find_seams(volume, tissue, body.tissues, body.rig, parts, progress)));
+  }
+  void write_weights_to(const Path& path, Progress& progress) const {
+    WeightsReport report;
+    const SkinWeights weights = diffuse_heat(body.file.volume, tissue, body.tissues, body.rig, parts, {}, progress, &report);
+    cmd::warn(report.warnings);
+    write_weights(weights, body.file.volume, tissue, path);
+  }
+};
+
+// A folder of its own, gone with it.
+class Scratch {
+ public:
+  Scratch() : folder_(std::filesystem::temp_directory_path() / ("limber-oracle-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  std::string file(const char* name) const { return (folder_ / name).string(); }
+
+ private:
+  Path folder_;
+};
+
+void make_weights(const Options& options) {
+  std::optional<ThreadCount> threads;
+  if (options.run.threads > 0) threads.emplace(options.run.threads);
+  cmd::CommandProgress progress(options.run.progress);
+  check_weights_writable(options.output);
+  ToldBody(options, progress).write_weights_to(options.output, progress);
+}
+
+int run_limber(std::vector<std::string> words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  CLI::App app("The program itself.", "limber");
+  app.require_subcommand(1);
+  cmd::add_commands(app);
+  return cmd::run(app, static_cast<int>(pointers.size()), pointers.data());
+}
+
+// The program's own command, with seams as a file, and weights where none were given.
+//   words  the oracle's command line
+int resample(const Options& options, std::vector<std::string> words) {
+  const Scratch scratch;
+  {
+    cmd::CommandProgress progress("");
+    const ToldBody told(options, progress);
+    std::string seams = "none";
+    if (const Seams* known = told.tissue.seams()) write_seams(*known, told.body.file.volume.grid, seams = scratch.file("seams.nrrd"));
+    words.insert(words.end(), {"--seams", seams});
+    if (options.weights.empty()) {
+      const std::string weights = scratch.file("weights.nrrd");
+      told.write_weights_to(weights, progress);
+      words.insert(words.end(), {"--weights", weights});
+    }
+  }
+  return run_limber(std::move(words));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Limber that is told the true bones and seams of a hard body, for tests.", "limber_oracle");
+  app.require_subcommand(1);
+  Options options;
+  int exit_code = 0;
+  CLI::App* weights = app.add_subcommand("weights", "as of limber, of the true bones and seams");
+  cmd::add_body_options(*weights, options.body);
+  weights->add_option("-o,--output", options.output, "W.nrrd")->required();
+  cmd::add_run_options(*weights, options.run);
+  weights->callback([&] { make_weights(options); });
+  CLI::App* posed = app.add_subcommand("resample", "as of limber, with the true seams; takes its options, VOLUME first");
+  cmd::add_body_options(*posed, options.body);
+  posed->add_option("--weights", options.weights, "W.nrrd (default: of the true bones and seams)");
+  posed->allow_extras();
+  posed->callback([&] { exit_code = resample(options, std::vector<std::string>(argv, argv + argc)); });
+  const int own = cmd::run(app, argc, argv);
+  return own != 0 ? own : exit_code;
+}
