@@ -48,7 +48,8 @@ std::map<int, int> rig_bones(const Path& folder, const Armature& armature) {
   const Json truth = read_truth(folder);
   for (const auto& [number, bone] : truth.at("bones_in_truth_nrrd").items()) {
     const std::string wanted = bone.at("rig").at(0);
-    const auto found = std::find_if(armature.bones.begin(), armature.bones.end(), [&](const Bone& b) { return b.name == wanted; });
+    const auto found = std::find_if(armature.bones.begin(), armature.bones.end(),
+                                    [&](const Bone& b) { return b.name == wanted; });
     if (found == armature.bones.end())
       throw Error("the rig lacks a bone that the truth names", wanted, "give the rig that lies beside the volume");
     bone_of[std::stoi(number)] = static_cast<int>(found - armature.bones.begin());
@@ -58,8 +59,8 @@ std::map<int, int> rig_bones(const Path& folder, const Armature& armature) {
 
 }  // namespace
 
-BoneParts true_bones(const Path& folder, const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-                     const Armature& armature) {
+BoneParts true_bones(const Path& folder, const LabelVolume& volume, const TissueVoxels& tissue,
+                     const TissueTable& tissues, const Armature& armature) {
   const std::map<int, int> bone_of = rig_bones(folder, armature);
   const Numbers truth(folder / "truth.nrrd", volume);
   std::vector<std::uint8_t> is_bone_label(65536, 0);

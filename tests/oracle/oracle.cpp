@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// An oracle: Limber that is told which bone each voxel truly is and where tissue truly touches without being one. What it still
-// gets wrong is not the fault of parting bones or of finding seams: it is what blending costs. It is never shipped.
+// An oracle: Limber that is told which bone each voxel truly is and where tissue truly touches without being one. What
+// it still gets wrong is not the fault of parting bones or of finding seams: it is what blending costs. Never shipped.
 //
-// It takes the command line of `limber weights` and `limber resample`, VOLUME first, and finds the truth of a hard body beside
-// the volume [body_truth.h]. So the check of the hard bodies judges it in place of the program:
+// It takes the command line of `limber weights` and `limber resample`, VOLUME first, and finds the truth of a hard body
+// beside the volume [body_truth.h]. So the check of the hard bodies judges it in place of the program:
 //   check_hard.py BODY --limber build/tests/limber_oracle --rows 3
-// Only bone parts and seams are replaced; weights come from the same heat, and everything after is the program's own command.
-// LIMBER_ORACLE_BONES=found and LIMBER_ORACLE_SEAMS=found or none in the environment take back one of the two truths, which tells
-// what each is worth. Both are `truth` where nothing is said.
+// Only bone parts and seams are replaced; weights come from the same heat, and everything after is the program's own
+// command. LIMBER_ORACLE_BONES=found and LIMBER_ORACLE_SEAMS=found or none in the environment take back one of the two
+// truths, which tells what each is worth; with both found it is the program itself. Unset, they are `truth`.
 //
-// glue.nrrd leaves out what lies within 50 mm (5 mm for fingers) of where two parts are one by nature, so a glued face there stays
-// joined here: seams that Limber finds may reach further than the true ones.
+// glue.nrrd leaves out what lies within 50 mm (5 mm for fingers) of where two parts are one by nature, so a glued face
+// there stays joined here: seams that Limber finds may reach further than the true ones.
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -58,7 +59,8 @@ struct ToldBody {
   TissueVoxels tissue;
   BoneParts parts;
 
-  ToldBody(const Options& options, Progress& progress) : body(cmd::read_body(options.body, progress)), tissue(body.file.volume) {
+  ToldBody(const Options& options, Progress& progress)
+      : body(cmd::read_body(options.body, progress)), tissue(body.file.volume) {
     const LabelVolume& volume = body.file.volume;
     const Path folder = Path(options.body.volume).parent_path();
     const Source bones = source_named("LIMBER_ORACLE_BONES", false), seams = source_named("LIMBER_ORACLE_SEAMS", true);
@@ -71,9 +73,10 @@ struct ToldBody {
   }
   void write_weights_to(const Path& path, Progress& progress) const {
     WeightsReport report;
-    const SkinWeights weights = diffuse_heat(body.file.volume, tissue, body.tissues, body.rig, parts, {}, progress, &report);
+    const LabelVolume& volume = body.file.volume;
+    const SkinWeights weights = diffuse_heat(volume, tissue, body.tissues, body.rig, parts, {}, progress, &report);
     cmd::warn(report.warnings);
-    write_weights(weights, body.file.volume, tissue, path);
+    write_weights(weights, volume, tissue, path);
   }
 };
 
@@ -100,7 +103,12 @@ void make_weights(const Options& options) {
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   cmd::CommandProgress progress(options.run.progress);
   check_weights_writable(options.output);
-  ToldBody(options, progress).write_weights_to(options.output, progress);
+  const ToldBody told(options, progress);
+  told.write_weights_to(options.output, progress);
+  std::int64_t voxels = 0;
+  for (const BoneParts::Part& part : told.parts.parts) voxels += part.voxel_count;
+  std::printf("bones told: %lld voxels for %zu rig bones; seams told: %lld faces\n", static_cast<long long>(voxels),
+              told.parts.parts.size(), static_cast<long long>(told.tissue.seams() ? told.tissue.seams()->size() : 0));
 }
 
 int run_limber(std::vector<std::string> words) {
@@ -120,7 +128,10 @@ int resample(const Options& options, std::vector<std::string> words) {
     cmd::CommandProgress progress("");
     const ToldBody told(options, progress);
     std::string seams = "none";
-    if (const Seams* known = told.tissue.seams()) write_seams(*known, told.body.file.volume.grid, seams = scratch.file("seams.nrrd"));
+    if (const Seams* known = told.tissue.seams()) {
+      seams = scratch.file("seams.nrrd");
+      write_seams(*known, told.body.file.volume.grid, seams);
+    }
     words.insert(words.end(), {"--seams", seams});
     if (options.weights.empty()) {
       const std::string weights = scratch.file("weights.nrrd");
@@ -143,7 +154,7 @@ int main(int argc, char** argv) {
   weights->add_option("-o,--output", options.output, "W.nrrd")->required();
   cmd::add_run_options(*weights, options.run);
   weights->callback([&] { make_weights(options); });
-  CLI::App* posed = app.add_subcommand("resample", "as of limber, with the true seams; takes its options, VOLUME first");
+  CLI::App* posed = app.add_subcommand("resample", "as of limber, with the true seams; VOLUME comes first");
   cmd::add_body_options(*posed, options.body);
   posed->add_option("--weights", options.weights, "W.nrrd (default: of the true bones and seams)");
   posed->allow_extras();
