@@ -57,6 +57,51 @@ std::map<int, int> rig_bones(const Path& folder, const Armature& armature) {
   return bone_of;
 }
 
+// body(voxel) for every voxel of tissue.
+template <class Body>
+void for_each_voxel(const LabelVolume& volume, const Body& body) {
+  const glm::ivec3 size = volume.grid.size;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x)
+        if (volume.at({x, y, z}) != 0) body(glm::ivec3(x, y, z));
+}
+
+// The part of the body that each voxel belongs to. Some voxels of bone are told to be of the part beside them, which
+// would leave a bridge between two parts: a bone is whole of the part that its rig bone belongs to.
+class PartsOfBody {
+ public:
+  PartsOfBody(const Path& folder, const Json& truth, const LabelVolume& volume)
+      : bone_(folder / "truth.nrrd", volume), part_(folder / "parts.nrrd", volume) {
+    std::map<int, std::map<int, std::int64_t>> voxels;  // by true bone and part
+    for_each_voxel(volume, [&](const glm::ivec3& v) { ++voxels[bone_.at(v)][part_.at(v)]; });
+    for (const auto& [number, bone] : truth.at("bones_in_truth_nrrd").items()) {
+      const int part = part_of(truth, bone.at("rig").at(0), voxels[std::stoi(number)]);
+      if (part != 0) part_of_bone_[std::stoi(number)] = part;
+    }
+  }
+  int at(const glm::ivec3& v) const {
+    const auto bone = part_of_bone_.find(bone_.at(v));
+    return bone == part_of_bone_.end() ? part_.at(v) : bone->second;
+  }
+
+ private:
+  // Of the parts that may follow the rig bone, the one that has most of the true bone; 0 where there is none.
+  static int part_of(const Json& truth, const std::string& rig_bone, std::map<int, std::int64_t>& voxels) {
+    int best = 0;
+    for (const auto& [number, part] : truth.at("parts_in_parts_nrrd").items()) {
+      const Json& bones = part.at("rig");
+      if (std::find(bones.begin(), bones.end(), rig_bone) == bones.end()) continue;
+      const int candidate = std::stoi(number);
+      if (best == 0 || voxels[candidate] > voxels[best]) best = candidate;
+    }
+    return best;
+  }
+
+  Numbers bone_, part_;
+  std::map<int, int> part_of_bone_;
+};
+
 }  // namespace
 
 BoneParts true_bones(const Path& folder, const LabelVolume& volume, const TissueVoxels& tissue,
@@ -105,20 +150,18 @@ Seams true_seams(const Path& folder, const LabelVolume& volume) {
     glued.insert({std::min(one, other), std::max(one, other)});
   }
   if (glued.empty()) return seams;
-  const Numbers part(folder / "parts.nrrd", volume), glue(folder / "glue.nrrd", volume);
-  const auto cut_faces_of = [&](const glm::ivec3& v) {
-    if (volume.at(v) == 0 || glue.at(v) == 0) return;
+  const Numbers glue(folder / "glue.nrrd", volume);
+  const PartsOfBody parts(folder, truth, volume);
+  for_each_voxel(volume, [&](const glm::ivec3& v) {
+    if (glue.at(v) == 0) return;
     for (int axis = 0; axis < 3; ++axis) {
       glm::ivec3 w = v;
       ++w[axis];
       if (volume.at_or_air(w) == 0 || glue.at(w) == 0) continue;
-      const int one = part.at(v), other = part.at(w);
+      const int one = parts.at(v), other = parts.at(w);
       if (glued.contains({std::min(one, other), std::max(one, other)})) seams.cut(v, axis);
     }
-  };
-  for (int z = 0; z < volume.grid.size.z; ++z)
-    for (int y = 0; y < volume.grid.size.y; ++y)
-      for (int x = 0; x < volume.grid.size.x; ++x) cut_faces_of({x, y, z});
+  });
   return seams;
 }
 
