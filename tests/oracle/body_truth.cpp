@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/seams/limbs.h"
 #include "core/volume/volume_io.h"
 
 namespace limber::oracle {
@@ -102,6 +103,32 @@ class PartsOfBody {
   std::map<int, int> part_of_bone_;
 };
 
+// The limbs of a rig that are parts of the body.
+class FreeLimbs {
+ public:
+  FreeLimbs(const Json& truth, const Armature* armature) : armature_(armature) {
+    if (!armature) return;
+    for (const Limb& limb : limbs_of(*armature))
+      for (const auto& [number, part] : truth.at("parts_in_parts_nrrd").items())
+        if (is_within(limb, part.at("rig").get<std::set<std::string>>())) limb_of_part_[std::stoi(number)] = limb;
+  }
+  // Whether a part of the body is a limb, and a point (world, mm) lies where that is free.
+  bool has(int part, const glm::dvec3& point) const {
+    const auto limb = limb_of_part_.find(part);
+    return limb != limb_of_part_.end() && is_free(limb->second, *armature_, point);
+  }
+
+ private:
+  bool is_within(const Limb& limb, const std::set<std::string>& bones) const {
+    for (std::size_t b = 0; b < limb.has_bone.size(); ++b)
+      if (limb.has_bone[b] && !bones.contains(armature_->bones[b].name)) return false;
+    return true;
+  }
+
+  const Armature* armature_;
+  std::map<int, Limb> limb_of_part_;
+};
+
 }  // namespace
 
 BoneParts true_bones(const Path& folder, const LabelVolume& volume, const TissueVoxels& tissue,
@@ -141,7 +168,7 @@ BoneParts true_bones(const Path& folder, const LabelVolume& volume, const Tissue
   return parts;
 }
 
-Seams true_seams(const Path& folder, const LabelVolume& volume) {
+Seams true_seams(const Path& folder, const LabelVolume& volume, const Armature* free_limbs) {
   Seams seams(volume.grid.size);
   std::set<std::pair<int, int>> glued;
   const Json truth = read_truth(folder);
@@ -152,14 +179,17 @@ Seams true_seams(const Path& folder, const LabelVolume& volume) {
   if (glued.empty()) return seams;
   const Numbers glue(folder / "glue.nrrd", volume);
   const PartsOfBody parts(folder, truth, volume);
+  const FreeLimbs free(truth, free_limbs);
+  const AffineTransform world = world_from_voxel(volume.grid);
   for_each_voxel(volume, [&](const glm::ivec3& v) {
-    if (glue.at(v) == 0) return;
     for (int axis = 0; axis < 3; ++axis) {
       glm::ivec3 w = v;
       ++w[axis];
-      if (volume.at_or_air(w) == 0 || glue.at(w) == 0) continue;
+      if (volume.at_or_air(w) == 0) continue;
       const int one = parts.at(v), other = parts.at(w);
-      if (glued.contains({std::min(one, other), std::max(one, other)})) seams.cut(v, axis);
+      if (!glued.contains({std::min(one, other), std::max(one, other)})) continue;
+      const glm::dvec3 centre = world * (0.5 * (glm::dvec3(v) + glm::dvec3(w)));
+      if ((glue.at(v) != 0 && glue.at(w) != 0) || free.has(one, centre) || free.has(other, centre)) seams.cut(v, axis);
     }
   });
   return seams;

@@ -20,7 +20,9 @@ BoneParts true_bones(const Path& folder, const LabelVolume& volume, const Tissue
                      const TissueTable& tissues, const Armature& armature);
 
 // The faces between two parts that were glued to each other, in the places where they were. None without glue.nrrd.
+//   free_limbs  where not nullptr, of this rig: also the faces between these parts where a limb is free by nature
+//               [core/seams/limbs.h], as far as the seams that Limber finds may reach
 // throws Error when a file is missing or on another grid
-Seams true_seams(const Path& folder, const LabelVolume& volume);
+Seams true_seams(const Path& folder, const LabelVolume& volume, const Armature* free_limbs = nullptr);
 
 }  // namespace limber::oracle

@@ -10,7 +10,8 @@
 // truths, which tells what each is worth; with both found it is the program itself. Unset, they are `truth`.
 //
 // glue.nrrd leaves out what lies within 50 mm (5 mm for fingers) of where two parts are one by nature, so a glued face
-// there stays joined here: seams that Limber finds may reach further than the true ones.
+// there stays joined here: seams that Limber finds may reach further than the true ones. LIMBER_ORACLE_SEAMS=free also
+// cuts the faces between glued parts there, where the limb is free by nature.
 #include <unistd.h>
 
 #include <cstdio>
@@ -35,16 +36,17 @@ namespace {
 
 using namespace limber;
 
-enum class Source { Truth, Found, None };
+enum class Source { Truth, Free, Found, None };
 
-Source source_named(const char* variable, bool may_be_none) {
+Source source_named(const char* variable, bool is_of_seams) {
   const char* value = std::getenv(variable);
   const std::string name = value ? value : "truth";
   if (name == "truth") return Source::Truth;
   if (name == "found") return Source::Found;
-  if (name == "none" && may_be_none) return Source::None;
+  if (name == "free" && is_of_seams) return Source::Free;
+  if (name == "none" && is_of_seams) return Source::None;
   throw Error("this is no source of what the oracle tells", std::string(variable) + "=" + name,
-              may_be_none ? "use truth, found or none" : "use truth or found");
+              is_of_seams ? "use truth, free, found or none" : "use truth or found");
 }
 
 struct Options {
@@ -68,8 +70,8 @@ struct ToldBody {
                                    : split_bones(volume, tissue, body.tissues, body.rig, progress, body.bone_map);
     if (seams == Source::None) return;
     tissue.set_seams(std::make_shared<const Seams>(
-        seams == Source::Truth ? oracle::true_seams(folder, volume)
-                               : find_seams(volume, tissue, body.tissues, body.rig, parts, progress)));
+        seams == Source::Found ? find_seams(volume, tissue, body.tissues, body.rig, parts, progress)
+                               : oracle::true_seams(folder, volume, seams == Source::Free ? &body.rig : nullptr)));
   }
   void write_weights_to(const Path& path, Progress& progress) const {
     WeightsReport report;
