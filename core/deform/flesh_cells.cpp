@@ -154,9 +154,10 @@ FleshCells flesh_cells(const LabelVolume& volume, const TissueVoxels& tissue, co
   cells.bone.resize(count);
   cells.is_fixed.resize(count);
   cells.fill.resize(pieces.size());
+  cells.lowest.resize(pieces.size());
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     const CellPiece& piece = pieces[p];
-    const glm::ivec3 lowest = piece.cell * cells.step;
+    const glm::ivec3 lowest = cells.lowest[p] = piece.cell * cells.step;
     const std::int32_t first = cells.bending[tissue.brick_at(lowest)];
     const glm::ivec3 in_brick = lowest % TissueVoxels::kBrick;
     int voxels = 0;

@@ -21,6 +21,7 @@ struct FleshCells {
   int step = 2;                                    // voxels an edge: 2, 4 or 8
   glm::dvec3 edge{0};                              // mm
   std::vector<std::array<std::int32_t, 8>> nodes;  // by cell; bit 0 of the place is x, bit 1 y, bit 2 z
+  std::vector<glm::ivec3> lowest;                  // by cell: its lowest voxel
   std::vector<float> fill;                         // by cell: how much of it is tissue, (0, 1]
   std::vector<glm::dvec3> rest;                    // by node
   std::vector<glm::dvec3> blended;                 // by node: where blending carries it

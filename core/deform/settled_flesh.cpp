@@ -38,15 +38,20 @@ SettledFlesh::SettledFlesh(const LabelVolume& volume, const TissueVoxels& tissue
   progress.update("flesh", 1);
 }
 
-// Trilinear in the cell; `corner` is its own.
-glm::vec3 SettledFlesh::shift_in(std::int32_t cell, const glm::ivec3& corner) const {
-  const auto& nodes = cells_.nodes[cell];
-  const glm::ivec3 first = glm::ivec3(glm::round(cells_.rest[nodes[0]] * (double(cells_.step) / cells_.edge) + 0.5));
-  const glm::vec3 t = glm::vec3(corner - first) / float(cells_.step);
-  glm::vec3 shift(0);
-  for (int i = 0; i < 8; ++i)
-    shift += shift_[nodes[i]] * ((i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z));
-  return shift;
+// Trilinear in the cell; `corner` is its own. In the order of their places, so that cells that share a side name the
+// same.
+SettledFlesh::Shares SettledFlesh::shares_in(std::int32_t cell, const glm::ivec3& corner) const {
+  const glm::ivec3 at = corner - cells_.lowest[cell];
+  const float step = 1 / static_cast<float>(cells_.step);
+  const glm::vec3 high = glm::vec3(at) * step, low = 1.0f - high;
+  Shares shares;
+  for (int i = 0; i < 8; ++i) {
+    const float share = (i & 1 ? high.x : low.x) * (i & 2 ? high.y : low.y) * (i & 4 ? high.z : low.z);
+    if (share == 0) continue;
+    shares.node[shares.count] = cells_.nodes[cell][i];
+    shares.share[shares.count++] = share;
+  }
+  return shares;
 }
 
 // -1 in air, and where tissue moves as one.
@@ -64,27 +69,68 @@ std::int32_t SettledFlesh::cell_at(const glm::ivec3& voxel, bool& is_rigid) cons
 }
 
 glm::vec3 SettledFlesh::corner_shift(const glm::ivec3& lowest, unsigned around) const {
-  glm::vec3 sum(0);
+  std::array<std::int32_t, 8> cells;
   int count = 0;
   bool is_rigid = false;
   for (; around; around &= around - 1) {
     const int v = std::countr_zero(around);
     const std::int32_t cell = cell_at(lowest + glm::ivec3(v & 1, v >> 1 & 1, v >> 2), is_rigid);
     if (is_rigid) return glm::vec3(0);
-    if (cell < 0) continue;
-    sum += shift_in(cell, lowest + 1);
-    ++count;
+    if (cell >= 0) cells[count++] = cell;
   }
-  return count ? sum / float(count) : glm::vec3(0);
+  return count ? mean_shift({cells.data(), static_cast<std::size_t>(count)}, lowest + 1) : glm::vec3(0);
+}
+
+// Of all `cells` at their common corner. Most share the nodes there, and say the same.
+glm::vec3 SettledFlesh::mean_shift(std::span<const std::int32_t> cells, const glm::ivec3& corner) const {
+  const Shares first = shares_in(cells[0], corner);
+  const auto shift_of = [&](const Shares& shares) {
+    glm::vec3 shift(0);
+    for (int i = 0; i < shares.count; ++i) shift += shift_[shares.node[i]] * shares.share[i];
+    return shift;
+  };
+  glm::vec3 sum(0);
+  int others = 0;
+  for (std::size_t c = 1; c < cells.size(); ++c) {
+    if (cells[c] == cells[0]) continue;
+    const Shares shares = shares_in(cells[c], corner);
+    if (shares.same_nodes(first)) continue;
+    sum += shift_of(shares);
+    ++others;
+  }
+  const glm::vec3 own = shift_of(first);
+  return others ? (sum + own * float(std::ssize(cells) - others)) / float(std::ssize(cells)) : own;
 }
 
 bool SettledFlesh::corner_shifts(std::int64_t brick, CornerShifts& shifts) const {
   if (cells_.bending[brick] < 0) return false;
+  constexpr int kHalo = TissueVoxels::kBrick + 2;  // a brick and one voxel around it
+  constexpr std::int32_t kRigid = -2;
+  std::array<std::int32_t, kHalo * kHalo * kHalo> cells;
   const glm::ivec3 lowest = tissue_->bricks()[brick].corner - 1;
   std::size_t at = 0;
+  for (int k = 0; k < kHalo; ++k)
+    for (int j = 0; j < kHalo; ++j)
+      for (int i = 0; i < kHalo; ++i) {
+        bool is_rigid = false;
+        const std::int32_t cell = cell_at(lowest + glm::ivec3(i, j, k), is_rigid);
+        cells[at++] = is_rigid ? kRigid : cell;
+      }
+  at = 0;
   for (int k = 0; k <= 8; ++k)
     for (int j = 0; j <= 8; ++j)
-      for (int i = 0; i <= 8; ++i) shifts[at++] = corner_shift(lowest + glm::ivec3(i, j, k), 0xff);
+      for (int i = 0; i <= 8; ++i) {
+        std::array<std::int32_t, 8> around;
+        std::size_t count = 0;
+        bool is_rigid = false;
+        for (int v = 0; v < 8; ++v) {
+          const std::int32_t cell = cells[i + (v & 1) + kHalo * (j + (v >> 1 & 1) + kHalo * (k + (v >> 2)))];
+          is_rigid = is_rigid || cell == kRigid;
+          if (cell >= 0) around[count++] = cell;
+        }
+        shifts[at++] =
+            count && !is_rigid ? mean_shift({around.data(), count}, lowest + 1 + glm::ivec3(i, j, k)) : glm::vec3(0);
+      }
   return true;
 }
 

@@ -14,8 +14,10 @@
 // Pauly 2014, Projective dynamics]. The same bytes come out for any number of threads.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -49,7 +51,17 @@ class SettledFlesh {
   glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const;
 
  private:
-  glm::vec3 shift_in(std::int32_t cell, const glm::ivec3& corner) const;
+  // The nodes of a cell whose shares of a corner are not zero.
+  struct Shares {
+    int count = 0;
+    std::array<std::int32_t, 8> node;
+    std::array<float, 8> share;
+    bool same_nodes(const Shares& other) const {
+      return std::equal(node.begin(), node.begin() + count, other.node.begin(), other.node.begin() + other.count);
+    }
+  };
+  Shares shares_in(std::int32_t cell, const glm::ivec3& corner) const;
+  glm::vec3 mean_shift(std::span<const std::int32_t> cells, const glm::ivec3& corner) const;
   std::int32_t cell_at(const glm::ivec3& voxel, bool& is_rigid) const;
 
   const TissueVoxels* tissue_;
