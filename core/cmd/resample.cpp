@@ -444,7 +444,7 @@ void add_resample(CLI::App& app) {
   add_seam_option(*command, options->seams);
   add_pose_options(*command, options->pose);
   command->add_option("--frames", options->frames, "several frames of the motion, one after the other: put {frame} into the outputs' names; fem meshes once and starts each from the one before")->type_name("FIRST:LAST[:STEP]");
-  command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions), mix (between the two: joints neither thin nor bulge) or fem (finite elements)")->capture_default_str()->check(CLI::IsMember({"lbs", "dqs", "mix", "fem"}));
+  command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions), mix (between the two, then flesh gets its volume back) or fem (finite elements)")->capture_default_str()->check(CLI::IsMember({"lbs", "dqs", "mix", "fem"}));
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));
   command->add_option("--mesher", options->mesher, "fem: who fills the body's surface with tets: lattice (default) or tetgen")->check(CLI::IsMember({"lattice", "tetgen"}));

@@ -386,6 +386,11 @@ void print_report(std::ostream& out, const Report& report) {
     if (deform.settled && deform.settled->cells > 0)
       out << line("flesh settled: cells were off their volume by %.1f %% in the mean, and are by %.1f %%; moved by up to %.1f mm",
                   100 * deform.settled->volume_error_before, 100 * deform.settled->volume_error_after, deform.settled->largest_shift_mm);
+    std::int64_t moved = 0;
+    for (const auto& [_, voxels] : deform.kept_organs) moved += std::abs(voxels);
+    if (moved > 0)
+      out << line("organs kept: %lld that were off by more than 5 %% were given or gave %lld voxels at their surface",
+                  static_cast<long long>(deform.kept_organs.size()), static_cast<long long>(moved));
     if (deform.mass_exact) out << line("mass-exact: %lld voxels changed hands", static_cast<long long>(deform.mass_exact->changed_voxels));
     double worst = 0;
     for (const auto& bone : deform.bones) worst = std::max(worst, bone.rigid_residual_mm);

@@ -157,6 +157,11 @@ bool is_enclosed(const LabelVolume& volume, const glm::ivec3& voxel) {
   return same;
 }
 
+std::uint64_t shuffled(std::uint64_t at) {
+  at = (at ^ at >> 30) * 0xbf58476d1ce4e5b9;
+  return at ^ at >> 27;
+}
+
 bool touches_air(const LabelVolume& volume, const glm::ivec3& voxel) {
   bool air = false;
   for (const glm::ivec3& step : kFaceNeighbours) air |= volume.at_or_air(voxel + step) == 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 
 #include "core/volume/components.h"
@@ -49,6 +50,10 @@ bool is_enclosed(const LabelVolume& volume, const glm::ivec3& voxel);
 
 // The same, and neither the voxel nor one of the 26 around it is air or outside the grid.
 bool can_spare_inside(const LabelVolume& volume, const glm::ivec3& voxel);
+
+// A number for the place of a voxel, as if at random, the same each time: ordered by it, voxels that are equally good
+// do not all lie on one side of a body.
+std::uint64_t shuffled(std::uint64_t at);
 
 // Whether one of the six voxels at its faces is air or outside the grid.
 bool touches_air(const LabelVolume& volume, const glm::ivec3& voxel);

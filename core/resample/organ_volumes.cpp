@@ -14,12 +14,6 @@ constexpr int kLayers = 6;                           // at most, on or off an or
 constexpr std::int64_t kFrozen = 2 * kSmallestPart;  // voxels: smaller parts might come to count, or cease to
 constexpr int kRounds = 2;                           // over all organs: what one gave may leave another one short
 
-// As if at random: of voxels that are equally good not all lie on one side of an organ.
-std::uint64_t shuffled(std::uint64_t at) {
-  at = (at ^ at >> 30) * 0xbf58476d1ce4e5b9;
-  return at ^ at >> 27;
-}
-
 class Organs {
  public:
   Organs(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted, const LabelSet& soft, const LabelSet& skin)

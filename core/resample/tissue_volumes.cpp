@@ -18,12 +18,6 @@ constexpr std::int64_t kFrozen = 2 * kSmallestPart;   // voxels: smaller parts m
 constexpr int kRounds = 8;                            // over moves that had no place when it was their turn
 const std::array<glm::ivec3, 6> kFaces{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
-// As if at random: of equally sure voxels not all lie on one side of the body.
-std::uint64_t shuffled(std::uint64_t at) {
-  at = (at ^ at >> 30) * 0xbf58476d1ce4e5b9;
-  return at ^ at >> 27;
-}
-
 // From one tissue to another one.
 struct Border {
   std::vector<BorderMove> moves;    // rising by cost

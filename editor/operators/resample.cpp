@@ -151,7 +151,7 @@ std::vector<Operator> resample_operators() {
       {"resample.run", "Resample this pose", icon::kResample, "Result", "Writes the posed body as a new label volume, beside the work.", [](Editor& e) { start_resampling(e); }, why_no_resampling},
       method_operator("resample.lbs", "LBS", "Linear blending: quick, loses volume at bent and twisted joints.", "lbs"),
       method_operator("resample.dqs", "DQ", "Dual quaternions: keeps the thickness of twisted limbs, bulges at shoulders.", "dqs"),
-      method_operator("resample.mix", "Mixed", "Between linear and dual quaternions: bent joints neither thin nor bulge.", "mix"),
+      method_operator("resample.mix", "Mixed", "Between linear and dual quaternions; in results flesh then gets its volume back.", "mix"),
       method_operator("resample.fem", "FEM", "Finite elements: tissue keeps its volume and skin touches skin. Takes minutes, in the background.", "fem"),
       {"result.watch", "Watch it settle", icon::kRunning, "Result", "The views show the tissue on its way to the pose, while finite elements are solved.", toggle_watching, needs_solve,
        [](const Editor& e) { return e.fem->watched != 0; }},
