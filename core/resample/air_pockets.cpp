@@ -125,6 +125,21 @@ Label flesh_behind(const LabelVolume& posed, const glm::ivec3& v, const LabelSet
   return most_common_around(posed, v, 1, soft);
 }
 
+// The skin that most of a pocket's walls are of; 0 where they are of flesh.
+Label lining_of(const AirPocket& pocket, const LabelVolume& posed, const LabelSet& flesh, const LabelSet& soft) {
+  std::map<Label, std::int64_t> faces;
+  std::int64_t walls = 0;
+  for (const glm::ivec3& v : pocket)
+    for (const glm::ivec3& face : kFaceNeighbours)
+      if (const Label wall = posed.at_or_air(v + face)) {
+        ++walls;
+        if (soft[wall] && !flesh[wall]) ++faces[wall];
+      }
+  for (const auto& [skin, count] : faces)
+    if (2 * count > walls) return skin;
+  return 0;
+}
+
 // From the walls inwards, layer by layer, until `kept` voxels are left.
 void fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSet& flesh, const LabelSet& soft, std::vector<glm::ivec3>& filled) {
   while (std::ssize(pocket) > kept) {
@@ -161,7 +176,12 @@ std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume
   std::vector<glm::ivec3> filled;
   for (const AirPocket& pocket : pockets) {
     const std::int64_t before = size_at_rest(pocket, posed, rest, rest_pockets, pocket_at_rest, rest_point);
+    const Label lining = lining_of(pocket, posed, flesh, soft);
+    const auto first = std::ssize(filled);
     fill(posed, pocket, std::llround(posed_per_rest * double(before)), flesh, soft, filled);
+    if (lining == 0) continue;
+    for (auto v = filled.begin() + first; v != filled.end(); ++v)
+      if (touches_air(posed, *v)) posed.at(*v) = lining;
   }
   return filled;
 }

@@ -15,7 +15,8 @@ using AirPocket = std::vector<glm::ivec3>;
 std::vector<AirPocket> air_pockets(const LabelVolume& volume);
 
 // Pockets of `posed` get the size that the hollows behind their walls had at rest, none where there was none: what is more is filled,
-// from the walls on, with the soft tissue nearest to it, with what lies under the skin where skin lines the walls.
+// from the walls on, with the soft tissue nearest to it. Where skin lines the walls that is what lies under it, and what is left of
+// the pocket is lined with skin again.
 //   flesh  soft tissues but skin, by label      soft  with skin
 //   returns  the voxels filled, each after those that it was filled from
 std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point);

@@ -17,6 +17,7 @@ namespace limber {
 namespace {
 
 constexpr int kLongestBridge = 4;  // voxels: a longer one would invent anatomy
+constexpr int kLongestTrace = 64;  // voxels, all of which come from beside the tissue itself
 constexpr int kAttempts = 32;      // bridges tried for one part, each around the voxels that earlier ones may not take
 constexpr int kSmallestKept = kSmallestPart / 2;  // voxels: a part that came out smaller is not made up again
 constexpr int kSamples = 4;        // voxels of a part that are asked where they come from
@@ -74,15 +75,20 @@ class Mending {
     for (size_t i = 0; i + 1 < parts.size() && too_many > 0; ++i) {
       if (!is_torn[i] || joined(parts[i].component) == joined(parts.back().component)) continue;
       barred_.clear();
-      for (int attempt = 0; attempt < kAttempts; ++attempt) {
-        const std::optional<Bridge> bridge = shortest_bridge(label, parts[i].component);
-        if (!bridge) break;
-        if (!build(*bridge, label, parts[i].component)) continue;
-        --too_many;
-        break;
-      }
+      if (bridge_from(label, parts[i].component, false) || bridge_from(label, parts[i].component, true)) --too_many;
     }
     return too_many;
+  }
+
+  // Joins a part to another one of its tissue; false where there is no way.
+  //   along_trace  as shortest_bridge takes it
+  bool bridge_from(Label label, int part, bool along_trace) {
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const std::optional<Bridge> bridge = shortest_bridge(label, part, along_trace);
+      if (!bridge) return false;
+      if (build(*bridge, label, part)) return true;
+    }
+    return false;
   }
 
   // Of each part, whether another one comes from the same rest part as some of its voxels.
@@ -214,12 +220,14 @@ class Mending {
 
   // Breadth first from the whole part; each layer is one voxel of bridge more. Smaller pieces of the tissue are crossed
   // for nothing.
-  std::optional<Bridge> shortest_bridge(Label label, int part) const {
-    const int own = joined(part);
+  //   along_trace  a longer bridge may be built, of voxels that all come from beside the tissue: a thin sheet that the pose
+  //                stretched ran there, and fell between the voxels' centres
+  std::optional<Bridge> shortest_bridge(Label label, int part, bool along_trace) const {
+    const int own = joined(part), longest = along_trace ? kLongestTrace : kLongestBridge;
     std::unordered_map<std::int64_t, std::int64_t> came_from;  // of voxels outside the part
     std::vector<glm::ivec3> layer = voxels_of(own);
     const size_t own_voxels = layer.size();
-    for (int length = 0; length <= kLongestBridge && !layer.empty(); ++length) {
+    for (int length = 0; length <= longest && !layer.empty(); ++length) {
       std::vector<glm::ivec3> next;
       for (size_t i = 0; i < layer.size(); ++i) {
         const glm::ivec3 from = layer[i];
@@ -239,7 +247,8 @@ class Mending {
               layer.push_back(to);
             else if (same_rest_part(label, came_from, to))
               return path(came_from, label, to, component);
-          } else if (length < kLongestBridge && !came_from.contains(at) && can_take(to, label)) {
+          } else if (length < longest && !came_from.contains(at) && can_take(to, label) &&
+                     (!along_trace || comes_from_beside(to, label))) {
             came_from[at] = posed_.grid.index(from);
             next.push_back(to);
           }
@@ -248,6 +257,13 @@ class Mending {
       layer = std::move(next);
     }
     return std::nullopt;
+  }
+
+  bool comes_from_beside(const glm::ivec3& posed_voxel, Label label) const {
+    const glm::ivec3 from(glm::floor(rest_point_(posed_voxel) + 0.5));
+    return rest_.at_or_air(from) == label || std::any_of(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
+             return rest_.at_or_air(from + step) == label;
+           });
   }
 
   struct Stretch {

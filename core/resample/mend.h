@@ -5,7 +5,8 @@
 //
 // Bone tissues that have fewer parts than at rest are first parted (part_bones). For every tissue with more parts than at
 // rest, and until it has as many again, each part, smallest first, looks for another one that comes from the same rest part,
-// and takes the fewest voxels that join them, at most four. Of a tissue with fewer, a part that came out smaller than 50
+// and takes the fewest voxels that join them: at most four, or up to 64 that all come from beside the tissue itself, as where
+// a tendon thinner than a voxel is stretched over a bent knee. Of a tissue with fewer, a part that came out smaller than 50
 // voxels, but half of them or more, is filled up to 50; a part of bone tissue that came out with 50, but had fewer, gives what
 // it gained. Soft tissue takes from soft tissue only, bone tissue from bone tissue. No voxel beside air is taken (so no skin is
 // opened), none whose own tissue would be split by the loss, and none that its own part needs to stay a part.

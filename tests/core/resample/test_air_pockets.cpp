@@ -56,3 +56,31 @@ TEST_CASE("air pockets: what the pose closed is filled with flesh, what was ther
   for (const AirPocket& pocket : air_pockets(posed)) hollow += std::ssize(pocket);
   CHECK(hollow == 3);
 }
+
+TEST_CASE("air pockets: a hollow that skin lines is lined again after it was filled, one in flesh is not") {
+  const LabelSet flesh = set_of({2}), soft = set_of({1, 2});
+  const auto with_hollow = [](int width, bool lined) {
+    LabelVolume volume = block();
+    for (int z = 3; z < 7; ++z)
+      for (int y = 3; y < 8; ++y)
+        for (int x = 3; x < 5 + width; ++x) {
+          const bool inside = z > 3 && z < 6 && y > 3 && y < 7 && x > 3 && x < 4 + width;
+          volume.at({x, y, z}) = inside ? 0 : lined ? 1 : 2;
+        }
+    return volume;
+  };
+  for (const bool lined : {true, false}) {
+    const LabelVolume rest = with_hollow(2, lined);
+    LabelVolume posed = with_hollow(5, lined);
+    CHECK(fill_grown_pockets(posed, rest, flesh, soft, kStays).size() == 18);
+    int skin = 0, bare = 0;
+    for (const AirPocket& pocket : air_pockets(posed))
+      for (const glm::ivec3& v : pocket)
+        for (const glm::ivec3& face : kFaceNeighbours) {
+          skin += posed.at_or_air(v + face) == 1;
+          bare += posed.at_or_air(v + face) == 2;
+        }
+    CHECK((lined ? bare : skin) == 0);
+    CHECK((lined ? skin : bare) > 0);
+  }
+}
