@@ -176,13 +176,19 @@ class PosedVoxels {
       return glm::dvec3(map.rest[0]);
     };
     const std::int64_t closed = close_skin();
-    posed_.report.mended_voxels = std::ssize(bridges) + kept + closed + thin_skin(closed) +
-                                  mend(posed_.volume, volume_, labels_.soft, rest_point, {&rows_, &rest_rows},
-                                       {&bone_rows_, &bone_rest_rows});
+    posed_.report.mended_voxels = std::ssize(bridges) + kept + closed + thin_skin(closed);
     std::vector<glm::ivec3> was_air = fill_grown_pockets(posed_.volume, volume_, flesh_, labels_.soft, rest_point);
     posed_.report.filled_air_voxels = std::ssize(was_air);
     posed_.report.new_skin_voxels = cover_bare_flesh(was_air);
-    carry_fields(was_air, rest_point);
+    const Origins origins = origins_of(was_air, rest_point);
+    carry_fields(origins);
+    for (const glm::ivec3& v : was_air) rows_[v.y + std::int64_t{output_.grid.size.y} * v.z] = 1;
+    const auto any_rest_point = [&](const glm::ivec3& voxel) {
+      const auto known = origins.find(output_.grid.index(voxel));
+      return known != origins.end() ? known->second.rest : rest_point(voxel);
+    };
+    posed_.report.mended_voxels += mend(posed_.volume, volume_, labels_.soft, any_rest_point, {&rows_, &rest_rows},
+                                        {&bone_rows_, &bone_rest_rows});
   }
 
  private:
@@ -218,30 +224,43 @@ class PosedVoxels {
     return covered;
   }
 
+  // Where tissue comes from that fills what was air.
+  struct Origin {
+    std::int64_t beside;  // the voxel of the map that it took this from
+    glm::dvec3 rest;
+  };
+  using Origins = std::map<std::int64_t, Origin>;  // by voxel of the output
+
   // Tissue where the map has none comes from where the tissue beside it comes from.
   //   was_air  such voxels, each beside tissue of the map or an earlier one
   template <class RestPoint>
-  void carry_fields(const std::vector<glm::ivec3>& was_air, const RestPoint& rest_point) {
-    if (!settings_.displacement && !settings_.jacobian && !settings_.grey) return;
-    std::unordered_map<std::int64_t, glm::dvec3> rest;
+  Origins origins_of(const std::vector<glm::ivec3>& was_air, const RestPoint& rest_point) const {
+    Origins origins;
     std::unordered_set<std::int64_t> waiting;
     for (const glm::ivec3& v : was_air) waiting.insert(output_.grid.index(v));
     for (const glm::ivec3& v : was_air) {
-      const std::int64_t at = output_.grid.index(v);
       const auto source = std::find_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
         return posed_.volume.at_or_air(v + step) != 0 && !waiting.contains(output_.grid.index(v + step));
       });
-      waiting.erase(at);
+      waiting.erase(output_.grid.index(v));
       if (source == neighbours().end()) continue;
       const std::int64_t beside = output_.grid.index(v + *source);
-      const auto known = rest.find(beside);
-      const glm::dvec3 from = known != rest.end() ? known->second : rest_point(v + *source);
-      rest[at] = from;
-      if (settings_.displacement)
-        posed_.displacement[at] = world_from_rest_.linear * (lattice_.output().to_rest(glm::dvec3(output_.range.low + v)) - from);
-      if (settings_.jacobian) posed_.jacobian[at] = posed_.jacobian[beside];
-      if (settings_.grey) posed_.grey.voxels[at] = moved_grey(from);
+      const auto known = origins.find(beside);
+      origins[output_.grid.index(v)] = known != origins.end() ? known->second : Origin{beside, rest_point(v + *source)};
     }
+    return origins;
+  }
+
+  void carry_fields(const Origins& origins) {
+    if (settings_.displacement)
+      for (const auto& [at, from] : origins) {
+        const glm::dvec3 v(output_.range.low + voxel_at(output_.grid, at));
+        posed_.displacement[at] = world_from_rest_.linear * (lattice_.output().to_rest(v) - from.rest);
+      }
+    if (settings_.grey)
+      for (const auto& [at, from] : origins) posed_.grey.voxels[at] = moved_grey(from.rest);
+    if (settings_.jacobian)
+      for (const auto& [at, from] : origins) posed_.jacobian[at] = posed_.jacobian[from.beside];
   }
 
   // Where skin was closed it gained voxels, and elsewhere the grid laid some of it two voxels thick: the deepest of those go to
