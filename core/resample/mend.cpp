@@ -189,15 +189,15 @@ class Mending {
       int most = 0;
       std::int64_t best = 0;
       for (const auto& [at, count] : touches)
-        if (count > most && can_take(voxel(at), label) && !joins_another(voxel(at), label, part, part)) {
+        if (count > most && can_take(voxel_at(posed_.grid, at), label) && !joins_another(voxel_at(posed_.grid, at), label, part, part)) {
           most = count;
           best = at;
         }
       if (most == 0) return false;
-      take(voxel(best), label, part);
+      take(voxel_at(posed_.grid, best), label, part);
       ++of_posed_.voxels[part];
-      bridges_.push_back(voxel(best));
-      voxels.push_back(voxel(best));
+      bridges_.push_back(voxel_at(posed_.grid, best));
+      voxels.push_back(voxel_at(posed_.grid, best));
     }
     return true;
   }
@@ -298,23 +298,18 @@ class Mending {
     return !in_tissue_ || of_posed_.voxels[component_of(v)] != kSmallestPart;
   }
 
-  glm::ivec3 voxel(std::int64_t at) const {
-    const glm::ivec3 size = posed_.grid.size;
-    return {int(at % size.x), int(at / size.x % size.y), int(at / size.x / size.y)};
-  }
-
   Bridge path(const std::unordered_map<std::int64_t, std::int64_t>& came_from, Label label, const glm::ivec3& end, int component) const {
     Bridge bridge;
     bridge.other = component;
     for (auto step = came_from.find(posed_.grid.index(end)); step != came_from.end(); step = came_from.find(step->second))
-      if (const glm::ivec3 v = voxel(step->first); posed_.at(v) != label) bridge.voxels.push_back(v);
+      if (const glm::ivec3 v = voxel_at(posed_.grid, step->first); posed_.at(v) != label) bridge.voxels.push_back(v);
     return bridge;
   }
 
   bool same_rest_part(Label label, const std::unordered_map<std::int64_t, std::int64_t>& came_from, const glm::ivec3& end) const {
     std::int64_t start = posed_.grid.index(end);
     for (auto step = came_from.find(start); step != came_from.end(); step = came_from.find(start)) start = step->second;
-    return rest_part(label, voxel(start)) == rest_part(label, end);
+    return rest_part(label, voxel_at(posed_.grid, start)) == rest_part(label, end);
   }
 
   // The rest part nearest to where a posed voxel comes from, -1 when there is none about.

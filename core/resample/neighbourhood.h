@@ -19,6 +19,11 @@ const std::array<glm::ivec3, 26>& neighbours();
 // The six of them that share a face with it.
 constexpr std::array<glm::ivec3, 6> kFaceNeighbours{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
+// The voxel at a place of a grid, x fastest.
+inline glm::ivec3 voxel_at(const Grid& grid, std::int64_t at) {
+  return {int(at % grid.size.x), int(at / grid.size.x % grid.size.y), int(at / grid.size.x / grid.size.y)};
+}
+
 // The place in components.runs of the run that holds a voxel, or else of the next one that ends after it.
 std::int64_t run_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v);
 

@@ -13,10 +13,12 @@
 #include "core/base/parallel.h"
 #include "core/deform/inverse_map.h"
 #include "core/resample/air_pockets.h"
-#include "core/resample/skin_at_rest.h"
 #include "core/resample/bone_volumes.h"
+#include "core/resample/grey_sampler.h"
 #include "core/resample/mend.h"
 #include "core/resample/organ_volumes.h"
+#include "core/resample/posed_skin.h"
+#include "core/resample/skin_at_rest.h"
 #include "core/resample/tissue_volumes.h"
 
 namespace limber {
@@ -28,46 +30,6 @@ constexpr int kReach = 8;                // voxels: as far as soft tissue is loo
 
 constexpr double kMostSure = 0.8;        // of memberships: a voxel that is surer of its tissue keeps it
 constexpr std::int64_t kJudged = 5000;   // voxels: the grid alone changes smaller tissues by more than is asked here
-
-// Grey values between voxel centres, linear; the nearest voxel's outside the grid.
-class GreySampler {
- public:
-  explicit GreySampler(const GreyVolume& grey) : grey_(grey), voxel_from_world_(voxel_from_world(grey.grid)) {}
-
-  float operator()(const glm::dvec3& world) const {
-    const glm::dvec3 last(grey_.grid.size - 1);
-    const glm::dvec3 p = glm::clamp(voxel_from_world_ * world, glm::dvec3(0), last);
-    const glm::ivec3 low = glm::min(glm::ivec3(p), glm::max(grey_.grid.size - 2, glm::ivec3(0)));
-    const glm::dvec3 f = p - glm::dvec3(low);
-    double value = 0;
-    for (int k = 0; k < 8; ++k) {
-      const glm::ivec3 step(k & 1, k >> 1 & 1, k >> 2);
-      const double share = (step.x ? f.x : 1 - f.x) * (step.y ? f.y : 1 - f.y) * (step.z ? f.z : 1 - f.z);
-      if (share > 0) value += share * grey_.voxels[grey_.grid.index(low + step)];
-    }
-    return static_cast<float>(value);
-  }
-  bool covers(const glm::dvec3& world) const {
-    const glm::dvec3 p = voxel_from_world_ * world;
-    return glm::all(glm::greaterThanEqual(p, glm::dvec3(-0.5))) && glm::all(glm::lessThan(p, glm::dvec3(grey_.grid.size) - 0.5));
-  }
-
- private:
-  const GreyVolume& grey_;
-  AffineTransform voxel_from_world_;
-};
-
-// A posed voxel of soft tissue, maybe bare, that was covered at rest.
-struct UnderSkin {
-  std::int64_t at;
-  Label skin;  // what lay right over it at rest; 0 where it lay deeper, or a seam
-};
-
-// A posed voxel of skin that is covered itself.
-struct InnerSkin {
-  float depth;  // mm below air at rest
-  std::int64_t at;
-};
 
 // What one tile saw.
 struct TileCounts {
@@ -175,11 +137,12 @@ class PosedVoxels {
       fill(map, {output_.range.low + voxel, output_.range.low + voxel});
       return glm::dvec3(map.rest[0]);
     };
-    const std::int64_t closed = close_skin();
-    posed_.report.mended_voxels = std::ssize(bridges) + kept + closed + thin_skin(closed);
+    const std::int64_t closed = close_skin(posed_.volume, under_skin_, flesh_);
+    posed_.report.mended_voxels =
+        std::ssize(bridges) + kept + closed + thin_skin(posed_.volume, inner_skin_, closed, flesh_, labels_.skin);
     std::vector<glm::ivec3> was_air = fill_grown_pockets(posed_.volume, volume_, flesh_, labels_.soft, rest_point);
     posed_.report.filled_air_voxels = std::ssize(was_air);
-    posed_.report.new_skin_voxels = cover_bare_flesh(was_air);
+    posed_.report.new_skin_voxels = cover_bare_flesh(posed_.volume, under_skin_, flesh_, labels_.bone, labels_.skin, was_air);
     const Origins origins = origins_of(was_air, rest_point);
     carry_fields(origins);
     for (const glm::ivec3& v : was_air) rows_[v.y + std::int64_t{output_.grid.size.y} * v.z] = 1;
@@ -192,38 +155,6 @@ class PosedVoxels {
   }
 
  private:
-  // Skin is often one voxel thick; where the grid or a stretch opens it, what lay under it is skin now.
-  std::int64_t close_skin() {
-    std::int64_t closed = 0;
-    for (const UnderSkin& voxel : under_skin_) {
-      const glm::ivec3 v = voxel_at(output_.grid, voxel.at);
-      if (voxel.skin == 0 || !flesh_[posed_.volume.voxels[voxel.at]] || !touches_air(posed_.volume, v) || !can_spare(posed_.volume, v)) continue;
-      posed_.volume.voxels[voxel.at] = voxel.skin;
-      ++closed;
-    }
-    return closed;
-  }
-
-  // Where a seam opens or a stretch goes deeper, flesh lies bare that was covered at rest: its outermost voxels are skin now. Bone
-  // that lay right at a seam or under closed skin gets skin over it.
-  //   was_air  what had no tissue before is added
-  std::int64_t cover_bare_flesh(std::vector<glm::ivec3>& was_air) {
-    std::vector<glm::ivec3> bare, over_bone;
-    std::unordered_set<std::int64_t> known;
-    for (const UnderSkin& voxel : under_skin_) {
-      const glm::ivec3 v = voxel_at(output_.grid, voxel.at);
-      const Label label = posed_.volume.voxels[voxel.at];
-      if (flesh_[label] && touches_air(posed_.volume, v)) bare.push_back(v);
-      if (!labels_.bone[label]) continue;
-      for (const glm::ivec3& step : kFaceNeighbours)
-        if (const glm::ivec3 over = v + step; output_.grid.contains(over) && posed_.volume.at(over) == 0 && known.insert(output_.grid.index(over)).second) over_bone.push_back(over);
-    }
-    bare.insert(bare.end(), over_bone.begin(), over_bone.end());
-    const std::int64_t covered = cover_with_skin(posed_.volume, std::move(bare), labels_.skin);
-    std::copy_if(over_bone.begin(), over_bone.end(), std::back_inserter(was_air), [&](const glm::ivec3& v) { return posed_.volume.at(v) != 0; });
-    return covered;
-  }
-
   // Where tissue comes from that fills what was air.
   struct Origin {
     std::int64_t beside;  // the voxel of the map that it took this from
@@ -262,25 +193,6 @@ class PosedVoxels {
     if (settings_.jacobian)
       for (const auto& [at, from] : origins) posed_.jacobian[at] = posed_.jacobian[from.beside];
   }
-
-  // Where skin was closed it gained voxels, and elsewhere the grid laid some of it two voxels thick: the deepest of those go to
-  // the tissue that lies around them, as many as were gained.
-  std::int64_t thin_skin(std::int64_t most) {
-    std::sort(inner_skin_.begin(), inner_skin_.end(), [](const InnerSkin& a, const InnerSkin& b) { return a.depth != b.depth ? a.depth > b.depth : a.at < b.at; });
-    std::int64_t given = 0;
-    for (const InnerSkin& voxel : inner_skin_) {
-      if (given == most) break;
-      const glm::ivec3 v = voxel_at(output_.grid, voxel.at);
-      const Label below = tissue_under_skin(v);
-      if (below == 0 || !labels_.skin[posed_.volume.voxels[voxel.at]] || touches_air(posed_.volume, v) || !can_spare(posed_.volume, v)) continue;
-      posed_.volume.voxels[voxel.at] = below;
-      ++given;
-    }
-    return given;
-  }
-
-  // The soft tissue, not skin, that most of the 26 voxels around have; 0 when none is.
-  Label tissue_under_skin(const glm::ivec3& v) const { return most_common_around(posed_.volume, v, 1, flesh_); }
 
   // work(range, Tile) by many threads, then add(Tile) in order.
   template <class Tile, class Work, class Add>
@@ -494,10 +406,6 @@ class PosedVoxels {
     if (!labels_.bone[label]) return;
     const int bone = map.bone[i] != InverseMap::kNoBone ? map.bone[i] : bones_.owner(voxel_at(volume_.grid, map.cell[i]));
     if (bone >= 0) counts.add_bone_voxel(bone, bones_.residual(bone, map.rest[i], v));
-  }
-
-  static glm::ivec3 voxel_at(const Grid& grid, std::int64_t at) {
-    return {int(at % grid.size.x), int(at / grid.size.x % grid.size.y), int(at / grid.size.x / grid.size.y)};
   }
 
   void start_grey() {

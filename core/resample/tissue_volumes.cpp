@@ -39,7 +39,7 @@ class Exchange {
     borders_[{move.from, move.to}].moves.push_back(move);
     if (move.to == 0 && skin_[move.from])
       for (const glm::ivec3& step : kFaces)
-        if (const Label under = posed_.at_or_air(voxel(move.at) + step); under && soft_[under] && !skin_[under]) borders_[{under, 0}].moves.push_back({move.at, under, 0, move.cost});
+        if (const Label under = posed_.at_or_air(voxel_at(posed_.grid, move.at) + step); under && soft_[under] && !skin_[under]) borders_[{under, 0}].moves.push_back({move.at, under, 0, move.cost});
   }
 
   // Where the body may grow: air beside soft tissue, best where it is nearly surrounded.
@@ -100,11 +100,6 @@ class Exchange {
       border.next = 0;
     }
     return moved;
-  }
-
-  glm::ivec3 voxel(std::int64_t at) const {
-    const glm::ivec3 size = posed_.grid.size;
-    return {int(at % size.x), int(at / size.x % size.y), int(at / size.x / size.y)};
   }
 
   // Soft tissue that is to give, with what it can give to and at which cost [Bellman-Ford, the graph has a dozen places].
@@ -170,7 +165,7 @@ class Exchange {
 
   void make(const Change& change) {
     const Label was = posed_.voxels[change.at];
-    const glm::ivec3 v = voxel(change.at);
+    const glm::ivec3 v = voxel_at(posed_.grid, change.at);
     if (was) --parts_.voxels[part_of(v)];
     if (change.to) {
       const int part = *part_beside(v, change.to);
@@ -197,7 +192,7 @@ class Exchange {
 
   // What has to change for it; nothing where that would tear, join, open or enclose something.
   Changes changes(const BorderMove& move) {
-    const glm::ivec3 v = voxel(move.at);
+    const glm::ivec3 v = voxel_at(posed_.grid, move.at);
     if (move.from == 0) return grow(v, move.to);
     if (move.to == 0) return shrink(v, move.from);
     return may_change(v, move.to) ? Changes{{move.at, move.to}} : Changes{};

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/resample/posed_skin.h"
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "core/resample/neighbourhood.h"
+#include "core/resample/skin_at_rest.h"
+
+namespace limber {
+
+std::int64_t close_skin(LabelVolume& posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh) {
+  std::int64_t closed = 0;
+  for (const UnderSkin& voxel : under_skin) {
+    const glm::ivec3 v = voxel_at(posed.grid, voxel.at);
+    if (voxel.skin == 0 || !flesh[posed.voxels[voxel.at]] || !touches_air(posed, v) || !can_spare(posed, v)) continue;
+    posed.voxels[voxel.at] = voxel.skin;
+    ++closed;
+  }
+  return closed;
+}
+
+std::int64_t thin_skin(LabelVolume& posed, std::vector<InnerSkin>& inner_skin, std::int64_t most, const LabelSet& flesh,
+                       const LabelSet& skin) {
+  std::sort(inner_skin.begin(), inner_skin.end(), [](const InnerSkin& a, const InnerSkin& b) {
+    return a.depth != b.depth ? a.depth > b.depth : a.at < b.at;
+  });
+  std::int64_t given = 0;
+  for (const InnerSkin& voxel : inner_skin) {
+    if (given == most) break;
+    const glm::ivec3 v = voxel_at(posed.grid, voxel.at);
+    const Label below = most_common_around(posed, v, 1, flesh);
+    if (below == 0 || !skin[posed.voxels[voxel.at]] || touches_air(posed, v) || !can_spare(posed, v)) continue;
+    posed.voxels[voxel.at] = below;
+    ++given;
+  }
+  return given;
+}
+
+std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh,
+                              const LabelSet& bone, const LabelSet& skin, std::vector<glm::ivec3>& was_air) {
+  std::vector<glm::ivec3> bare, over_bone;
+  std::unordered_set<std::int64_t> known;
+  for (const UnderSkin& voxel : under_skin) {
+    const glm::ivec3 v = voxel_at(posed.grid, voxel.at);
+    const Label label = posed.voxels[voxel.at];
+    if (flesh[label] && touches_air(posed, v)) bare.push_back(v);
+    if (!bone[label]) continue;
+    for (const glm::ivec3& step : kFaceNeighbours) {
+      const glm::ivec3 over = v + step;
+      const bool is_air = posed.grid.contains(over) && posed.at(over) == 0;
+      if (is_air && known.insert(posed.grid.index(over)).second) over_bone.push_back(over);
+    }
+  }
+  bare.insert(bare.end(), over_bone.begin(), over_bone.end());
+  const std::int64_t covered = cover_with_skin(posed, std::move(bare), skin);
+  std::copy_if(over_bone.begin(), over_bone.end(), std::back_inserter(was_air),
+               [&](const glm::ivec3& v) { return posed.at(v) != 0; });
+  return covered;
+}
+
+}  // namespace limber
