@@ -7,6 +7,7 @@
 #include "core/cmd/command.h"
 #include "core/rig/armature_io.h"
 #include "core/bones/guess_bone_labels.h"
+#include "core/volume/guess_skin.h"
 
 namespace limber::cmd {
 
@@ -31,6 +32,17 @@ void guess_bones(Body& body, const std::string& volume) {
   warn("no table says what is bone: " + volume + text);
 }
 
+void take_skin(Body& body, const std::string& volume) {
+  const auto guess = guess_skin(body.file.volume, body.tissues);
+  if (!guess) return;
+  const double value = body.tissues.find(guess->label)->file_value;
+  body.tissues = with_skin(std::move(body.tissues), guess->label);
+  char text[200];
+  std::snprintf(text, sizeof text, ": label %.0f, a thin sheet over %.0f %% of the surface, is taken for it; say another with --tissues",
+                value, 100 * guess->share_of_surface);
+  warn("no table says what is skin: " + volume + text);
+}
+
 }  // namespace
 
 Body read_body(const BodyOptions& options, Progress& progress) {
@@ -50,6 +62,7 @@ Body read_body(const BodyOptions& options, Progress& progress) {
     body.tissues = with_bones(std::move(body.tissues), options.bones);
   else
     guess_bones(body, options.volume);
+  take_skin(body, options.volume);
   if (!options.bone_map.empty()) body.bone_map = read_bone_map(options.bone_map);
   body.doubts = input_doubts(body.file.volume, body.tissues, body.rig);
   warn(body.doubts);
