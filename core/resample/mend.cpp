@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kLongestBridge = 4;  // voxels: a longer one would invent anatomy
 constexpr int kLongestTrace = 64;  // voxels, all of which come from beside the tissue itself
+constexpr std::size_t kTraced = 20000;  // voxels of all traces that are asked where they come from, which takes its time
 constexpr int kAttempts = 32;      // bridges tried for one part, each around the voxels that earlier ones may not take
 constexpr int kSmallestKept = kSmallestPart / 2;  // voxels: a part that came out smaller is not made up again
 constexpr int kSamples = 4;        // voxels of a part that are asked where they come from
@@ -222,7 +223,7 @@ class Mending {
   // for nothing.
   //   along_trace  a longer bridge may be built, of voxels that all come from beside the tissue: a thin sheet that the pose
   //                stretched ran there, and fell between the voxels' centres
-  std::optional<Bridge> shortest_bridge(Label label, int part, bool along_trace) const {
+  std::optional<Bridge> shortest_bridge(Label label, int part, bool along_trace) {
     const int own = joined(part), longest = along_trace ? kLongestTrace : kLongestBridge;
     std::unordered_map<std::int64_t, std::int64_t> came_from;  // of voxels outside the part
     std::vector<glm::ivec3> layer = voxels_of(own);
@@ -259,8 +260,11 @@ class Mending {
     return std::nullopt;
   }
 
-  bool comes_from_beside(const glm::ivec3& posed_voxel, Label label) const {
-    const glm::ivec3 from(glm::floor(rest_point_(posed_voxel) + 0.5));
+  bool comes_from_beside(const glm::ivec3& posed_voxel, Label label) {
+    const auto [known, is_new] = comes_from_.try_emplace(posed_.grid.index(posed_voxel));
+    if (is_new && comes_from_.size() <= kTraced) known->second = glm::ivec3(glm::floor(rest_point_(posed_voxel) + 0.5));
+    if (!known->second) return false;
+    const glm::ivec3 from = *known->second;
     return rest_.at_or_air(from) == label || std::any_of(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
              return rest_.at_or_air(from + step) == label;
            });
@@ -358,6 +362,7 @@ class Mending {
   std::vector<int> joined_;                       // component it was joined to; itself where it was not
   std::unordered_map<std::int64_t, int> taken_;   // component of voxels in bridges
   std::vector<glm::ivec3> bridges_;
+  std::unordered_map<std::int64_t, std::optional<glm::ivec3>> comes_from_;  // rest voxels of what was traced; none once there are too many
   std::unordered_set<std::int64_t> barred_;       // voxels that the present part's bridges may not take
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "core/resample/air_pockets.h"
 #include "core/resample/neighbourhood.h"
 #include "core/resample/skin_at_rest.h"
 
@@ -40,18 +41,28 @@ std::int64_t thin_skin(LabelVolume& posed, std::vector<InnerSkin>& inner_skin, s
 std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh,
                               const LabelSet& bone, const LabelSet& skin, std::vector<glm::ivec3>& was_air) {
   std::vector<glm::ivec3> bare, over_bone;
-  std::unordered_set<std::int64_t> known;
+  std::unordered_set<std::int64_t> enclosed;
+  for (const AirPocket& pocket : air_pockets(posed))
+    for (const glm::ivec3& v : pocket) enclosed.insert(posed.grid.index(v));
+  const auto is_open_air = [&](const glm::ivec3& v) {
+    return posed.grid.contains(v) && posed.at(v) == 0 && !enclosed.contains(posed.grid.index(v));
+  };
+  // At the side of the grid there is air beyond it.
+  const auto touches_open_air = [&](const glm::ivec3& v) {
+    return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(), [&](const glm::ivec3& step) {
+      return !posed.grid.contains(v + step) || is_open_air(v + step);
+    });
+  };
   for (const UnderSkin& voxel : under_skin) {
     const glm::ivec3 v = voxel_at(posed.grid, voxel.at);
     const Label label = posed.voxels[voxel.at];
-    if (flesh[label] && touches_air(posed, v)) bare.push_back(v);
+    if (flesh[label] && touches_open_air(v)) bare.push_back(v);
     if (!bone[label]) continue;
-    for (const glm::ivec3& step : kFaceNeighbours) {
-      const glm::ivec3 over = v + step;
-      const bool is_air = posed.grid.contains(over) && posed.at(over) == 0;
-      if (is_air && known.insert(posed.grid.index(over)).second) over_bone.push_back(over);
-    }
+    for (const glm::ivec3& step : kFaceNeighbours)
+      if (is_open_air(v + step)) over_bone.push_back(v + step);
   }
+  std::unordered_set<std::int64_t> seen;
+  std::erase_if(over_bone, [&](const glm::ivec3& v) { return !seen.insert(posed.grid.index(v)).second; });
   bare.insert(bare.end(), over_bone.begin(), over_bone.end());
   const std::int64_t covered = cover_with_skin(posed, std::move(bare), skin);
   std::copy_if(over_bone.begin(), over_bone.end(), std::back_inserter(was_air),

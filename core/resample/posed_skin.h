@@ -33,7 +33,7 @@ std::int64_t thin_skin(LabelVolume& posed, std::vector<InnerSkin>& inner_skin, s
                        const LabelSet& skin);
 
 // Where a seam opens or a stretch goes deeper, flesh lies bare that was covered at rest: its outermost voxels are skin
-// now. Bone that lay right at a seam or under closed skin gets skin over it.
+// now. Bone that lay right at a seam or under closed skin gets skin over it. Nothing at air that the body encloses changes.
 //   was_air  what had no tissue before is added
 //   returns  the voxels changed
 std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh,

@@ -133,9 +133,7 @@ class PosedVoxels {
     const std::int64_t kept =
         keep_bone_volumes(posed_.volume, posed_bones_, volume_, rest_bones, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
     const auto rest_point = [&](const glm::ivec3& voxel) {
-      if (posed_bones_.at(voxel)) return of_bone(voxel);
-      fill(map, {output_.range.low + voxel, output_.range.low + voxel});
-      return glm::dvec3(map.rest[0]);
+      return posed_bones_.at(voxel) ? of_bone(voxel) : rest_of_soft(voxel);
     };
     const std::int64_t closed = close_skin(posed_.volume, under_skin_, flesh_);
     posed_.report.mended_voxels =
@@ -155,6 +153,23 @@ class PosedVoxels {
   }
 
  private:
+  // The rest point of a voxel of the output, of the map alone; what is near is soon asked for as well.
+  glm::dvec3 rest_of_soft(const glm::ivec3& voxel) {
+    constexpr int kBlock = 8;
+    const glm::ivec3 block = voxel / kBlock;
+    std::vector<glm::vec3>& rest = rest_blocks_[output_.grid.index(block * kBlock)];
+    const glm::ivec3 low = output_.range.low + block * kBlock, high = glm::min(low + kBlock - 1, output_.range.high);
+    const glm::ivec3 in = voxel - block * kBlock, size = high - low + 1;
+    if (rest.empty()) {
+      InverseMap map;
+      fill(map, {low, high});
+      rest.assign(map.rest.size(), glm::vec3(0));
+      for (std::size_t i = 0; i < rest.size(); ++i)
+        if (is_covered(map, static_cast<std::int64_t>(i))) rest[i] = map.rest[i];
+    }
+    return glm::dvec3(rest[in.x + std::size_t(size.x) * (in.y + std::size_t(size.y) * in.z)]);
+  }
+
   // Where tissue comes from that fills what was air.
   struct Origin {
     std::int64_t beside;  // the voxel of the map that it took this from
@@ -458,6 +473,7 @@ class PosedVoxels {
   Posed& posed_;
   std::optional<SkinAtRest> skin_;
   LabelSet flesh_;  // soft tissues but skin
+  std::unordered_map<std::int64_t, std::vector<glm::vec3>> rest_blocks_;  // by their lowest voxels
   std::vector<UnderSkin> under_skin_;
   std::vector<InnerSkin> inner_skin_;
   RowSet rows_, bone_rows_;  // of the output that hold tissue, and bone
