@@ -277,7 +277,7 @@ void begin_stroke(Editor& editor, BrushKind kind) {
   if (editor.skin->painting->mask && active_layer(editor) && kind == BrushKind::JointCapsule) return editor.messages.info("Paint", "A joint capsule paints bones: choose another brush for the mask");
   auto running = std::make_shared<Painting::Running>();
   running->document = editor.document();
-  running->tissue = tissue_voxels(*editor.views, editor.document());
+  running->tissue = parted_tissue(editor);
   running->view = *view;
   running->pixel = editor.input.pointer;
   const Document& document = running->document;

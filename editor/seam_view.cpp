@@ -14,6 +14,7 @@
 #include "editor/skin_display.h"
 #include "editor/task.h"
 #include "editor/test_pose.h"
+#include "editor/views.h"
 #include "editor/wipe.h"
 
 namespace limber::editor {
@@ -90,6 +91,15 @@ std::optional<std::shared_ptr<const Seams>> shown_seams(const Editor& editor) {
   const Document& document = editor.document();
   if (!document.volume || !document.tissues) return nullptr;
   return body_seams().known(seam_source(document));
+}
+
+std::shared_ptr<const TissueVoxels> parted_tissue(Editor& editor) {
+  const std::shared_ptr<const TissueVoxels>& whole = tissue_voxels(*editor.views, editor.document());
+  const auto seams = shown_seams(editor);
+  if (!seams || !*seams || (*seams)->empty() || (*seams)->grid_size() != whole->grid_size()) return whole;
+  auto parted = std::make_shared<TissueVoxels>(*whole);
+  parted->set_seams(*seams);
+  return parted;
 }
 
 void draw_seams(Editor& editor, const ViewPlace& view) {

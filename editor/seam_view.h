@@ -50,6 +50,8 @@ struct SeamView {
 
 // What is painted, else the document's, else what was found; nothing where nobody looked for them yet, null where there are none.
 std::optional<std::shared_ptr<const Seams>> shown_seams(const Editor& editor);
+// The tissue of the open volume, parted at those: brushes and edits of weights do not cross them.
+std::shared_ptr<const TissueVoxels> parted_tissue(Editor& editor);
 // Null while they are being counted, which this begins.
 const std::vector<SeamPair>* counted_pairs(Editor& editor);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/seam_view.h"
 #include "editor/weight_editing.h"
 
 #include <algorithm>
@@ -103,7 +104,7 @@ void perform(Editor& editor, const Fields& fields, const MakeWeightOperation& ma
 }  // namespace
 
 WeightsToEdit weights_to_edit(Editor& editor) {
-  WeightsToEdit what{editor.document(), tissue_voxels(*editor.views, editor.document()), stroke_settings(editor, BrushKind::Set), layer_to_edit(editor)};
+  WeightsToEdit what{editor.document(), parted_tissue(editor), stroke_settings(editor, BrushKind::Set), layer_to_edit(editor)};
   what.document.weights = what.layer.weights;
   return what;
 }

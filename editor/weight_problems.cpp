@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/seam_view.h"
 #include "editor/weight_problems.h"
 
 #include <algorithm>
@@ -79,7 +80,7 @@ void repair_problem(Editor& editor, int index) {
   const auto found = editor.skin->painting->problems;
   const WeightProblem& problem = found->problems[static_cast<std::size_t>(index)];
   const std::string label = "Repair " + describe(problem, *found->armature);
-  start_task(editor, label, [found, index, label, of = editor.document(), tissue = tissue_voxels(*editor.views, editor.document()), edited = layer_to_edit(editor), scope = scope_of(editor)](Progress& progress) -> Finish {
+  start_task(editor, label, [found, index, label, of = editor.document(), tissue = parted_tissue(editor), edited = layer_to_edit(editor), scope = scope_of(editor)](Progress& progress) -> Finish {
     progress.update("weights", 0);
     const WeightEdit edit = repaired({*of.volume, *tissue, *of.tissues, *of.armature}, *edited.weights, found->problems[static_cast<std::size_t>(index)], scope);
     const auto made = edit.changed > 0 ? std::optional(edited_layers(edited, std::make_shared<const SkinWeights>(edit.weights))) : std::nullopt;

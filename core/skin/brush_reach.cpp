@@ -331,6 +331,19 @@ void BrushReach::gather_tissue() {
   }
 }
 
+const Seams* BrushReach::seams_near() const {
+  const Seams* seams = tissue_.seams();
+  const auto is_near = [&](int brick) { return seams->is_near_brick(tissue_.bricks()[brick].corner); };
+  return seams && std::any_of(bricks_.begin(), bricks_.end(), is_near) ? seams : nullptr;
+}
+
+// Where a seam is near, the front finds its way from the start on.
+void BrushReach::see_start() {
+  const glm::ivec3 cell = start_ - low_;
+  const int bit = start_.x - x0_;
+  seen_rows_[(std::size_t(cell.z) * size_.y + cell.y) * words_ + (bit >> 6)] |= std::uint64_t{1} << (bit & 63);
+}
+
 // Of one half of the window, x growing (side 1) or falling (-1) from the start.
 void BrushReach::see(int side) {
   const glm::ivec3 start = start_ - low_;
@@ -428,6 +441,7 @@ void BrushReach::see_row(int side, int y, int z) {
 // Walks the straight line between two voxels' centres through the faces of voxels. Where it passes an edge exactly either
 // side will do.
 bool BrushReach::line_is_clear(const glm::ivec3& from, const glm::ivec3& to) const {
+  if (seams_) return line_crosses_no_seam(from, to);
   const int x = std::abs(to.x - from.x), y = std::abs(to.y - from.y), z = std::abs(to.z - from.z), step_x = to.x > from.x ? 1 : -1;
   const std::ptrdiff_t step_y = to.y > from.y ? words_ : -words_, step_z = std::ptrdiff_t{to.z > from.z ? size_.y : -size_.y} * words_;
   const std::uint64_t* row = &tissue_rows_[(std::size_t(from.z) * size_.y + from.y) * words_];
@@ -454,6 +468,34 @@ bool BrushReach::line_is_clear(const glm::ivec3& from, const glm::ivec3& to) con
     }
   }
   return true;
+}
+
+// The same walk, where a seam is near.
+bool BrushReach::line_crosses_no_seam(const glm::ivec3& from, const glm::ivec3& to) const {
+  const glm::ivec3 way = glm::abs(to - from), sign = glm::sign(to - from);
+  constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+  std::array<std::int64_t, 3> every, next;
+  for (int axis = 0; axis < 3; ++axis) {
+    every[axis] = std::int64_t{std::max(way[(axis + 1) % 3], 1)} * std::max(way[(axis + 2) % 3], 1);
+    next[axis] = way[axis] > 0 ? every[axis] : kNever;
+  }
+  glm::ivec3 cell = from;
+  for (int steps = way.x + way.y + way.z; steps > 0; --steps) {
+    const std::int64_t first = std::min({next[0], next[1], next[2]});
+    int axis = 0;
+    while (axis < 3 && (next[axis] != first || !is_joined(cell, axis, sign[axis]))) ++axis;
+    if (axis == 3) return false;
+    cell[axis] += sign[axis];
+    next[axis] += 2 * every[axis];
+  }
+  return true;
+}
+
+// Whether the next cell along an axis is tissue of the window that hangs together with this one.
+bool BrushReach::is_joined(const glm::ivec3& cell, int axis, int step) const {
+  glm::ivec3 next = cell;
+  next[axis] += step;
+  return is_set(tissue_rows_, next) && !(seams_ && seams_->is_cut_towards(low_ + cell, 2 * axis + (step > 0)));
 }
 
 // What lies behind corners
@@ -496,7 +538,9 @@ bool BrushReach::is_open(const glm::ivec3& cell, const glm::ivec3& step) const {
     glm::ivec3 next = cell, left = step;
     next[axis] += step[axis];
     left[axis] = 0;
-    if (left == glm::ivec3(0) || (is_set(tissue_rows_, next) && is_open(next, left))) return true;
+    if (!(seams_ && seams_->is_cut_towards(low_ + cell, 2 * axis + (step[axis] > 0))) &&
+        (left == glm::ivec3(0) || (is_set(tissue_rows_, next) && is_open(next, left))))
+      return true;
   }
   return false;
 }
@@ -571,7 +615,7 @@ void BrushReach::spread_behind_corners() {
       for (int direction = 0; direction < 6; ++direction) {
         glm::ivec3 next = cell;
         next[direction >> 1] += direction & 1 ? 1 : -1;
-        if (!is_set(far_rows_, next)) continue;
+        if (!is_set(far_rows_, next) || (seams_ && seams_->is_cut_towards(low_ + cell, direction))) continue;
         glm::ivec3 corner(from);
         float before = to_corner;
         const float known = far_distance_[rank_of(next)];
@@ -708,8 +752,13 @@ const Reached& BrushReach::dab(const glm::dvec3& centre, double radius, BrushDis
     place_ball(radius + std::max({spacing.x, spacing.y, spacing.z}) + glm::length((glm::dvec3(start_) - centre_) * spacing), grown_ball_);
     gather_tissue();
     seen_rows_.assign(tissue_rows_.size(), 0);
-    see(1);
-    see(-1);
+    seams_ = seams_near();
+    if (seams_) {
+      see_start();
+    } else {
+      see(1);
+      see(-1);
+    }
     emit_geodesic();
   } else {
     emit_euclidean();

@@ -6,7 +6,8 @@
 // straight distance; visibility spreads outwards row by row, 64 voxels at a time: a voxel is seen when those that surround
 // its line of sight one step nearer are, and where these differ the line is walked. Behind corners a front goes on from voxel
 // to voxel through faces, each remembering the corner its way last came round (as tissue_front.h, but here the way from the
-// corner is walked, since gaps may be as thin as a voxel).
+// corner is walked, since gaps may be as thin as a voxel). Near a seam of the tissue the front alone finds ways, and none crosses
+// it: a dab on a hand does not reach the hip that it lies on.
 //
 // All memory is kept between dabs and follows the ball, not the volume (but for four bytes a brick).
 #pragma once
@@ -102,6 +103,10 @@ class BrushReach {
   void see(int side);
   void see_row(int side, int y, int z);
   bool line_is_clear(const glm::ivec3& from, const glm::ivec3& to) const;
+  const Seams* seams_near() const;
+  void see_start();
+  bool line_crosses_no_seam(const glm::ivec3& from, const glm::ivec3& to) const;
+  bool is_joined(const glm::ivec3& cell, int axis, int step) const;
   bool find_far();
   void start_behind(const glm::ivec3& cell);
   bool is_open(const glm::ivec3& cell, const glm::ivec3& step) const;
@@ -129,6 +134,7 @@ class BrushReach {
   std::array<std::vector<float>, 3> squared_;  // of each coordinate, mm2 from the centre
   std::vector<Span> ball_, grown_ball_;        // a row
   std::vector<int> bricks_;                    // with tissue in the window
+  const Seams* seams_ = nullptr;               // where one is near the window; ways do not cross it
 
   // Rows of bits of the window, word by word; bit 0 is x = x0_, a multiple of eight.
   int x0_ = 0, words_ = 0;

@@ -15,6 +15,8 @@ class WeightsAround {
   template <class ChunkOf>
   WeightsAround(const TissueVoxels& tissue, int brick, const ChunkOf& chunk) {
     const TissueVoxels::Brick& own = tissue.bricks()[brick];
+    corner_ = own.corner;
+    if (tissue.seams() && tissue.seams()->is_near_brick(corner_)) seams_ = tissue.seams();
     std::array<Influence, kBrick * kBrick * kBrick> all;
     chunk(brick).unpack(std::size_t(own.count()), all.data());
     std::size_t next = 0;
@@ -43,13 +45,15 @@ class WeightsAround {
     }
   }
 
-  // Those of the up to six neighbours through faces that are tissue.    cell  in the brick, [0, 7]
+  // Those of the up to six neighbours through faces that are tissue, and not beyond a seam.    cell  in the brick, [0, 7]
   int beside(const glm::ivec3& cell, std::array<Influence, 6>& found) const {
     const Influence* here = &around_[place(cell)];
-    int count = 0;
+    int count = 0, direction = 0;
     for (const std::ptrdiff_t step : {-1, 1, -kSide, kSide, -kSide * kSide, kSide * kSide}) {
       found[count] = here[step];
-      count += is_tissue(found[count]);
+      const bool is_beyond = seams_ && seams_->is_cut_towards(corner_ + cell, direction);
+      count += is_tissue(found[count]) && !is_beyond;
+      ++direction;
     }
     return count;
   }
@@ -77,6 +81,8 @@ class WeightsAround {
     }
   }
 
+  glm::ivec3 corner_{0};           // of the brick
+  const Seams* seams_ = nullptr;   // where one is near
   std::array<Influence, kSide * kSide * kSide> around_{};  // no weights where there is no tissue
 };
 

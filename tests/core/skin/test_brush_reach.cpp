@@ -217,6 +217,37 @@ TEST_CASE("brush reach: from a finger nothing is touched on the finger beside it
   CHECK(round.count({13, 6, 50}) == 0);
 }
 
+TEST_CASE("brush reach: no way crosses a seam, and one leads round its end") {
+  LabelVolume volume = empty_volume({40, 12, 80});
+  for (int z = 4; z < 76; ++z)
+    for (int y = 3; y < 9; ++y)
+      for (int x = 6; x < 19; ++x) volume.at({x, y, z}) = 1;
+  TissueVoxels tissue(volume);
+  auto seams = std::make_shared<Seams>(volume.grid.size);
+  for (int z = 4; z < 66; ++z)
+    for (int y = 3; y < 9; ++y) seams->cut({11, y, z}, 0);
+  const Distances before = distances(tissue, BrushReach(volume, tissue).dab({11, 6, 20}, 16, BrushDistance::Geodesic));
+  tissue.set_seams(seams);
+  BrushReach reach(volume, tissue);
+  const Distances ways = distances(tissue, reach.dab({11, 6, 20}, 16, BrushDistance::Geodesic));
+  int own = 0;
+  for (const auto& [place, distance] : before) own += std::get<0>(place) <= 11;
+  CHECK(std::ssize(ways) == own);
+  for (const auto& [place, distance] : ways) {
+    CHECK(std::get<0>(place) <= 11);
+    CHECK(distance == doctest::Approx(before.at(place)));
+  }
+
+  const Distances round = distances(tissue, reach.dab({11, 6, 60}, 16, BrushDistance::Geodesic));
+  const auto other = round.find({12, 6, 60});
+  REQUIRE(other != round.end());
+  CHECK(other->second >= 12);
+  CHECK(other->second <= 13);
+  for (const auto& [place, distance] : round)
+    if (std::get<0>(place) > 11 && std::get<2>(place) < 66) CHECK(distance >= 6 + 65.5f - std::get<2>(place));
+  CHECK(round.count({12, 6, 54}) == 0);
+}
+
 TEST_CASE("brush reach: fingers that touch by an edge of voxels are apart") {
   LabelVolume volume = empty_volume({24, 24, 24});
   for (int z = 2; z < 22; ++z)
