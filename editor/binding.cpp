@@ -13,6 +13,7 @@
 #include "editor/layers.h"
 #include "editor/painting.h"
 #include "editor/prepare.h"
+#include "editor/seam_view.h"
 #include "editor/skin_display.h"
 
 namespace limber::editor {
@@ -120,8 +121,9 @@ void start_binding(Editor& editor, const Computation& computation) {
     };
   });
   editor.step_of_job[id] = StepOfWork::Skin;
-  editor.after_job[id] = [label, report, changed, in_part = part.has_value()](Editor& e, const JobStatus& job) {
+  editor.after_job[id] = [label, report, changed, in_part = part.has_value(), source = seam_source(from)](Editor& e, const JobStatus& job) {
     if (job.state != JobState::Done || !e.document().weights) return;
+    if (!in_part) e.seams->weights_from = source;
     if (in_part) e.messages.ok(label, *changed ? grouped(*changed) + " voxels were computed anew" : "Nothing is different there");
     else e.messages.ok(label, grouped(e.document().weights->size()) + " voxels follow " + std::to_string(e.document().armature->bones.size()) + " bones");
     for (const std::string& warning : report->warnings) e.messages.warn(label, warning);

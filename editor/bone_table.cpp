@@ -6,6 +6,7 @@
 #include "editor/difference.h"
 #include "editor/task.h"
 #include "editor/tissues.h"
+#include "editor/seam_view.h"
 #include "render/weight_colours.h"
 
 namespace limber::editor {
@@ -77,12 +78,14 @@ void map_label(Editor& editor, Label label, std::optional<BodySide> side, std::o
   if (document.bone_map ? map == *document.bone_map : map.empty()) return;
   const std::string of_side = !side ? "" : *side == BodySide::Left ? ", left" : ", right";
   const std::string what = shown_name(*tissue) + of_side;
+  note_weights_source(editor);
   Document next = document;
   next.bone_map = map.empty() ? nullptr : std::make_shared<const BoneMap>(std::move(map));
   editor.history.commit(name ? what + " follows " + *name : what + " as found", std::move(next));
 }
 
 void clear_bone_map(Editor& editor) {
+  note_weights_source(editor);
   Document next = editor.document();
   next.bone_map.reset();
   editor.history.commit("Clear bone map", std::move(next));

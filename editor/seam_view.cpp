@@ -102,6 +102,19 @@ std::shared_ptr<const TissueVoxels> parted_tissue(Editor& editor) {
   return parted;
 }
 
+void note_weights_source(Editor& editor) {
+  auto& from = editor.seams->weights_from;
+  if (!from || from->volume != editor.document().volume) from = seam_source(editor.document());
+}
+
+std::string why_weights_are_old(const Editor& editor) {
+  const auto& from = editor.seams->weights_from;
+  const Document& document = editor.document();
+  if (!document.weights || !from || from->volume != document.volume) return "";
+  if (from->kept != document.seams) return "Computed before the seams changed";
+  return from->bone_map != document.bone_map ? "Computed before the bone map changed" : "";
+}
+
 void draw_seams(Editor& editor, const ViewPlace& view) {
   const render::Scene& scene = scene_of(editor, view);
   if (!editor.seams->shown || editor.workspace != Workspace::Skin || scene.pose || !scene.volume || scene.volume->grid.size != editor.document().volume->grid.size) return;
@@ -160,6 +173,7 @@ void find_seams_again(Editor& editor) {
     const auto found = body_seams().of(source, progress);
     return [source, was_edited, faces = found ? found->size() : 0](Editor& e) {
       if (was_edited && e.document().volume == source.volume && e.document().seams) {
+        note_weights_source(e);
         Document next = e.document();
         next.seams.reset();
         e.history.commit("Find seams", std::move(next));
@@ -172,6 +186,7 @@ void find_seams_again(Editor& editor) {
 }
 
 void clear_seams(Editor& editor) {
+  note_weights_source(editor);
   Document next = editor.document();
   next.seams = std::make_shared<const Seams>(next.volume->grid.size);
   editor.history.commit("Remove seams", std::move(next));
@@ -223,6 +238,7 @@ void end_stroke(Editor& editor) {
   if (running->faces == 0) return editor.messages.info(cuts ? "No seam was cut" : "No seam was erased", cuts ? "Draw a line over soft tissue: the brush cuts along it" : "None lies within the brush");
   Document next = editor.document();
   if (next.volume != running->volume) return;
+  note_weights_source(editor);
   next.seams = running->seams;
   editor.history.commit(cuts ? "Cut seam" : "Erase seam", std::move(next));
 }

@@ -46,7 +46,14 @@ struct SeamView {
     std::vector<SeamPair> pairs;
   } counted;
   std::optional<int> counting, searching;  // tasks
+
+  // What the weights were computed from, once it is known.
+  std::optional<SeamSource> weights_from;
 };
+
+// Before seams or the bone map change: the weights that there are know of them as they were.
+void note_weights_source(Editor& editor);
+std::string why_weights_are_old(const Editor& editor);  // "" when they are not, or nobody knows
 
 // What is painted, else the document's, else what was found; nothing where nobody looked for them yet, null where there are none.
 std::optional<std::shared_ptr<const Seams>> shown_seams(const Editor& editor);

@@ -6,6 +6,7 @@
 #include "editor/prepare.h"
 #include "editor/resampling.h"
 #include "editor/results.h"
+#include "editor/seam_view.h"
 
 namespace limber::editor {
 
@@ -50,6 +51,9 @@ Step skin_step(const Editor& editor) {
   if (document.armature && document.weights->bones().size() != document.armature->bones.size()) {
     step.state = StepState::Warning;
     step.line = "The weights belong to another rig";
+  } else if (const std::string why = why_weights_are_old(editor); !why.empty()) {
+    step.state = StepState::Warning;
+    step.line = why;
   }
   return step;
 }
