@@ -27,8 +27,14 @@ glm::dvec3 shift_of(const glm::dvec3& p, const Build& build, const StandingLandm
 }
 
 glm::dvec3 place_before(const glm::dvec3& after, const Build& build, const StandingLandmarks& at) {
+  constexpr double kNear = 1e-3;  // mm
   glm::dvec3 p = after;
-  for (int k = 0; k < 25; ++k) p = after - shift_of(p, build, at);
+  for (int k = 0; k < 25; ++k) {
+    const glm::dvec3 next = after - shift_of(p, build, at);
+    const bool is_near = glm::distance(p, next) < kNear;
+    p = next;
+    if (is_near) break;
+  }
   return p;
 }
 
