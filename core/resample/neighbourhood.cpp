@@ -102,27 +102,33 @@ std::int64_t run_at(const Components& components, const LabelVolume& volume, con
   return run - components.runs.begin();
 }
 
-int nearest_component(const Components& components, const LabelVolume& volume, Label label, const glm::dvec3& point) {
+std::optional<glm::ivec3> nearest_voxel(const LabelVolume& volume, Label label, const glm::dvec3& point) {
   const glm::ivec3 centre(glm::floor(point + 0.5));
-  for (int shell = 0; shell <= kReach; ++shell) {
-    double nearest = INFINITY;
-    glm::ivec3 found(0);
+  const glm::dvec3 spacing = volume.grid.spacing;
+  const double least = std::min({spacing.x, spacing.y, spacing.z});
+  double nearest = INFINITY;  // mm, squared
+  glm::ivec3 found(0);
+  // A voxel of a shell is at least so many voxels but a half away.
+  for (int shell = 0; shell <= kReach && least * (shell - 0.5) < std::sqrt(nearest); ++shell)
     for (int z = -shell; z <= shell; ++z)
       for (int y = -shell; y <= shell; ++y) {
         const bool face = std::abs(z) == shell || std::abs(y) == shell;
         for (int x = -shell; x <= shell; x += face || shell == 0 ? 1 : 2 * shell) {
           const glm::ivec3 v = centre + glm::ivec3(x, y, z);
           if (volume.at_or_air(v) != label) continue;
-          const glm::dvec3 away = glm::dvec3(v) - point;
+          const glm::dvec3 away = (glm::dvec3(v) - point) * spacing;
           if (const double squared = glm::dot(away, away); squared < nearest) {
             nearest = squared;
             found = v;
           }
         }
       }
-    if (nearest < INFINITY) return component_at(components, volume, found);
-  }
-  return -1;
+  return nearest < INFINITY ? std::optional(found) : std::nullopt;
+}
+
+int nearest_component(const Components& components, const LabelVolume& volume, Label label, const glm::dvec3& point) {
+  const auto found = nearest_voxel(volume, label, point);
+  return found ? component_at(components, volume, *found) : -1;
 }
 
 bool hang_together(const std::array<bool, 27>& marked) {

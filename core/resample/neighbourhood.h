@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "core/volume/components.h"
 
@@ -31,6 +32,9 @@ std::int64_t run_at(const Components& components, const LabelVolume& volume, con
 inline int component_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v) {
   return components.runs[run_at(components, volume, v)].component;
 }
+
+// The voxel of `label` nearest to a point in voxel coordinates, by mm; none when there is none within 8 voxels.
+std::optional<glm::ivec3> nearest_voxel(const LabelVolume& volume, Label label, const glm::dvec3& point);
 
 // The rest component of `label` nearest to a rest point, -1 when there is none within 8 voxels.
 int nearest_component(const Components& components, const LabelVolume& volume, Label label, const glm::dvec3& point);

@@ -114,22 +114,13 @@ class PosedVoxels {
   }
 
   void mend_tears() {
-    InverseMap map;
     const auto of_bone = [&](const glm::ivec3& voxel) {
       return bones_.rest_point(posed_bones_.at(voxel) - 1, glm::dvec3(output_.range.low + voxel));
     };
     const RowSet rest_rows = lattice_.tissue().rows(), bone_rest_rows = bones_.rest_rows();
     const LabelVolume rest_bones = bones_.numbered();
     const auto bridges = mend_bones(posed_bones_, rest_bones, posed_.volume, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
-    for (const glm::ivec3& voxel : bridges) {
-      map.reset({output_.range.low + voxel, output_.range.low + voxel});
-      map.bone[0] = static_cast<std::uint16_t>(posed_bones_.at(voxel) - 1);
-      map.rest[0] = of_bone(voxel);
-      map.use_row(map.range.low);
-      TileCounts counts;
-      write(map, counts);
-      add(counts);
-    }
+    for (const glm::ivec3& voxel : bridges) write_bridge(voxel, rest_bones, of_bone(voxel));
     const std::int64_t kept =
         keep_bone_volumes(posed_.volume, posed_bones_, volume_, rest_bones, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
     const auto rest_point = [&](const glm::ivec3& voxel) {
@@ -153,6 +144,23 @@ class PosedVoxels {
   }
 
  private:
+  // A voxel that was given to a rigid bone is what the bone has nearest to it; where its rest point lies in another bone that
+  // touches this one at rest, it comes from there too.
+  void write_bridge(const glm::ivec3& voxel, const LabelVolume& rest_bones, const glm::dvec3& rest) {
+    const Label number = posed_bones_.at(voxel);
+    const std::optional<glm::ivec3> own = nearest_voxel(rest_bones, number, rest);
+    InverseMap map;
+    map.reset({output_.range.low + voxel, output_.range.low + voxel});
+    map.bone[0] = static_cast<std::uint16_t>(number - 1);
+    const Label there = rest_bones.at_or_air(glm::ivec3(glm::floor(rest + 0.5)));
+    map.rest[0] = own && there && there != number ? glm::dvec3(*own) : rest;
+    map.use_row(map.range.low);
+    TileCounts counts;
+    write(map, counts);
+    add(counts);
+    if (own) posed_.volume.at(voxel) = volume_.at(*own);
+  }
+
   // The rest point of a voxel of the output, of the map alone; what is near is soon asked for as well.
   glm::dvec3 rest_of_soft(const glm::ivec3& voxel) {
     constexpr int kBlock = 8;
