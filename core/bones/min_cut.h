@@ -11,7 +11,7 @@ namespace limber {
 
 struct CutGraph {
   std::vector<std::array<std::int32_t, 26>> neighbour;  // #n; -1 for none. Edge k of i leads to j, whose edge 25 - k leads back to i
-  std::vector<std::array<std::int32_t, 26>> capacity;   // #n; the same in both directions
+  std::vector<std::array<std::int32_t, 26>> capacity;   // #n; of the way to the neighbour
   std::vector<std::int32_t> terminal;                   // #n; what flows in from the source, or out to the sink where negative
 };
 

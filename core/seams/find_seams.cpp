@@ -8,6 +8,7 @@
 
 #include "core/bones/min_cut.h"
 #include "core/seams/limbs.h"
+#include "core/seams/skin_layers.h"
 #include "core/skin/soft_body.h"
 #include "core/skin/tissue_front.h"
 
@@ -18,21 +19,15 @@ namespace {
 constexpr double kBandShare = 0.2;     // of the limb's first bone: how far from where limbs meet the cut may lie
 constexpr double kWidestBand = 50;     // mm
 constexpr double kNarrowestBand = 4;   // of the longest voxel edge
-constexpr int kCostUnit = 64;
-constexpr double kBridge = 0.5;        // cost of a bridge between two skins: that of skin, and less towards its middle
+constexpr int kCostUnit = 1024;
+constexpr double kBridge = 0.5;        // cost of a bridge between two skins: half of theirs, and less towards its middle
 
-// What it costs to cut through a tissue, relative to connective tissue.
-double cost_of(TissueKind kind) {
-  switch (kind) {
-    case TissueKind::Skin: return 0.5;
-    case TissueKind::Connective: return 1;
-    case TissueKind::Unknown: case TissueKind::Fat: return 3;
-    case TissueKind::Muscle: case TissueKind::Vessel: case TissueKind::Blood: case TissueKind::Nerve: return 6;
-    default: return 12;
-  }
-}
+// What it costs to cut through a tissue, relative to connective tissue. Skin costs the same: where it is only drawn at the air,
+// the sheet between two limbs goes over into connective tissue, and its middle is meant.
+constexpr std::array<double, kLayers> kCostOfLayer{1, 3, 6, 12};
+double cost_of(TissueKind kind) { return kCostOfLayer[static_cast<int>(layer_of(kind))]; }
 
-bool is_sheet(TissueKind kind) { return kind == TissueKind::Skin || kind == TissueKind::Connective; }
+bool is_sheet(TissueKind kind) { return layer_of(kind) == Layer::Sheet; }
 
 // Of a voxel of the band: it is the limb's, it is not, or the cut decides.
 enum class Side { Limb, Other, Free };
@@ -101,6 +96,25 @@ class SeamFinder {
       bone_[to] = bone_[from];
       return true;
     });
+  }
+
+  // How the free surface of the flesh of some bones is layered.
+  SkinLayers skin_layers(const std::vector<bool>& of_bones) const {
+    SkinLayers layers(volume_.grid.spacing);
+    const auto layer_at = [&](const glm::ivec3& v) {
+      const Label label = volume_.at_or_air(v);
+      return label == 0 ? std::nullopt : std::optional(layer_of(kind_[label]));
+    };
+    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      if (kind_at(v) != TissueKind::Skin || bone_[place] == kSoft || !of_bones[bone_[place]]) return;
+      for (int direction = 0; direction < 6; ++direction) {
+        glm::ivec3 w = v;
+        w[direction >> 1] += direction & 1 ? 1 : -1;
+        if (volume_.grid.contains(w) && volume_.at(w) == 0) layers.add_ray(v, direction ^ 1, layer_at);
+      }
+    });
+    layers.finish();
+    return layers;
   }
 
   TissueKind kind_at(const glm::ivec3& v) const { return kind_[volume_.at(v)]; }
@@ -237,6 +251,22 @@ class SeamFinder {
     return cost;
   }
 
+  // What it costs that a voxel becomes the surface of its side, which lies inward of it: more where fat or muscle lies nearer
+  // to it than to free skin. Bone tells nothing of that: it is near the skin of a hand and deep in a thigh.
+  double cost_as_surface(double own_cost, glm::ivec3 v, int inward, const SkinLayers& layers) const {
+    const int axis = inward >> 1;
+    double cost = own_cost;
+    for (int k = 1; k < layers.reach(axis) && !seams_.is_cut_towards(v, inward); ++k) {
+      v[axis] += inward & 1 ? 1 : -1;
+      const Label label = volume_.at_or_air(v);
+      const Layer deepest = layer_of(kind_[label]);
+      if (label == 0 || deepest == Layer::Deep) break;
+      for (const Layer layer : {Layer::Fat, Layer::Muscle})
+        if (layer <= deepest) cost = std::max(cost, kCostOfLayer[static_cast<int>(layer)] * layers.surprise(axis, layer, k));
+    }
+    return cost;
+  }
+
   // Bones, tissue whose name tells, and the band's ends stay what they are.
   Side fixed_side(const Limb& limb, const Node& node) const {
     const Side own = is_of(limb, node.place) ? Side::Limb : Side::Other;
@@ -251,6 +281,7 @@ class SeamFinder {
 
   std::vector<std::uint8_t> cheapest_cut(const Limb& limb) const {
     const std::vector<double> cost = costs();
+    const SkinLayers of_limb = skin_layers(limb.has_bone), of_other = skin_layers(limb.may_touch);
     std::array<std::int32_t, 26> none, nothing{};
     none.fill(-1);
     CutGraph graph{std::vector(band_.size(), none), std::vector(band_.size(), nothing), std::vector<std::int32_t>(band_.size(), 0)};
@@ -262,7 +293,9 @@ class SeamFinder {
       for_each_joined(band_[n].voxel, [&](int direction, const glm::ivec3&, std::int64_t there) {
         const std::int32_t m = node_of_[there];
         if (m < 0) return;
-        const double capacity = kCostUnit * area[direction >> 1] / smallest * (cost[n] + cost[m]);
+        const double surface = cost_as_surface(cost[n], band_[n].voxel, direction ^ 1, of_limb) +
+                               cost_as_surface(cost[m], band_[m].voxel, direction, of_other);
+        const double capacity = kCostUnit * area[direction >> 1] / smallest * surface;
         graph.neighbour[n][kEdgeTowards[direction]] = m;
         graph.capacity[n][kEdgeTowards[direction]] = std::max(1, static_cast<int>(std::lround(capacity)));
       });

@@ -3,6 +3,8 @@
 // finger). Tissue goes to the rig bone nearest to it through the body. Where two limbs meet that way, far from where they spring
 // from each other, the surface between them is the cheapest cut through the tissue around: along skin where there is skin, else
 // through connective tissue and fat in preference to muscle and organs, by the smallest area, and in the middle of a sheet.
+// Both sides of the cut should be layered as free skin of the same limbs is, so skin that is left of only one of the two goes
+// with the fat that it lies on (skin_layers.h).
 // Tissue that skin shuts off from every bone is a bridge between two skins; it is cut in its middle.
 // Labels that name a limb ("Muscle, arms") settle which one they belong to.
 //

@@ -129,6 +129,59 @@ struct WebbedFingers {
   }
 };
 
+// A trunk and an arm along z that lie against each other below a shoulder: each of bone in muscle, with fat and skin around,
+// but between them one of the two has lost its skin and fat, as in a scan that is too coarse for them.
+struct PressedArm {
+  static constexpr int kBetween = 24;  // the arm's lowest voxel along x
+  enum : Label { Skin = 1, Fat = 2, Muscle = 3, Spine = 4, Humerus = 5, Ulna = 6 };
+  LabelVolume volume;
+  TissueTable tissues;
+  Armature rig;
+
+  explicit PressedArm(bool arm_keeps_its_skin) {
+    volume.grid.size = {44, 28, 104};
+    volume.grid.spacing = glm::dvec3(3);
+    volume.voxels.assign(volume.grid.voxel_count(), 0);
+    layered({2, 2, 2}, {kBetween, 26, 102}, 0, arm_keeps_its_skin ? 2 : 0);
+    layered({kBetween, 6, 2}, {42, 22, 102}, arm_keeps_its_skin ? 0 : 2, 0);
+    fill({12, 8, 84}, {36, 20, 98}, Muscle);
+    fill({8, 12, 6}, {14, 18, 98}, Spine);
+    fill({31, 12, 56}, {35, 16, 98}, Humerus);
+    fill({31, 12, 6}, {35, 16, 52}, Ulna);
+    for (const auto& [label, name, kind] :
+         {std::tuple{Skin, "skin", TissueKind::Skin}, {Fat, "fat", TissueKind::Fat}, {Muscle, "muscle", TissueKind::Muscle},
+          {Spine, "thoracic vertebrae", TissueKind::Bone}, {Humerus, "left humerus", TissueKind::Bone},
+          {Ulna, "left ulna", TissueKind::Bone}}) {
+      Tissue tissue;
+      tissue.label = label;
+      tissue.file_value = label;
+      tissue.name = name;
+      tissue.kind = kind;
+      tissues.tissues.push_back(tissue);
+    }
+    const glm::dvec3 trunk(33, 45, 0), arm(99, 42, 0);
+    const auto at = [](const glm::dvec3& foot, double z) { return foot + glm::dvec3(0, 0, z); };
+    rig.bones = {{"Spine", -1, at(trunk, 18), at(trunk, 294)},
+                 {"LeftUpperArm", 0, at(arm, 288), at(arm, 162)},
+                 {"LeftForearm", 1, at(arm, 162), at(arm, 18)}};
+  }
+
+ private:
+  void fill(const glm::ivec3& from, const glm::ivec3& to, Label label) {
+    for (int z = from.z; z < to.z; ++z)
+      for (int y = from.y; y < to.y; ++y)
+        for (int x = from.x; x < to.x; ++x) volume.at({x, y, z}) = label;
+  }
+  //   low, high  how many of the two layers are missing towards lower and higher x
+  void layered(glm::ivec3 from, glm::ivec3 to, int low, int high) {
+    for (const Label label : {Skin, Fat, Muscle}) {
+      fill(from, to, label);
+      from += glm::ivec3(low-- > 0 ? 0 : 1, 1, 1);
+      to -= glm::ivec3(high-- > 0 ? 0 : 1, 1, 1);
+    }
+  }
+};
+
 }  // namespace
 
 TEST_CASE("seams: a bridge of flesh between the skins of two fingers is cut in its middle") {
@@ -143,6 +196,24 @@ TEST_CASE("seams: a bridge of flesh between the skins of two fingers is cut in i
   });
   CHECK(found == 4 * 6);
   CHECK(in_the_middle == found);
+}
+
+TEST_CASE("seams: skin that only one of two limbs has left goes with the one on whose fat it lies") {
+  for (const bool arm_keeps_its_skin : {true, false}) {
+    INFO("the skin is the arm's: ", arm_keeps_its_skin);
+    const PressedArm body(arm_keeps_its_skin);
+    const TissueVoxels tissue(body.volume);
+    const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.rig);
+    const Seams seams = find_seams(body.volume, tissue, body.tissues, body.rig, parts);
+    std::int64_t found = 0, between = 0;  // away from the crease, where the arm's skin turns inward
+    seams.for_each([&](const glm::ivec3& v, int axis) {
+      if (v.y < 8 || v.y >= 20) return;
+      ++found;
+      between += axis == 0 && v.x == PressedArm::kBetween - 1;
+    });
+    CHECK(found > 700);
+    CHECK(between == found);
+  }
 }
 
 TEST_CASE("seams: an arm grown to the trunk is cut from it where the two touch, and from nowhere else") {
