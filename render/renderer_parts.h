@@ -54,6 +54,7 @@ struct Renderer::Parts {
   VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
 
   int largest_texture;
+  int pictures_at_rest = 6;  // that are averaged
   ShadePass shade;
   ComposePass compose;
   ArmaturePass armature;

@@ -20,7 +20,6 @@ constexpr double kRest = 0.1;             // s without a change before the pictu
 constexpr double kFrame = Slowness::kBudget;
 constexpr double kTileBudget = 0.018;     // s of refinement in one call
 constexpr int kTile = 128;                // pixels
-constexpr int kSamples = 6;               // pictures that are averaged at rest
 constexpr int kCoarsest = 6;
 
 double seconds() {
@@ -388,7 +387,7 @@ struct View3D::Impl {
     gl::check_gl("drawing a picture");
   }
 
-  bool complete() const { return drawn && has_all_weights && (!refines || sample == kSamples); }
+  bool complete() const { return drawn && has_all_weights && (!refines || sample >= parts.pictures_at_rest); }
 };
 
 View3D::View3D(Renderer& renderer) : impl_(std::make_unique<Impl>(renderer)) {}
@@ -435,7 +434,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   } else if (recoloured || more_weights) {
     my.changed_at = now;
     my.recolour(*source, scene.weights == before);
-  } else if (my.refines && my.sample < kSamples && now - my.changed_at >= kRest) {
+  } else if (my.refines && my.sample < my.parts.pictures_at_rest && now - my.changed_at >= kRest) {
     redraw |= my.refine(*source);
   }
   my.drawn = true;

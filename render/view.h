@@ -34,6 +34,9 @@ class Renderer {
   // altogether, and are not complete while some wait. Without frames each draw brings all.
   void begin_frame(double upload_seconds);
 
+  // How many pictures are averaged at rest, at least one; six unless it is called. Fewer are sooner complete, and less smooth.
+  void average_at_rest(int pictures);
+
   // Waits until everything drawn so far is done, for whoever measures.
   void finish();
 

@@ -53,6 +53,7 @@ struct SmallEditor {
   explicit SmallEditor(const glm::ivec2& size = {1024, 640}, const editor::Preferences& preferences = {}, bool with_body = true)
       : host(editor::open_offscreen(size)), editor(std::make_unique<editor::Editor>(*host, preferences)), player(*editor, *host) {
     editor->workers_yield = false;  // other tests run beside this one
+    editor->views->renderer.average_at_rest(1);
     player.step();
     if (!with_body) return;
     editor->history.reset(small_body(), "Open ball");

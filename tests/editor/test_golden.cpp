@@ -113,6 +113,7 @@ void check_golden(const std::string& name, const Image& window) {
 struct Scene {
   explicit Scene(const glm::ivec2& size = kWindow) : sitting(home.folder.path(), {}, wanted_window().value_or(Window{size}).size) {
     editor().preferences.reduce_motion = true;
+    editor().views->renderer.average_at_rest(6);  // as users see it
     editor().preferences.scale = wanted_window().value_or(Window{}).scale;
     sitting.play("wait-idle");
   }
