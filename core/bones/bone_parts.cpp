@@ -13,8 +13,8 @@
 
 #include "core/bones/named_bones.h"
 #include "core/bones/bone_watershed.h"
+#include "core/bones/hugging.h"
 #include "core/bones/joint_cuts.h"
-#include "core/rig/joint_names.h"
 
 namespace limber {
 
@@ -22,49 +22,6 @@ namespace {
 
 constexpr double kWiggleVoxels = 0.6;  // what rounding to voxels makes of the smooth ridge of a thick tube
 constexpr std::int64_t kMostDistances = 16'000'000;  // basins x rig bones: 64 MB
-
-// How far a set of voxels lies from each rig bone.
-class Hugging {
- public:
-  Hugging(const Armature& armature, const Grid& grid) : world_from_voxel_(world_from_voxel(grid)) {
-    for (const Bone& bone : armature.bones) {
-      const double length = glm::length(bone.tail - bone.head);
-      double at_head = length, at_tail = length;
-      for (const Bone& other : armature.bones) {
-        const double other_length = glm::length(other.tail - other.head), near = 0.05 * std::min(length, other_length);
-        for (const glm::dvec3& end : {other.head, other.tail}) {
-          if (glm::distance(bone.head, end) <= near) at_head = std::min(at_head, other_length);
-          if (glm::distance(bone.tail, end) <= near) at_tail = std::min(at_tail, other_length);
-        }
-      }
-      segments_.push_back(cut_back(bone, 0.1 * length, 0.1 * length));
-      parting_.push_back(cut_back(bone, 0.1 * at_head, 0.1 * at_tail));
-    }
-  }
-  int bone_count() const { return static_cast<int>(segments_.size()); }
-  // Two bones share the point where they meet; a tenth cut off at either end decides by direction there.
-  double distance(int bone, const glm::ivec3& voxel) const {
-    return distance_to_bone(segments_[bone], world_from_voxel_ * glm::dvec3(voxel));
-  }
-  // Cut back by the same length where they meet, so that bones part at the plane that halves the angle between them.
-  double parting_distance(int bone, const glm::ivec3& voxel) const {
-    return distance_to_bone(parting_[bone], world_from_voxel_ * glm::dvec3(voxel));
-  }
-  glm::dvec3 world(const glm::dvec3& voxel) const { return world_from_voxel_ * voxel; }
-
- private:
-  static Bone cut_back(const Bone& bone, double at_head, double at_tail) {
-    const double length = glm::length(bone.tail - bone.head);
-    const glm::dvec3 along = length > 0 ? (bone.tail - bone.head) / length : glm::dvec3(0);
-    Bone segment;
-    segment.head = bone.head + at_head * along;
-    segment.tail = bone.tail - at_tail * along;
-    return segment;
-  }
-
-  AffineTransform world_from_voxel_;
-  std::vector<Bone> segments_, parting_;
-};
 
 // A basin that holds most of the length of several rig bones is several bones grown together (or drawn as one tube):
 // there each voxel goes with the nearest of those.
@@ -416,34 +373,6 @@ void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vec
   for (auto& part : result.parts) part.centre = hugging.world(part.centre / double(part.voxel_count));
 }
 
-// The part of the graph that names do not decide. Voxels of different groups are not neighbours there.
-struct Unsettled {
-  BoneGraph graph;
-  std::vector<std::int32_t> from;  // #graph, in the whole one
-};
-Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named) {
-  Unsettled part;
-  std::vector<std::int32_t> number(whole.size(), kNotBone);
-  for (std::int32_t i = 0; i < whole.size(); ++i)
-    if (named.bone[i] < 0) number[i] = static_cast<std::int32_t>(part.from.size()), part.from.push_back(i);
-  if (part.from.size() == static_cast<std::size_t>(whole.size())) {
-    // Nothing is settled; groups alone may part what touches.
-    part.graph = whole;
-    for (std::int32_t i = 0; i < whole.size(); ++i)
-      for (std::int32_t& n : part.graph.neighbour[i])
-        if (n >= 0 && named.group[n] != named.group[i]) n = kNotBone;
-    return part;
-  }
-  for (const std::int32_t i : part.from) {
-    part.graph.place.push_back(whole.place[i]);
-    part.graph.voxel.push_back(whole.voxel[i]);
-    auto& around = part.graph.neighbour.emplace_back(whole.neighbour[i]);
-    for (std::int32_t& n : around)
-      if (n >= 0) n = named.group[n] == named.group[i] ? number[n] : kNotBone;
-  }
-  return part;
-}
-
 struct ShapeBones {
   std::vector<int> bone;  // #graph
   std::vector<BroadCut> broad_cuts;
@@ -528,36 +457,4 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   return result;
 }
 
-namespace {
-// Whether one of the joints is a knee, as the rig's names tell.
-bool has_knee(const std::vector<BroadCut>& cuts, const Armature& armature) {
-  std::vector<std::string> names;
-  std::vector<int> parents;
-  for (const Bone& bone : armature.bones) names.push_back(bone.name), parents.push_back(bone.parent);
-  const auto roles = joint_roles(names, parents);
-  return std::any_of(cuts.begin(), cuts.end(), [&](const BroadCut& cut) {
-    const auto &upper = roles[cut.bone], &lower = roles[cut.other];
-    return upper && lower && upper->part == BodyPart::Thigh && lower->part == BodyPart::Shank;
-  });
-}
-}  // namespace
-
-std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable& tissues, const Armature& armature) {
-  std::vector<std::string> lines;
-  for (const BoneParts::Identity& identity : parts.identities) {
-    const Tissue* tissue = tissues.find(identity.label);
-    if (!identity.is_substitute || !tissue) continue;
-    lines.push_back("the rig has no bone for \"" + tissue->name.substr(0, 80) + "\": it follows " + armature.bones[identity.bone].name +
-                    "; say another with --bone-map");
-  }
-  if (const std::vector<BroadCut>& cuts = parts.broad_cuts; !cuts.empty()) {
-    const BroadCut& broadest = *std::max_element(cuts.begin(), cuts.end(), [](const BroadCut& a, const BroadCut& b) { return a.area < b.area; });
-    const std::string others = cuts.size() == 1 ? "" : " and at " + std::to_string(cuts.size() - 1) + " other joint" + (cuts.size() == 2 ? "" : "s");
-    lines.push_back("bones of one label touch more broadly than they are thick between " + armature.bones[broadest.bone].name + " and " + armature.bones[broadest.other].name +
-                    others + ": where they are cut apart may be a voxel or two off" +
-                    (has_knee(cuts, armature) ? ", and the tip of a kneecap may go with the shank" : "") +
-                    "; give them labels of their own where that matters");
-  }
-  return lines;
-}
 }  // namespace limber

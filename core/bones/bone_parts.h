@@ -47,8 +47,4 @@ struct BoneParts {
 BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                       const Armature& armature, Progress& progress = no_progress(), const BoneMap& map = {});
 
-// One line for each label that follows a rig bone only because the rig has none for it, and one for the bones that touch so
-// broadly that the place of the cut between them is not sure.
-std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable& tissues, const Armature& armature);
-
 }  // namespace limber

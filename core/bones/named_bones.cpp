@@ -162,4 +162,27 @@ NamedBones assign_named_bones(const BoneGraph& graph, const LabelVolume& volume,
   return Assigning(graph, volume, kinds, armature, labels).run();
 }
 
+Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named) {
+  Unsettled part;
+  std::vector<std::int32_t> number(whole.size(), kNotBone);
+  for (std::int32_t i = 0; i < whole.size(); ++i)
+    if (named.bone[i] < 0) number[i] = static_cast<std::int32_t>(part.from.size()), part.from.push_back(i);
+  if (part.from.size() == static_cast<std::size_t>(whole.size())) {
+    // Nothing is settled; groups alone may part what touches.
+    part.graph = whole;
+    for (std::int32_t i = 0; i < whole.size(); ++i)
+      for (std::int32_t& n : part.graph.neighbour[i])
+        if (n >= 0 && named.group[n] != named.group[i]) n = kNotBone;
+    return part;
+  }
+  for (const std::int32_t i : part.from) {
+    part.graph.place.push_back(whole.place[i]);
+    part.graph.voxel.push_back(whole.voxel[i]);
+    auto& around = part.graph.neighbour.emplace_back(whole.neighbour[i]);
+    for (std::int32_t& n : around)
+      if (n >= 0) n = named.group[n] == named.group[i] ? number[n] : kNotBone;
+  }
+  return part;
+}
+
 }  // namespace limber

@@ -24,4 +24,11 @@ struct NamedBones {
 NamedBones assign_named_bones(const BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
                               const std::map<Label, LabelBones>& labels);
 
+// The part of the graph that names do not decide. Voxels of different groups are not neighbours there.
+struct Unsettled {
+  BoneGraph graph;
+  std::vector<std::int32_t> from;  // #graph, in the whole one
+};
+Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named);
+
 }  // namespace limber

@@ -26,6 +26,7 @@
 #include "core/resample/pose_path.h"
 #include "core/resample/posed_points.h"
 #include "core/bones/bone_parts.h"
+#include "core/bones/unsure_bones.h"
 #include "core/rig/fit_joint.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"

@@ -9,6 +9,7 @@
 #include "core/cmd/command.h"
 #include "core/cmd/seam_options.h"
 #include "core/bones/bone_parts.h"
+#include "core/bones/unsure_bones.h"
 #include "core/report/report.h"
 #include "core/report/whole_bones.h"
 #include "core/skin/geodesic.h"

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/bones/bone_parts.h"
+#include "core/bones/unsure_bones.h"
 #include "tests/core/skin/small_body.h"
 
 using namespace limber;

@@ -10,6 +10,7 @@
 
 #include "core/base/parallel.h"
 #include "core/bones/bone_parts.h"
+#include "core/bones/unsure_bones.h"
 #include "tests/core/skin/small_body.h"
 
 using namespace limber;
