@@ -6,9 +6,11 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/bones/joint_surface.h"
 #include "core/bones/min_cut.h"
 #include "core/rig/joint_names.h"
 
@@ -35,8 +37,8 @@ constexpr double kLargestBall = 0.1;
 constexpr double kBallCore = 0.8;   // of the radius of a joint's ball: so much of it is surely the ball
 constexpr double kBallWidth = 0.5;  // of it: in place of the distance to the shafts
 constexpr double kSitsAlong = 0.25;  // of a bone's length from its head: where another bone may sit on it
-constexpr double kTilt = 0.8;       // how far a finger bone's base turns from halving the angle to stand across its own bone
-constexpr double kRim = 1.3;        // of a joint's radius, squared: farther out its surface does not fall off any more
+constexpr double kClosed = 0.5;     // of a joint's cross-section: bones that touch in more are closed up there
+constexpr double kJointReach = 0.15;  // of the parent's length: so far from the joint, at least, its radius is measured
 constexpr double kJointSlice = 0.06;  // of the shorter bone's length: where the joint's radius is measured
 constexpr std::int32_t kHard = 1 << 28;
 
@@ -80,9 +82,10 @@ class JointCutter {
     std::vector<std::string> names;
     std::vector<int> parents;
     for (const Bone& bone : bones_) names.push_back(bone.name), parents.push_back(bone.parent);
-    for (const auto& role : joint_roles(names, parents)) {
-      is_ball_.push_back(role && (role->part == BodyPart::Thigh || role->part == BodyPart::UpperArm));
-      finger_bone_.push_back(role ? finger_bone(*role) : 0);
+    const std::vector<std::optional<JointRole>> roles = joint_roles(names, parents);
+    for (int b = 0; b < std::ssize(bones_); ++b) {
+      is_ball_.push_back(roles[b] && (roles[b]->part == BodyPart::Thigh || roles[b]->part == BodyPart::UpperArm));
+      shape_.push_back(shape_of_joint(roles[b]));
     }
     find_nearest();
   }
@@ -110,9 +113,9 @@ class JointCutter {
     if (ball > kBall * length_of(c)) {
       for (Voxel& v : domain_)
         if (glm::distance(world(v.at), joint) < kBallCore * ball) v.shaft = 1;
-      cut([&](std::int32_t, const glm::dvec3& at) {
+      part(least_cut([&](std::int32_t, const glm::dvec3& at) {
         return weight_away((glm::distance(at, joint) - ball) / (kBallWidth * ball));
-      });
+      }));
     } else {
       cut_across(normal, child, shorter);
     }
@@ -134,10 +137,10 @@ class JointCutter {
       for (const std::int32_t i : voxels) add(i, near_[i].bone[0] == pair.second);
       for (Voxel& v : domain_)
         if (v.is_allowed && near_[v.at].distance[0] < kSideShaft * near_[v.at].distance[1]) v.shaft = v.nearest;
-      cut([&](std::int32_t i, const glm::dvec3&) {
+      part(least_cut([&](std::int32_t i, const glm::dvec3&) {
         const auto& [nearest, next] = near_[i].distance;
         return weight_away((next - nearest) / (next + nearest));
-      });
+      }));
     }
   }
 
@@ -171,21 +174,27 @@ class JointCutter {
     int shaft;        // 0, 1 or -1
   };
 
-  // At a plane across the joint, or in fingers at the surface of a dome.
+  // At a plane across the joint, or where its shape is known at that surface.
   void cut_across(const glm::dvec3& normal, int child, double shorter) {
     const glm::dvec3& joint = bones_[child].head;
     const glm::dvec3& spacing = volume_.grid.spacing;
     const double coarse = std::max({spacing.x, spacing.y, spacing.z}) / (kCoarse * shorter);
     const double scale = std::sqrt(1 + coarse * coarse) / (kShaft * shorter);
     const double slice = std::max({spacing.x, spacing.y, spacing.z});
-    const double radius = radius_at(joint, normal, slice, std::numeric_limits<double>::infinity());
+    const double radius = radius_at(joint, normal, slice);
     const double steep = scale / kSteep * std::min(1.0, shorter / (kSlender * std::max(radius, slice)));
-    const int finger = finger_bone_[child];
-    const Dome dome = finger > 0 ? dome_at(normal, bones_[child], finger == 1, shorter) : Dome{joint, normal, 1, 0, 0};
-    cut([&](std::int32_t, const glm::dvec3& at) {
-      const double height = dome.height_of(at), far = height * steep;
-      return weight_away(height * scale) * (1 + far * far * far * far);
-    });
+    const auto cut_along = [&](const JointSurface& surface, double sharp) {
+      return least_cut([&](std::int32_t, const glm::dvec3& at) {
+        const double height = surface.height_of(at), far = height * steep;
+        return weight_away(height * scale * sharp) * (1 + far * far * far * far);
+      });
+    };
+    const JointSurface surface = surface_at(normal, child, shorter);
+    std::vector<std::uint8_t> side = cut_along(surface, 1);
+    // Where the two are closed up, only the joint's own shape tells where one ends.
+    const double section = std::numbers::pi * surface.radius * surface.radius;
+    if (surface.shape.sharp > 1 && area_of(side) > kClosed * section) side = cut_along(surface, surface.shape.sharp);
+    part(side);
   }
 
   int bone_it_sits_on(int child) const {
@@ -200,47 +209,26 @@ class JointCutter {
     return found;
   }
 
-  // 1 for the first bone of a finger beyond its knuckle, and so on; 0 for others. The thumb is no such finger: it stands on
-  // a saddle, and its end bone leans back.
-  static int finger_bone(const JointRole& role) {
-    switch (role.part) {
-      case BodyPart::Index: case BodyPart::Middle: case BodyPart::Ring: case BodyPart::Little: return role.index;
-      default: return 0;
-    }
-  }
-
-  // The surface where a finger's bones meet: the rounded head of one in the hollow base of the next, which stands across its
-  // own bone rather than across the other. A knuckle is a ball of 1.9 times the radius of the bones there; the joints of a
-  // finger are flatter [measured on the hand of the BodyParts3D atlas].
-  struct Dome {
-    glm::dvec3 joint, axis;
-    double radius;            // mm, of the bones at the joint
-    double curvature, level;  // over the radius; share of its square where the surface is as high as the joint
-    double height_of(const glm::dvec3& at) const {
-      const glm::dvec3 from = at - joint;
-      const double along = glm::dot(from, axis);
-      const double aside = std::min(kRim, std::max(0.0, glm::dot(from, from) - along * along) / (radius * radius));
-      return along + curvature * radius * (aside - level);
-    }
-  };
-  // The radius, mm, of the bones of the domain in a slice across `axis` that is twice `half` mm thick, within `reach` mm of
-  // the joint.
-  double radius_at(const glm::dvec3& joint, const glm::dvec3& axis, double half, double reach) const {
+  // mm, of the bones of the domain in a slice across `axis` that is twice `half` mm thick.
+  double radius_at(const glm::dvec3& joint, const glm::dvec3& axis, double half) const {
     const glm::dvec3& spacing = volume_.grid.spacing;
     const auto voxels = std::count_if(domain_.begin(), domain_.end(), [&](const Voxel& v) {
-      const glm::dvec3 from = world(v.at) - joint;
-      return std::abs(glm::dot(from, axis)) < half && glm::length(from) < reach;
+      return std::abs(glm::dot(world(v.at) - joint, axis)) < half;
     });
     return std::sqrt(double(voxels) * spacing.x * spacing.y * spacing.z / (2 * half) / std::numbers::pi);
   }
-  Dome dome_at(const glm::dvec3& normal, const Bone& child, bool is_knuckle, double shorter) const {
-    const glm::dvec3& joint = child.head;
+  JointSurface surface_at(const glm::dvec3& normal, int child, double shorter) const {
+    const Bone& bone = bones_[child];
+    const std::optional<JointShape>& shape = shape_[child];
+    if (!shape) return flat_surface(bone.head, normal);
     const glm::dvec3& spacing = volume_.grid.spacing;
-    const glm::dvec3 axis = glm::normalize(glm::mix(normal, glm::normalize(child.tail - child.head), kTilt));
+    const glm::dvec3 axis = glm::normalize(glm::mix(normal, glm::normalize(bone.tail - bone.head), shape->turn));
+    std::vector<glm::dvec3> places;
+    for (const Voxel& v : domain_) places.push_back(world(v.at));
     const double half = std::max({spacing.x, spacing.y, spacing.z, kJointSlice * shorter});
-    const double smallest = std::min({spacing.x, spacing.y, spacing.z});
-    const double radius = std::max(radius_at(joint, axis, half, shorter / 2), smallest);
-    return is_knuckle ? Dome{joint, axis, radius, 0.27, 0.5} : Dome{joint, axis, radius, 0.2, 0.15};
+    const double reach = std::max(0.5 * shorter, kJointReach * length_of(bones_[bone.parent]));
+    return surface_of_joint(*shape, bone.head, axis, places, spacing.x * spacing.y * spacing.z, half, reach,
+                            std::min({spacing.x, spacing.y, spacing.z}));
   }
 
   void find_nearest() {
@@ -335,10 +323,10 @@ class JointCutter {
   //   off  from the surface where the two ought to part; 1 where the shafts begin
   static double weight_away(double off) { return 1 + kAway * off * off; }
 
+  // #domain, 1 on the side of the first of the two bones; empty where nothing connects their shafts.
   //   weight  (voxel, world) how many times its area a place counts
-  void cut(const auto& weight) {
-    cut_area_ = 0;
-    if (!is_connected()) return;
+  std::vector<std::uint8_t> least_cut(const auto& weight) {
+    if (!is_connected()) return {};
     if (depth_.empty()) depth_ = bone_depth(graph_, volume_.grid.spacing);
     CutGraph cut;
     cut.neighbour.resize(domain_.size());
@@ -356,15 +344,27 @@ class JointCutter {
         cut.capacity[i][k] = cut.capacity[m][25 - k] = static_cast<std::int32_t>(std::clamp(1000 * cost, 1.0, double(kHard)));
       }
     }
-    const std::vector<std::uint8_t> side = min_cut(std::move(cut));
-    for (std::int32_t i = 0; i < std::ssize(domain_); ++i) {
+    return min_cut(std::move(cut));
+  }
+  // mm^2 of the contact between the two sides.
+  double area_of(const std::vector<std::uint8_t>& side) const {
+    double area = 0;
+    for (std::int32_t i = 0; i < std::ssize(side); ++i)
+      for (int k = 0; k < 26; ++k) {
+        const std::int32_t n = graph_.neighbour[domain_[i].at][k];
+        if (n >= 0 && local_[n] >= 0 && side[local_[n]] != side[i]) area += area_[k] / 2;  // the neighbour counts the other half
+      }
+    return area;
+  }
+  void part(const std::vector<std::uint8_t>& side) {
+    cut_area_ = area_of(side);
+    for (std::int32_t i = 0; i < std::ssize(side); ++i) {
       bool is_cut = false;
       for (int k = 0; k < 26; ++k) {
         std::int32_t& n = graph_.neighbour[domain_[i].at][k];
         if (n < 0 || local_[n] < 0 || side[local_[n]] == side[i]) continue;
         n = kNotBone;
         is_cut = true;
-        cut_area_ += area_[k] / 2;  // the neighbour counts the other half
       }
       if (is_cut) at_cuts_.push_back(domain_[i].at);
     }
@@ -397,7 +397,7 @@ class JointCutter {
   std::vector<Near> near_;                        // #graph
   std::vector<std::vector<std::int32_t>> along_;  // by rig bone: the voxels nearest to it
   std::vector<bool> is_ball_;  // by rig bone: its head is the centre of a ball
-  std::vector<int> finger_bone_;  // by rig bone, as finger_bone() says
+  std::vector<std::optional<JointShape>> shape_;  // by rig bone: of the joint at its head
   std::vector<float> depth_;  // #graph, mm, before the cuts; found when the first cut needs it
   std::vector<std::int32_t> local_;  // #graph, in `domain_` or -1
   std::vector<Voxel> domain_;

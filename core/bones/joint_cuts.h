@@ -5,7 +5,8 @@
 // them [Boykov & Kolmogorov 2003: cut metrics measured on a voxel grid]. The area counts more away from the joint, steeply
 // farther than a twelfth of the shorter bone, and more through marrow than through the shells of bone, so that of several necks the
 // one at the joint is cut, and not the thin shaft beside it. Bones that do not touch have a cut of no area, and nothing is
-// changed. In fingers, which the rig's names tell, the cut prefers the rounded head of one bone in the hollow base of the next.
+// changed. In joints that the rig's names tell, the cut prefers the surface that anatomy knows (core/bones/joint_surface.h);
+// where the bones are closed up over half the joint or more, no neck says where one ends, and it prefers that twice as much.
 #pragma once
 
 #include <cstdint>

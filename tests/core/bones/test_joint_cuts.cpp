@@ -198,6 +198,68 @@ TEST_CASE("joint cuts: rounded heads of finger bones stay with their bone, and t
   CHECK(wrong.voxels < 0.7 * wrong_bones(flat).voxels);  // a rig whose names say nothing of fingers is cut flat
 }
 
+// A finger of one rod, 12 mm wide and 9 mm deep, whose bones end in rollers across it; 1 mm.
+//   apex  mm by joint between bones: so far beyond it, towards the finger's tip, the roller reaches
+FusedBody rolling_finger(const std::vector<glm::dvec3>& joints, const Armature& rig, const std::vector<double>& apex) {
+  FusedBody made;
+  SmallBody& body = made.body;
+  body.volume.grid.size = {40, 40, 122};
+  body.volume.voxels.assign(body.volume.grid.voxel_count(), kMuscle);
+  body.tissues = muscle_and_bone();
+  body.armature = rig;
+  made.truth.assign(body.volume.grid.voxel_count(), -1);
+  const double roller = 6.5;  // radius, mm
+  for (int z = 0; z < 122; ++z)
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 40; ++x) {
+        const double wide = (x - 20) / 6.0, deep = (y - 20) / 4.5;
+        if (wide * wide + deep * deep > 1 || z > joints.front().z || z < joints.back().z) continue;
+        body.volume.at({x, y, z}) = kBone;
+        int bone = 0;
+        for (std::size_t k = 1; k + 1 < joints.size(); ++k) {
+          const double axis = joints[k].z - apex[k - 1] + roller;
+          bone += z < axis && std::hypot(z - axis, y - 20.0) > roller;
+        }
+        made.truth[body.volume.grid.index({x, y, z})] = bone;
+      }
+  return made;
+}
+
+TEST_CASE("joint cuts: rollers at the ends of finger bones stay with their bone") {
+  const std::vector<glm::dvec3> joints = {{20, 20, 112}, {20, 20, 70.3}, {20, 20, 38.6}, {20, 20, 14}};
+  Armature rig;
+  int parent = -1;
+  for (const char* name : {"RightRingProximal", "RightRingMiddle", "RightRingDistal"}) {
+    const std::size_t k = rig.bones.size();
+    rig.bones.push_back(bone_between(name, parent, joints[k], joints[k + 1]));
+    parent = static_cast<int>(k);
+  }
+  const FusedBody body = rolling_finger(joints, rig, {0.4, -0.5});
+  FusedBody flat = body;
+  for (Bone& bone : flat.body.armature.bones) bone.name = "bone " + bone.name.substr(9);
+  const Wrong wrong = wrong_bones(body);
+  CHECK(wrong.worst_share < 0.03);
+  CHECK(wrong.voxels < 0.6 * wrong_bones(flat).voxels);
+}
+
+TEST_CASE("joint cuts: where finger bones touch in a small spot they are cut there, and not at the joint's shape") {
+  const std::vector<glm::dvec3> joints = {{20, 20, 112}, {20, 20, 66}, {20, 20, 20}};
+  Armature rig;
+  rig.bones = {bone_between("RightRingProximal", -1, joints[0], joints[1]),
+               bone_between("RightRingMiddle", 0, joints[1], joints[2])};
+  FusedBody made = fused(finger(joints, 0), rig, {40, 40, 122}, {1, 1, 1});
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) {
+      if (std::hypot(x - 21, y - 20) > 1.5) {
+        made.body.volume.at({x, y, 64}) = kMuscle;
+        made.truth[made.body.volume.grid.index({x, y, 64})] = -1;
+      }
+      for (int z = 60; z < 72; ++z)
+        if (int& bone = made.truth[made.body.volume.grid.index({x, y, z})]; bone >= 0) bone = z < 64;
+    }
+  CHECK(wrong_bones(made).voxels < 10);  // the spot itself is 9 voxels
+}
+
 TEST_CASE("joint cuts: a bone that hangs on the parent of the one it sits on is cut from both") {
   // A thumb on a wrist bone that reaches out towards it; the rig has the thumb follow the forearm.
   const glm::dvec3 elbow(24, 20, 112), wrist(24, 20, 70), palm(24, 20, 40), outer(44, 20, 54), tip(64, 20, 26);
