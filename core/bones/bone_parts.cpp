@@ -15,6 +15,7 @@
 #include "core/bones/bone_watershed.h"
 #include "core/bones/hugging.h"
 #include "core/bones/joint_cuts.h"
+#include "core/bones/shoulder_girdles.h"
 
 namespace limber {
 
@@ -72,8 +73,8 @@ class Pieces {
   //   beyond      which voxels lie beyond a joint
   //   may_follow  rig bones that the basin of a voxel may follow; none means any
   Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging, const std::vector<std::int32_t>& basin,
-         const std::vector<BeyondJoint>& beyond, double voxel, const auto& may_follow)
-      : bones_(hugging.bone_count()), surface_(static_cast<float>(voxel / 2)) {
+         const std::vector<BeyondJoint>& beyond, double voxel, const std::vector<ShoulderGirdle>& girdles, const auto& may_follow)
+      : bones_(hugging.bone_count()), surface_(static_cast<float>(voxel / 2)), girdles_(girdles) {
     const auto members = members_of(basin);
     cluster_.resize(members.size());
     for (size_t p = 0; p < members.size(); ++p) {
@@ -90,6 +91,17 @@ class Pieces {
         double sum = 0;
         for (size_t k = 0; k < members[p].size(); k += stride) sum += hugging.distance(b, graph.voxel[members[p][k]]);
         cluster.distance[b] = static_cast<float>(sum / samples);
+      }
+      for (const ShoulderGirdle& girdle : girdles_) {
+        double nearest = std::numeric_limits<double>::infinity();
+        std::int64_t before = 0;
+        for (const std::int32_t i : members[p]) {
+          const glm::dvec3 place = hugging.world(glm::dvec3(graph.voxel[i]));
+          nearest = std::min(nearest, glm::distance(girdle.shoulder, place));
+          before += girdle.begins_beyond(place);
+        }
+        cluster.to_shoulder.push_back(static_cast<float>(nearest));
+        if (double(before) > kMostlyBefore * double(cluster.voxels)) before_[static_cast<std::int32_t>(p)].push_back(girdle.bone);
       }
       if (const std::vector<int>& allowed = may_follow(members[p].front()); !allowed.empty())
         for (int b = 0; b < bones_; ++b)
@@ -131,13 +143,19 @@ class Pieces {
     return p;
   }
   // After settle(): the rig bone of a basin, or -1 for one that touches nothing and lies far from every bone.
-  int bone(std::int32_t p) const { return bone_[root(p)]; }
+  int bone(std::int32_t p) const {
+    const int bone = bone_[root(p)];
+    const auto before = before_.find(p);
+    if (before == before_.end() || std::find(before->second.begin(), before->second.end(), bone) == before->second.end()) return bone;
+    return std::find_if(girdles_.begin(), girdles_.end(), [&](const ShoulderGirdle& girdle) { return girdle.bone == bone; })->trunk;
+  }
 
   // Gives every piece its rig bone. A piece that lies along a bone follows that bone. One that lies further from its
   // nearest bone than the piece along it does by half again (a rib beside the hanging arm, the breastbone between two
   // collarbones) must touch bones that are joined to its nearest, or it follows what it touches: of a chain of bones the
   // nearest, of several chains the bone they spring from. So it does where it lies three times as far and does not touch its
   // nearest itself, but for one of about the size of the piece along it that hangs on the same bone (a toe beside a toe).
+  // What is nearest to a shoulder's bone may be the trunk's (shoulder_girdles.h).
   void settle(const Armature& armature) {
     const auto count = static_cast<std::int32_t>(cluster_.size());
     bone_.assign(count, -1);
@@ -148,13 +166,15 @@ class Pieces {
       if (!is_piece(p)) continue;
       const int b = best(cluster_[p]);
       const double d = std::max(1e-3, double(cluster_[p].distance[b]));
-      if (const double c = cluster_[p].voxels / (d * d); c > claim[b]) claim[b] = c, own_[b] = {d, cluster_[p].voxels};
+      if (const double c = cluster_[p].voxels / (d * d); c > claim[b]) claim[b] = c, own_[b] = {d, cluster_[p].voxels, p};
     }
     std::vector<std::int32_t> waiting;
     for (std::int32_t p = 0; p < count; ++p) {
       if (!is_piece(p)) continue;
       const int b = best(cluster_[p]);
-      if (cluster_[p].distance[b] <= 1.5 * own_[b].distance)
+      if (const int trunk = trunk_instead_of(b, p); trunk >= 0)
+        bone_[p] = trunk;
+      else if (cluster_[p].distance[b] <= 1.5 * own_[b].distance)
         bone_[p] = b;
       else
         waiting.push_back(p);
@@ -176,6 +196,7 @@ class Pieces {
   static constexpr float kWeakestContact = 0.35f;
   static constexpr double kBeyondJoint = 4;  // how much further off a bone counts that lies beyond a joint
   static constexpr float kForbidden = 1e6f;  // mm: further than any bone
+  static constexpr double kMostlyBefore = 0.7;  // of a basin's voxels: it lies before a collarbone begins
   static constexpr double kFar = 3, kSmall = 4;  // times the distance of the piece along a bone; so much smaller than it
 
   struct Cluster {
@@ -183,6 +204,7 @@ class Pieces {
     std::int64_t voxels = 0;
     float summit = 0;
     std::vector<float> distance;              // mean, mm, by rig bone
+    std::vector<float> to_shoulder;           // of the nearest voxel, mm, by girdle
     std::map<std::int32_t, float> contact;    // by cluster: height of the highest pass
   };
 
@@ -190,6 +212,17 @@ class Pieces {
     while (bone > ancestor) bone = armature.bones[bone].parent;
     return bone == ancestor;
   }
+  // Of a piece whose nearest bone is a shoulder's: the trunk where it neither lies along that bone nor reaches the shoulder,
+  // else -1.
+  int trunk_instead_of(int bone, std::int32_t p) const {
+    for (std::size_t g = 0; g < girdles_.size(); ++g) {
+      const ShoulderGirdle& girdle = girdles_[g];
+      const bool may_follow = cluster_[p].distance[girdle.trunk] < kForbidden;
+      if (girdle.bone == bone && own_[bone].piece != p && cluster_[p].to_shoulder[g] > girdle.reach && may_follow) return girdle.trunk;
+    }
+    return -1;
+  }
+
   int bone_of_touched(std::int32_t p, const Armature& armature) const {
     std::vector<int> touched;
     for (auto [n, pass] : cluster_[p].contact)
@@ -263,6 +296,8 @@ class Pieces {
   }
   void absorb(std::int32_t a, std::int32_t b) {
     cluster_[a].distance = joined_distance(cluster_[a], cluster_[b]);
+    for (std::size_t g = 0; g < girdles_.size(); ++g)
+      cluster_[a].to_shoulder[g] = std::min(cluster_[a].to_shoulder[g], cluster_[b].to_shoulder[g]);
     cluster_[a].voxels += cluster_[b].voxels;
     cluster_[a].summit = std::max(cluster_[a].summit, cluster_[b].summit);
     cluster_[b].parent = a;
@@ -281,6 +316,7 @@ class Pieces {
   struct Own {
     double distance = 0;  // mean, mm
     std::int64_t voxels = 0;
+    std::int32_t piece = -1;
   };
 
   int bones_;
@@ -288,6 +324,8 @@ class Pieces {
   std::vector<Cluster> cluster_;
   std::vector<int> bone_;  // by cluster
   std::vector<Own> own_;   // by rig bone
+  std::vector<ShoulderGirdle> girdles_;
+  std::map<std::int32_t, std::vector<int>> before_;  // by basin: the collarbones that begin beyond it
 };
 
 // The rig bone of every basin. A piece that touches none with a bone takes that of the bone voxel nearest to it through
@@ -399,7 +437,7 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
   }
   progress.update("bones", 0.8);
 
-  Pieces pieces(graph, height, hugging, basin, cuts.beyond, voxel, [&](std::int32_t i) -> const std::vector<int>& { return candidates[group[i]]; });
+  Pieces pieces(graph, height, hugging, basin, cuts.beyond, voxel, shoulder_girdles(armature), [&](std::int32_t i) -> const std::vector<int>& { return candidates[group[i]]; });
   pieces.join();
   pieces.settle(armature);
   const std::vector<int> of_basin = bones_of_basins(graph, tissue, volume, basin, pieces);

@@ -84,6 +84,61 @@ TEST_CASE("bone parts: a rib beside the arm that hangs on the collarbone follows
   CHECK(bone_at(body, parts, tissue, {28, 12, 30}) == "Collarbone");
 }
 
+TEST_CASE("bone parts: breastbone and rib are the trunk's, whatever lies nearer, and a shoulder blade its shoulder's") {
+  SmallBody body = muscle_block({140, 60, 90});
+  body.armature.bones = {bone_between("Thorax", -1, {20, 50, 5}, {20, 50, 85}), bone_between("LeftClavicle", 0, {30, 10, 78}, {120, 22, 74}),
+                         bone_between("LeftUpperArm", 1, {120, 22, 74}, {126, 22, 2})};
+  draw_tube(body, {20, 50, 5}, {20, 50, 85}, 4);      // spine
+  draw_tube(body, {34, 10, 78}, {112, 21, 74}, 3);    // collarbone
+  draw_tube(body, {124, 22, 66}, {126, 22, 2}, 4);    // upper arm
+  draw_tube(body, {18, 8, 40}, {18, 8, 80}, 4);       // breastbone
+  draw_tube(body, {40, 48, 62}, {70, 24, 58}, 2);     // rib
+  draw_tube(body, {100, 44, 50}, {116, 28, 74}, 3);   // shoulder blade
+  const TissueVoxels tissue(body.volume);
+  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
+  CHECK(bone_at(body, parts, tissue, {20, 50, 40}) == "Thorax");
+  CHECK(bone_at(body, parts, tissue, {72, 15, 76}) == "LeftClavicle");
+  CHECK(bone_at(body, parts, tissue, {125, 22, 30}) == "LeftUpperArm");
+  CHECK(bone_at(body, parts, tissue, {18, 8, 60}) == "Thorax");
+  CHECK(bone_at(body, parts, tissue, {55, 36, 60}) == "Thorax");
+  CHECK(bone_at(body, parts, tissue, {108, 36, 62}) == "LeftClavicle");
+}
+
+TEST_CASE("bone parts: in a whole body with one bone label the chest is whole, and shoulder blades go with their shoulders") {
+  NEEDS_SHARED("data/bp3d/body_3mm_tissue.nrrd");
+  const VolumeFile file = read_volume(shared_path("data/bp3d/body_3mm_tissue.nrrd")), named = read_volume(shared_path("data/bp3d/body_3mm_structures.nii.gz"));
+  const TissueTable user = read_tissue_table(shared_path("data/bp3d/tissue.labels.json")), names = read_tissue_table(shared_path("data/bp3d/body_structures.labels.json"));
+  const TissueTable tissues = merge_tissue_tables(file.tissues, &user);
+  const Armature armature = read_armature(shared_path("data/bp3d/body.armature.json"));
+  const TissueVoxels tissue(file.volume);
+  const BoneParts parts = split_bones(file.volume, tissue, tissues, armature);
+  const AffineTransform to_named = voxel_from_world(named.volume.grid), to_world = world_from_voxel(file.volume.grid);
+  std::map<std::string, std::map<std::string, std::int64_t>> voxels;  // by structure and rig bone
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    if (!parts.part_of[place]) return;
+    const Label label = named.volume.at_or_air(glm::ivec3(glm::floor(to_named * (to_world * glm::dvec3(v)) + 0.5)));
+    if (const double value = label; const Tissue* structure = names.find_file_value(value))
+      ++voxels[structure->name][armature.bones[parts.parts[parts.part_of[place] - 1].bone].name];
+  });
+  const auto share = [&](const std::string& structure, const std::string& start) {
+    std::int64_t there = 0, all = 0;
+    for (const auto& [bone, count] : voxels[structure]) {
+      all += count;
+      there += bone.starts_with(start) ? count : 0;
+    }
+    REQUIRE(all > 0);
+    return double(there) / double(all);
+  };
+  for (const char* chest : {"Body of sternum", "Manubrium", "Left second rib", "Right second rib", "Left third rib", "Right fifth rib", "Second thoracic vertebra"}) {
+    CAPTURE(chest);
+    CHECK(share(chest, "Thorax") > 0.99);
+  }
+  CHECK(share("Left scapula", "LeftClavicle") > 0.99);
+  CHECK(share("Right scapula", "RightClavicle") > 0.99);
+  CHECK(share("Left clavicle", "LeftClavicle") > 0.95);
+  CHECK(share("Right clavicle", "RightClavicle") > 0.95);
+}
+
 TEST_CASE("bone parts: a toe beside the toe that the rig bone runs along is a toe") {
   SmallBody body = muscle_block({64, 44, 24});
   draw_tube(body, {2, 12, 12}, {36, 12, 12}, 4);   // foot, two bones wide
