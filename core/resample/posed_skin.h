@@ -25,15 +25,16 @@ struct InnerSkin {
 //   returns  the voxels changed
 std::int64_t close_skin(LabelVolume& posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh);
 
-// Where skin was closed it gained voxels, and elsewhere the grid laid some of it two voxels thick: the deepest of those go
-// to the tissue that lies around them, as many as were gained.
+// Where skin was closed it gained voxels, and elsewhere the grid laid some of it two voxels thick: the deepest of
+// those go to the tissue that lies around them, as many as were gained.
 //   inner_skin  is sorted
 //   returns     the voxels changed, at most `most`
 std::int64_t thin_skin(LabelVolume& posed, std::vector<InnerSkin>& inner_skin, std::int64_t most, const LabelSet& flesh,
                        const LabelSet& skin);
 
 // Where a seam opens or a stretch goes deeper, flesh lies bare that was covered at rest: its outermost voxels are skin
-// now. Bone that lay right at a seam or under closed skin gets skin over it. Nothing at air that the body encloses changes.
+// now. Bone that lay at a seam, under closed skin or deep inside gets skin over it. Nothing changes at air that the body
+// encloses.
 //   was_air  what had no tissue before is added
 //   returns  the voxels changed
 std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh,

@@ -84,7 +84,11 @@ bool SkinAtRest::was_at_seam(const glm::dvec3& rest_point) const {
   return seams && volume_.grid.contains(voxel) && seams->touches(voxel);
 }
 
-bool SkinAtRest::was_bone_covered(const glm::dvec3& rest_point) const { return was_at_seam(rest_point) || (is_closed_ && skin_over(rest_point)); }
+bool SkinAtRest::was_bone_covered(const glm::dvec3& rest_point) const {
+  if (was_at_seam(rest_point) || (is_closed_ && skin_over(rest_point))) return true;
+  const glm::ivec3 voxel = voxel_of(rest_point);
+  return !touches_air(volume_, voxel) && is_deep(voxel);
+}
 
 Label SkinAtRest::skin_over(const glm::dvec3& rest_point) const {
   const glm::ivec3 voxel = voxel_of(rest_point);

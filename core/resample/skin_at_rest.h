@@ -24,7 +24,7 @@ class SkinAtRest {
   // Whether tissue that comes from this rest point must not lie bare when posed.
   bool was_covered(const glm::dvec3& rest_point) const;
   bool was_at_seam(const glm::dvec3& rest_point) const;
-  // The same for bone, which stays bone: it gets skin beside it where it lay at a seam or right under closed skin.
+  // The same for bone, which stays bone: it gets skin beside it where it lay at a seam, right under closed skin, or deep inside.
   bool was_bone_covered(const glm::dvec3& rest_point) const;
   // The skin that touches the rest point's voxel, 0 where there is none or the voxel lies deeper than skin can be.
   Label skin_over(const glm::dvec3& rest_point) const;
