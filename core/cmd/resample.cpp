@@ -114,13 +114,8 @@ void note(Report& report, const std::vector<std::string>& warnings) {
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
 }
 
-SkinWeights weights_of(const Body& body, const TissueVoxels& tissue, const BoneParts& parts, const Options& options,
-                       Report& report, Progress& progress) {
-  if (!options.weights.empty()) {
-    WeightsFile file = read_weights(options.weights, body.file.volume, tissue, body.rig);
-    note(report, file.warnings);
-    return std::move(file.weights);
-  }
+SkinWeights new_weights(const Body& body, const TissueVoxels& tissue, const BoneParts& parts, Report& report, Progress& progress) {
+  note(report, unsure_bones(parts, body.tissues, body.rig));
   WeightsReport heat;
   SkinWeights weights = diffuse_heat(body.file.volume, tissue, body.tissues, body.rig, parts, {}, progress, &heat);
   note(report, heat.warnings);
@@ -390,14 +385,21 @@ void run(const Options& options) {
 
   const Stopwatch weighting;
   TissueVoxels tissue(body.file.volume);
-  const BoneParts parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress, body.bone_map);
-  set_seams(tissue, options.seams, body, parts, progress);
-  if (options.weights.empty()) note(report, unsure_bones(parts, body.tissues, body.rig));
-  const SkinWeights weights = weights_of(body, tissue, parts, options, report, progress);
+  std::optional<BoneParts> known_parts;  // they take their time, and weights with seams do without
+  const auto parts = [&]() -> const BoneParts& {
+    if (!known_parts) known_parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress, body.bone_map);
+    return *known_parts;
+  };
+  std::optional<WeightsFile> given;
+  if (!options.weights.empty()) given = read_weights(options.weights, body.file.volume, tissue, body.rig);
+  if (given && given->seams && options.seams.empty()) tissue.set_seams(*given->seams);
+  else set_seams(tissue, options.seams, body, parts, progress);
+  if (given) note(report, given->warnings);
+  const SkinWeights weights = given ? std::move(given->weights) : new_weights(body, tissue, parts(), report, progress);
   std::vector<std::vector<RigidTransform>> asked;  // fitting changes rig and pose
   for (const Pose& pose : poses) asked.push_back(posed_from_rest(body.rig, pose));
   if (options.fit_joints) {
-    FittedPose fitted = fit_joints(body.file.volume, tissue, parts, body.rig, poses[0], progress);
+    FittedPose fitted = fit_joints(body.file.volume, tissue, parts(), body.rig, poses[0], progress);
     note(report, fitted.warnings);
     body.rig = std::move(fitted.armature);
     poses[0] = std::move(fitted.pose);

@@ -2,6 +2,7 @@
 // How a command is told where tissue touches without being one: [--seams FILE|none].
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -16,6 +17,8 @@ namespace limber::cmd {
 void add_seam_option(CLI::App& command, std::string& seams);
 
 // Into `tissue`: those of the file, none, or where nothing is said those that are found.
-void set_seams(TissueVoxels& tissue, const std::string& seams, const Body& body, const BoneParts& parts, Progress& progress);
+//   parts  asked only where seams are looked for
+void set_seams(TissueVoxels& tissue, const std::string& seams, const Body& body, const std::function<const BoneParts&()>& parts,
+               Progress& progress);
 
 }  // namespace limber::cmd

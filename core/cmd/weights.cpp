@@ -74,7 +74,7 @@ void make_weights(const Options& options) {
 
   TissueVoxels tissue(volume);
   const BoneParts parts = split_bones(volume, tissue, body.tissues, rig, progress, body.bone_map);
-  set_seams(tissue, options.seams, body, parts, progress);
+  set_seams(tissue, options.seams, body, [&]() -> const BoneParts& { return parts; }, progress);
   WeightsReport report;
   const SkinWeights weights =
       options.method == "rigid"      ? bind_rigid(volume, tissue, rig, parts, progress, &report)
@@ -83,7 +83,7 @@ void make_weights(const Options& options) {
   warn(report.warnings);
   warn(unsure_bones(parts, body.tissues, rig));
   if (!options.bender_folder.empty()) write_bender_weights(weights, volume, tissue, options.bender_folder);
-  write_weights(weights, volume, tissue, options.output);
+  write_weights(weights, volume, tissue, options.output, SeamsOfWeights::OfTissue);
 
   std::printf("tissue: %lld voxels, table: %s\n", static_cast<long long>(tissue.size()), body.tissues.source.c_str());
   print_table(parts, rig);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "core/resample/skin_at_rest.h"
 
@@ -184,6 +185,24 @@ std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume
       if (touches_air(posed, *v)) posed.at(*v) = lining;
   }
   return filled;
+}
+
+Origins origins_of(const LabelVolume& posed, const std::vector<glm::ivec3>& was_air, const RestPoint& rest_point) {
+  const Grid& grid = posed.grid;
+  Origins origins;
+  std::unordered_set<std::int64_t> waiting;
+  for (const glm::ivec3& v : was_air) waiting.insert(grid.index(v));
+  for (const glm::ivec3& v : was_air) {
+    const auto source = std::find_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
+      return posed.at_or_air(v + step) != 0 && !waiting.contains(grid.index(v + step));
+    });
+    waiting.erase(grid.index(v));
+    if (source == neighbours().end()) continue;
+    const std::int64_t beside = grid.index(v + *source);
+    const auto known = origins.find(beside);
+    origins[grid.index(v)] = known != origins.end() ? known->second : Origin{beside, rest_point(v + *source)};
+  }
+  return origins;
 }
 
 }  // namespace limber

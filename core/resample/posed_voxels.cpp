@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -132,7 +131,7 @@ class PosedVoxels {
     std::vector<glm::ivec3> was_air = fill_grown_pockets(posed_.volume, volume_, flesh_, labels_.soft, rest_point);
     posed_.report.filled_air_voxels = std::ssize(was_air);
     posed_.report.new_skin_voxels = cover_bare_flesh(posed_.volume, under_skin_, flesh_, labels_.bone, labels_.skin, was_air);
-    const Origins origins = origins_of(was_air, rest_point);
+    const Origins origins = origins_of(posed_.volume, was_air, rest_point);
     carry_fields(origins);
     for (const glm::ivec3& v : was_air) rows_[v.y + std::int64_t{output_.grid.size.y} * v.z] = 1;
     const auto any_rest_point = [&](const glm::ivec3& voxel) {
@@ -176,33 +175,6 @@ class PosedVoxels {
         if (is_covered(map, static_cast<std::int64_t>(i))) rest[i] = map.rest[i];
     }
     return glm::dvec3(rest[in.x + std::size_t(size.x) * (in.y + std::size_t(size.y) * in.z)]);
-  }
-
-  // Where tissue comes from that fills what was air.
-  struct Origin {
-    std::int64_t beside;  // the voxel of the map that it took this from
-    glm::dvec3 rest;
-  };
-  using Origins = std::map<std::int64_t, Origin>;  // by voxel of the output
-
-  // Tissue where the map has none comes from where the tissue beside it comes from.
-  //   was_air  such voxels, each beside tissue of the map or an earlier one
-  template <class RestPoint>
-  Origins origins_of(const std::vector<glm::ivec3>& was_air, const RestPoint& rest_point) const {
-    Origins origins;
-    std::unordered_set<std::int64_t> waiting;
-    for (const glm::ivec3& v : was_air) waiting.insert(output_.grid.index(v));
-    for (const glm::ivec3& v : was_air) {
-      const auto source = std::find_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
-        return posed_.volume.at_or_air(v + step) != 0 && !waiting.contains(output_.grid.index(v + step));
-      });
-      waiting.erase(output_.grid.index(v));
-      if (source == neighbours().end()) continue;
-      const std::int64_t beside = output_.grid.index(v + *source);
-      const auto known = origins.find(beside);
-      origins[output_.grid.index(v)] = known != origins.end() ? known->second : Origin{beside, rest_point(v + *source)};
-    }
-    return origins;
   }
 
   void carry_fields(const Origins& origins) {

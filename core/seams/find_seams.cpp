@@ -88,7 +88,7 @@ class SeamFinder {
       label[place] = volume_.at(v);
       if (held_by_[place] == kSoft) return;
       distance[place] = 0;
-      front.start(place, v);
+      if (has_soft_beside(v)) front.start(place, v);
     });
     front.spread([&](std::int64_t from, std::int64_t to, float way) {
       if (held_by_[to] != kSoft || way >= distance[to] || !may_hold(bone_[from], label[to])) return false;
@@ -115,6 +115,12 @@ class SeamFinder {
     });
     layers.finish();
     return layers;
+  }
+
+  bool has_soft_beside(const glm::ivec3& v) const {
+    bool found = false;
+    for_each_joined(v, [&](int, const glm::ivec3&, std::int64_t there) { found |= held_by_[there] == kSoft; });
+    return found;
   }
 
   TissueKind kind_at(const glm::ivec3& v) const { return kind_[volume_.at(v)]; }

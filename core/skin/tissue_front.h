@@ -42,8 +42,7 @@ class TissueFront {
           glm::ivec3 corner(corner_[place]);
           if (corner == w) continue;
           float before = to_corner_[place];
-          const glm::vec3 steps = glm::vec3(w - corner), size = glm::abs(steps);
-          const glm::ivec3 back = w - glm::ivec3(glm::round(steps / std::max({size.x, size.y, size.z})));
+          const glm::ivec3 back = w - step_towards(w - corner);
           if (volume_.at(back) == 0 || (seams && seams->touches(w))) {
             before += straight(corner, glm::ivec3(voxel));
             corner = glm::ivec3(voxel);
@@ -59,6 +58,14 @@ class TissueFront {
   }
 
  private:
+  // The step to one of the 26 neighbours that is nearest to a direction.
+  static glm::ivec3 step_towards(const glm::ivec3& way) {
+    const glm::ivec3 size = glm::abs(way);
+    const int longest = std::max({size.x, size.y, size.z});
+    const auto step = [&](int along) { return 2 * std::abs(along) < longest ? 0 : along < 0 ? -1 : 1; };
+    return {step(way.x), step(way.y), step(way.z)};
+  }
+
   float straight(const glm::ivec3& a, const glm::ivec3& b) const {
     const glm::vec3 way = glm::vec3(b - a) * glm::vec3(volume_.grid.spacing);
     return std::sqrt(glm::dot(way, way));

@@ -16,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/skin/best_four.h"
 #include "core/volume/volume_io.h"
+#include "core/volume/seam_text.h"
 
 namespace limber {
 
@@ -241,7 +242,7 @@ WeightsFile read_bender_map(const Path& path, const LabelVolume& volume, const T
 }
 }  // namespace
 
-SkinWeights parse_weights(std::istream& in, const std::string& where, const LabelVolume& volume, const TissueVoxels& tissue,
+WeightsFile parse_weights(std::istream& in, const std::string& where, const LabelVolume& volume, const TissueVoxels& tissue,
                           const Armature& armature) {
   const Header header = read_header(in, where);
   auto field = [&](const std::string& name) {
@@ -268,7 +269,10 @@ SkinWeights parse_weights(std::istream& in, const std::string& where, const Labe
     chunks.push_back(std::make_shared<const SkinWeights::Chunk>(influences));
   }
   data.expect_end();
-  return {names_of(armature), std::move(chunks)};
+  WeightsFile file{{names_of(armature), std::move(chunks)}, {}};
+  if (const auto text = header.find("limber_seams"); text != header.end())
+    file.seams = text->second.empty() ? nullptr : std::make_shared<const Seams>(seams_of_text(text->second, volume.grid.size, where));
+  return file;
 }
 
 WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature) {
@@ -279,7 +283,7 @@ WeightsFile read_weights(const Path& path, const LabelVolume& volume, const Tiss
   if (!fs::is_regular_file(path, error)) throw Error("there is no such file of weights", path.string(), "name a file on disk");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
-  return {parse_weights(in, path.string(), volume, tissue, armature), {}};
+  return parse_weights(in, path.string(), volume, tissue, armature);
 }
 
 void check_weights_writable(const Path& path) {
@@ -287,12 +291,18 @@ void check_weights_writable(const Path& path) {
   check_place(path);
 }
 
-void write_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue, const Path& path) {
+void write_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue, const Path& path,
+                   SeamsOfWeights seams) {
   check_weights_writable(path);
+  std::string seam_line;
+  if (seams == SeamsOfWeights::OfTissue) {
+    const std::string text = tissue.seams() ? text_of_seams(*tissue.seams()) : "";
+    if (text.size() < kLongestHeader / 2) seam_line = "\nlimber_seams:=" + text;
+  }
   const nlohmann::json names = weights.bones();
   const std::string header = "NRRD0005\ntype: unsigned short\ndimension: 2\nsizes: 8 " + std::to_string(tissue.size()) +
                              "\nendian: little\nencoding: raw\nlimber_bones:=" + names.dump() + "\nlimber_size:=" + text_of(volume.grid.size) +
-                             "\nlimber_tissue_sha256:=" + tissue_sha256(tissue) + "\n\n";
+                             "\nlimber_tissue_sha256:=" + tissue_sha256(tissue) + seam_line + "\n\n";
   write_atomically(path, [&](const Path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
     out.write(header.data(), std::ssize(header));

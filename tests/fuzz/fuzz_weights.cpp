@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Bar bar;
   try {
     std::istringstream in(std::string(reinterpret_cast<const char*>(data), size));
-    const limber::SkinWeights weights = limber::parse_weights(in, "f", bar.volume, bar.tissue, bar.armature);
+    const limber::SkinWeights weights = limber::parse_weights(in, "f", bar.volume, bar.tissue, bar.armature).weights;
     if (weights.size() != bar.tissue.size()) std::abort();
     for (std::int64_t c = 0; c < weights.chunk_count(); ++c)
       for (const limber::Influence& influence : weights.chunk(c)) {

@@ -33,7 +33,7 @@ struct Made {
 };
 SkinWeights parse(const std::string& bytes, const LabelVolume& volume, const Armature& armature) {
   std::istringstream in(bytes);
-  return parse_weights(in, "w.nrrd", volume, TissueVoxels(volume), armature);
+  return parse_weights(in, "w.nrrd", volume, TissueVoxels(volume), armature).weights;
 }
 std::string bytes_of(const Made& made, const Path& folder) {
   write_weights(made.weights, made.body.volume, made.tissue, folder / "w.nrrd");
@@ -52,6 +52,38 @@ TEST_CASE("weights io: what is written is read, also when the rig lists its bone
   const SkinWeights other = read_weights(folder.path / "w.nrrd", made.body.volume, made.tissue, turned).weights;
   CHECK(other.bones() == std::vector<std::string>{"Lower", "Upper"});
   CHECK(other.chunk(0)[0].of(1) == made.weights.chunk(0)[0].of(0));
+}
+
+TEST_CASE("weights io: the seams that weights were made with come along, and damaged ones are refused") {
+  const Folder folder;
+  Made made;
+  const Path file = folder.path / "w.nrrd";
+  const auto read = [&] { return read_weights(file, made.body.volume, TissueVoxels(made.body.volume), made.body.armature); };
+  write_weights(made.weights, made.body.volume, made.tissue, file);
+  CHECK_FALSE(read().seams);
+  write_weights(made.weights, made.body.volume, made.tissue, file, SeamsOfWeights::OfTissue);
+  REQUIRE(read().seams);
+  CHECK(*read().seams == nullptr);
+
+  const glm::ivec3 size = made.body.volume.grid.size;
+  auto seams = std::make_shared<Seams>(size);
+  seams->cut({0, 0, 0}, 2);
+  seams->cut({size.x - 2, size.y - 1, size.z - 1}, 0);
+  for (int y = 1; y < size.y; ++y) seams->cut({size.x / 2, y, size.z / 2}, 0);
+  made.tissue.set_seams(seams);
+  write_weights(made.weights, made.body.volume, made.tissue, file, SeamsOfWeights::OfTissue);
+  REQUIRE(read().seams);
+  REQUIRE(*read().seams);
+  CHECK(**read().seams == *seams);
+  CHECK(read().weights == made.weights);
+
+  const std::string bytes = read_file(file), key = "limber_seams:=";
+  const std::size_t at = bytes.find(key) + key.size();
+  for (const char* damage : {"zz", "8", "ffffffffffffffffff7f", "ffffffff7f"}) {
+    std::string broken = bytes;
+    broken.replace(at, bytes.find('\n', at) - at, damage);
+    CHECK_THROWS_AS(parse(broken, made.body.volume, made.body.armature), Error);
+  }
 }
 
 TEST_CASE("weights io: packed weights are read, and refused when a byte is wrong or missing") {
