@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whatever a W.nrrd holds: it is read into weights that sum to one over bones of the rig, or refused with Error.
+// Whatever a W.nrrd holds: it is read into weights that sum to one over bones of the rig, or refused with Error;
+// seams lie in the volume.
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>
@@ -33,7 +34,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Bar bar;
   try {
     std::istringstream in(std::string(reinterpret_cast<const char*>(data), size));
-    const limber::SkinWeights weights = limber::parse_weights(in, "f", bar.volume, bar.tissue, bar.armature).weights;
+    const limber::WeightsFile file = limber::parse_weights(in, "f", bar.volume, bar.tissue, bar.armature);
+    const limber::SkinWeights& weights = file.weights;
     if (weights.size() != bar.tissue.size()) std::abort();
     for (std::int64_t c = 0; c < weights.chunk_count(); ++c)
       for (const limber::Influence& influence : weights.chunk(c)) {
@@ -44,6 +46,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         if (sum != limber::kFullWeight) std::abort();
       }
+    if (!file.seams || !*file.seams) return 0;
+    (*file.seams)->for_each([&](glm::ivec3 voxel, int axis) {
+      ++voxel[axis];
+      if (!bar.volume.grid.contains(voxel)) std::abort();
+    });
   } catch (const limber::Error&) {
   }
   return 0;
