@@ -111,8 +111,8 @@ std::string why_weights_are_old(const Editor& editor) {
   const auto& from = editor.seams->weights_from;
   const Document& document = editor.document();
   if (!document.weights || !from || from->volume != document.volume) return "";
-  if (from->kept != document.seams) return "Computed before the seams changed";
-  return from->bone_map != document.bone_map ? "Computed before the bone map changed" : "";
+  if (from->kept != document.seams) return "Older than the seams";
+  return from->bone_map != document.bone_map ? "Older than the bone map" : "";
 }
 
 void draw_seams(Editor& editor, const ViewPlace& view) {

@@ -174,7 +174,7 @@ TEST_CASE("seams: those by hand go to weights, and to the worker that resamples"
   test.play("click \"Edit/Weights/Find seams\"\nwait-job\nwait-idle");
   CHECK(test.last_edit() == "Find seams");
   CHECK_FALSE(test.editor->document().seams);
-  CHECK(why_weights_are_old(*test.editor) == "Computed before the seams changed");
+  CHECK(why_weights_are_old(*test.editor) == "Older than the seams");
   CHECK(parted_tissue(*test.editor)->seams());
   test.play("click \"Edit/Weights/Heat diffusion\"\nwait-job\nwait-idle");
   CHECK(why_weights_are_old(*test.editor) == "");

@@ -31,6 +31,17 @@ void make_arm(const TemporaryFolder& folder) {
 }
 }  // namespace
 
+namespace {
+
+// A project does not say what seams its weights were made with.
+std::string without_seams(std::string weights) {
+  const std::size_t begin = weights.find("limber_seams:=");
+  if (begin != std::string::npos) weights.erase(begin, weights.find('\n', begin) + 1 - begin);
+  return weights;
+}
+
+}  // namespace
+
 TEST_CASE("project command: what create puts in, inspect and info tell and export gives back") {
   const TemporaryFolder folder;
   make_arm(folder);
@@ -51,7 +62,7 @@ TEST_CASE("project command: what create puts in, inspect and info tell and expor
   REQUIRE(project(folder, {"export", "volume", "-o", folder / "again.nrrd"}).exit_code == 0);
   CHECK(read_volume(folder / "again.nrrd").volume.voxels == read_volume(folder / "volume.nrrd").volume.voxels);
   REQUIRE(project(folder, {"export", "weights", "-o", folder / "again-weights.nrrd"}).exit_code == 0);
-  CHECK(read_file(folder / "again-weights.nrrd") == read_file(folder / "weights.nrrd"));
+  CHECK(read_file(folder / "again-weights.nrrd") == without_seams(read_file(folder / "weights.nrrd")));
   REQUIRE(project(folder, {"export", "rig", "-o", folder / "again-rig.json"}).exit_code == 0);
   CHECK(read_file(folder / "again-rig.json") == read_file(folder / "rig.json"));
   REQUIRE(project(folder, {"export", "motion", "-o", folder / "again.bvh"}).exit_code == 0);
