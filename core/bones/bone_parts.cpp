@@ -94,14 +94,15 @@ class Pieces {
       }
       for (const ShoulderGirdle& girdle : girdles_) {
         double nearest = std::numeric_limits<double>::infinity();
-        std::int64_t before = 0;
+        std::int64_t before = 0, across = 0;
         for (const std::int32_t i : members[p]) {
           const glm::dvec3 place = hugging.world(glm::dvec3(graph.voxel[i]));
           nearest = std::min(nearest, glm::distance(girdle.shoulder, place));
           before += girdle.begins_beyond(place);
+          across += girdle.is_on_other_side(place);
         }
         cluster.to_shoulder.push_back(static_cast<float>(nearest));
-        if (double(before) > kMostlyBefore * double(cluster.voxels)) before_[static_cast<std::int32_t>(p)].push_back(girdle.bone);
+        if (double(before) > kMostlyBefore * double(cluster.voxels) || double(across) > kAcross * double(cluster.voxels)) before_[static_cast<std::int32_t>(p)].push_back(girdle.bone);
       }
       if (const std::vector<int>& allowed = may_follow(members[p].front()); !allowed.empty())
         for (int b = 0; b < bones_; ++b)
@@ -197,6 +198,7 @@ class Pieces {
   static constexpr double kBeyondJoint = 4;  // how much further off a bone counts that lies beyond a joint
   static constexpr float kForbidden = 1e6f;  // mm: further than any bone
   static constexpr double kMostlyBefore = 0.7;  // of a basin's voxels: it lies before a collarbone begins
+  static constexpr double kAcross = 0.35;       // ... on the other side of the body: it is no collarbone grown to the breastbone
   static constexpr double kFar = 3, kSmall = 4;  // times the distance of the piece along a bone; so much smaller than it
 
   struct Cluster {
@@ -325,7 +327,7 @@ class Pieces {
   std::vector<int> bone_;  // by cluster
   std::vector<Own> own_;   // by rig bone
   std::vector<ShoulderGirdle> girdles_;
-  std::map<std::int32_t, std::vector<int>> before_;  // by basin: the collarbones that begin beyond it
+  std::map<std::int32_t, std::vector<int>> before_;  // by basin: the collarbones that it is no part of
 };
 
 // The rig bone of every basin. A piece that touches none with a bone takes that of the bone voxel nearest to it through

@@ -9,7 +9,7 @@
 namespace limber::cmd {
 
 void add_seam_option(CLI::App& command, std::string& seams) {
-  command.add_option("--seams", seams, "where tissue touches without being one, as 'limber prepare --seams' writes it, or none (default: found by itself)")->type_name("FILE|none");
+  command.add_option("--seams", seams, "where tissue touches without being one, as 'limber prepare --seams' writes it, or none (default: those that given weights were made with, else found by itself)")->type_name("FILE|none");
 }
 
 void set_seams(TissueVoxels& tissue, const std::string& seams, const Body& body, const std::function<const BoneParts&()>& parts,

@@ -104,6 +104,25 @@ TEST_CASE("bone parts: breastbone and rib are the trunk's, whatever lies nearer,
   CHECK(bone_at(body, parts, tissue, {108, 36, 62}) == "LeftClavicle");
 }
 
+TEST_CASE("bone parts: a breastbone grown to a collarbone is the trunk's also where the rig's collarbones begin at the spine") {
+  SmallBody body = muscle_block({200, 60, 90});
+  body.armature.bones = {bone_between("Thorax", -1, {100, 50, 5}, {100, 50, 85}), bone_between("LeftClavicle", 0, {100, 46, 80}, {180, 22, 74}),
+                         bone_between("LeftUpperArm", 1, {180, 22, 74}, {186, 22, 2}), bone_between("RightClavicle", 0, {100, 46, 80}, {20, 22, 74}),
+                         bone_between("RightUpperArm", 3, {20, 22, 74}, {14, 22, 2})};
+  draw_tube(body, {100, 50, 5}, {100, 50, 85}, 4);   // spine
+  draw_tube(body, {104, 12, 78}, {172, 21, 74}, 3);  // collarbones, the left one touches the breastbone
+  draw_tube(body, {88, 12, 78}, {28, 21, 74}, 3);
+  draw_tube(body, {184, 22, 66}, {186, 22, 2}, 4);   // upper arms
+  draw_tube(body, {16, 22, 66}, {14, 22, 2}, 4);
+  draw_tube(body, {100, 12, 40}, {100, 12, 84}, 5);  // breastbone
+  const TissueVoxels tissue(body.volume);
+  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
+  CHECK(bone_at(body, parts, tissue, {100, 12, 60}) == "Thorax");
+  CHECK(bone_at(body, parts, tissue, {150, 18, 75}) == "LeftClavicle");
+  CHECK(bone_at(body, parts, tissue, {50, 18, 75}) == "RightClavicle");
+  CHECK(bone_at(body, parts, tissue, {100, 50, 40}) == "Thorax");
+}
+
 TEST_CASE("bone parts: in a whole body with one bone label the chest is whole, and shoulder blades go with their shoulders") {
   NEEDS_SHARED("data/bp3d/body_3mm_tissue.nrrd");
   const VolumeFile file = read_volume(shared_path("data/bp3d/body_3mm_tissue.nrrd")), named = read_volume(shared_path("data/bp3d/body_3mm_structures.nii.gz"));

@@ -95,7 +95,7 @@ TEST_CASE("mend: pieces that were apart at rest, or lie too far apart, stay apar
   CHECK(posed.voxels == before.voxels);
 }
 
-TEST_CASE("mend: a strand that fell between the voxels' centres is traced along its way, however long") {
+TEST_CASE("mend: a strand that fell between the voxels' centres is traced along its way") {
   const LabelVolume rest = block_with_strand();
   LabelVolume posed = rest;
   cut(posed, 9, 14, kFlesh);
