@@ -110,7 +110,8 @@ TEST_CASE("bone parts: a breastbone grown to a collarbone is the trunk's also wh
                          bone_between("LeftUpperArm", 1, {180, 22, 74}, {186, 22, 2}), bone_between("RightClavicle", 0, {100, 46, 80}, {20, 22, 74}),
                          bone_between("RightUpperArm", 3, {20, 22, 74}, {14, 22, 2})};
   draw_tube(body, {100, 50, 5}, {100, 50, 85}, 4);   // spine
-  draw_tube(body, {104, 12, 78}, {172, 21, 74}, 3);  // collarbones, the left one touches the breastbone
+  draw_tube(body, {112, 12, 78}, {172, 21, 74}, 4);  // collarbones, the left one on a neck that grows from the breastbone
+  draw_tube(body, {98, 12, 78}, {118, 13, 78}, 2.5);
   draw_tube(body, {88, 12, 78}, {28, 21, 74}, 3);
   draw_tube(body, {184, 22, 66}, {186, 22, 2}, 4);   // upper arms
   draw_tube(body, {16, 22, 66}, {14, 22, 2}, 4);
