@@ -328,7 +328,7 @@ class JointCutter {
   std::vector<std::uint8_t> least_cut(const auto& weight) {
     if (!is_connected()) return {};
     if (depth_.empty()) depth_ = bone_depth(graph_, volume_.grid.spacing);
-    CutGraph cut;
+    CutGraph<26> cut;
     cut.neighbour.resize(domain_.size());
     cut.capacity.resize(domain_.size());
     cut.terminal.resize(domain_.size());

@@ -9,9 +9,10 @@ namespace limber {
 
 namespace {
 
+template <int Edges>
 class TwoTrees {
  public:
-  explicit TwoTrees(CutGraph&& graph) : graph_(std::move(graph)), tree_(graph_.terminal.size()) {
+  explicit TwoTrees(CutGraph<Edges>&& graph) : graph_(std::move(graph)), tree_(graph_.terminal.size()) {
     for (std::int32_t i = 0; i < count(); ++i) {
       if (graph_.terminal[i] == 0) continue;
       tree_[i] = {graph_.terminal[i] > 0 ? kSource : kSink, kTerminal, 1, 0, true};
@@ -41,7 +42,7 @@ class TwoTrees {
 
  private:
   enum Side : std::int8_t { kFree, kSource, kSink };
-  static constexpr std::int8_t kTerminal = 26, kOrphan = 27;  // in place of the edge to the parent
+  static constexpr std::int8_t kTerminal = Edges, kOrphan = Edges + 1;  // in place of the edge to the parent
 
   struct Node {
     Side side = kFree;
@@ -56,6 +57,8 @@ class TwoTrees {
     int edge = 0;
   };
 
+  static constexpr int back(int edge) { return Edges - 1 - edge; }
+
   std::int32_t count() const { return static_cast<std::int32_t>(tree_.size()); }
   void activate(std::int32_t i) {
     if (tree_[i].is_active) return;
@@ -68,23 +71,23 @@ class TwoTrees {
   }
   // What can still flow along the tree: away from the source, towards the sink.
   std::int32_t outward(std::int32_t i, int k) const {
-    return tree_[i].side == kSource ? graph_.capacity[i][k] : graph_.capacity[graph_.neighbour[i][k]][25 - k];
+    return tree_[i].side == kSource ? graph_.capacity[i][k] : graph_.capacity[graph_.neighbour[i][k]][back(k)];
   }
 
   Meeting grow(std::int32_t i) {
-    for (int k = 0; k < 26; ++k) {
+    for (int k = 0; k < Edges; ++k) {
       const std::int32_t n = graph_.neighbour[i][k];
       if (n < 0 || outward(i, k) <= 0) continue;
       if (tree_[n].side == kFree) {
         tree_[n].side = tree_[i].side;
-        tree_[n].parent = static_cast<std::int8_t>(25 - k);
+        tree_[n].parent = static_cast<std::int8_t>(back(k));
         tree_[n].distance = tree_[i].distance + 1;
         tree_[n].time = tree_[i].time;
         activate(n);
       } else if (tree_[n].side != tree_[i].side) {
-        return tree_[i].side == kSource ? Meeting{i, k} : Meeting{n, 25 - k};
+        return tree_[i].side == kSource ? Meeting{i, k} : Meeting{n, back(k)};
       } else if (tree_[n].time <= tree_[i].time && tree_[n].distance > tree_[i].distance + 1) {
-        tree_[n].parent = static_cast<std::int8_t>(25 - k);
+        tree_[n].parent = static_cast<std::int8_t>(back(k));
         tree_[n].distance = tree_[i].distance + 1;
         tree_[n].time = tree_[i].time;
       }
@@ -97,7 +100,7 @@ class TwoTrees {
     const bool is_source = tree_[i].side == kSource;
     for (; tree_[i].parent != kTerminal; i = graph_.neighbour[i][tree_[i].parent]) {
       const int k = tree_[i].parent;
-      least = std::min(least, is_source ? graph_.capacity[graph_.neighbour[i][k]][25 - k] : graph_.capacity[i][k]);
+      least = std::min(least, is_source ? graph_.capacity[graph_.neighbour[i][k]][back(k)] : graph_.capacity[i][k]);
     }
     return std::min(least, std::abs(graph_.terminal[i]));
   }
@@ -106,10 +109,10 @@ class TwoTrees {
     while (tree_[i].parent != kTerminal) {
       const int k = tree_[i].parent;
       const std::int32_t p = graph_.neighbour[i][k];
-      std::int32_t& down = is_source ? graph_.capacity[p][25 - k] : graph_.capacity[i][k];
-      std::int32_t& back = is_source ? graph_.capacity[i][k] : graph_.capacity[p][25 - k];
+      std::int32_t& down = is_source ? graph_.capacity[p][back(k)] : graph_.capacity[i][k];
+      std::int32_t& backwards = is_source ? graph_.capacity[i][k] : graph_.capacity[p][back(k)];
       down -= flow;
-      back += flow;
+      backwards += flow;
       if (down == 0) orphan(i);
       i = p;
     }
@@ -124,7 +127,7 @@ class TwoTrees {
     const std::int32_t i = meeting.from_source, n = graph_.neighbour[i][meeting.edge];
     const std::int32_t flow = std::min({graph_.capacity[i][meeting.edge], bottleneck(i), bottleneck(n)});
     graph_.capacity[i][meeting.edge] -= flow;
-    graph_.capacity[n][25 - meeting.edge] += flow;
+    graph_.capacity[n][back(meeting.edge)] += flow;
     push(i, flow);
     push(n, flow);
   }
@@ -158,9 +161,9 @@ class TwoTrees {
       orphans_.pop_front();
       int best = -1;
       std::int32_t nearest = std::numeric_limits<std::int32_t>::max();
-      for (int k = 0; k < 26; ++k) {
+      for (int k = 0; k < Edges; ++k) {
         const std::int32_t n = graph_.neighbour[i][k];
-        if (n < 0 || tree_[n].side != tree_[i].side || tree_[n].parent == kOrphan || outward(n, 25 - k) <= 0) continue;
+        if (n < 0 || tree_[n].side != tree_[i].side || tree_[n].parent == kOrphan || outward(n, back(k)) <= 0) continue;
         const std::int32_t d = distance_to_terminal(n);
         if (d >= 0 && d < nearest) nearest = d, best = k;
       }
@@ -174,17 +177,17 @@ class TwoTrees {
     }
   }
   void set_free(std::int32_t i) {
-    for (int k = 0; k < 26; ++k) {
+    for (int k = 0; k < Edges; ++k) {
       const std::int32_t n = graph_.neighbour[i][k];
       if (n < 0 || tree_[n].side != tree_[i].side) continue;
-      if (outward(n, 25 - k) > 0) activate(n);
-      if (tree_[n].parent == 25 - k) orphan(n);
+      if (outward(n, back(k)) > 0) activate(n);
+      if (tree_[n].parent == back(k)) orphan(n);
     }
     tree_[i].side = kFree;
     tree_[i].parent = kOrphan;
   }
 
-  CutGraph graph_;
+  CutGraph<Edges> graph_;
   std::vector<Node> tree_;
   std::deque<std::int32_t> active_, orphans_;
   std::int64_t time_ = 0;
@@ -192,6 +195,11 @@ class TwoTrees {
 
 }  // namespace
 
-std::vector<std::uint8_t> min_cut(CutGraph graph) { return TwoTrees(std::move(graph)).run(); }
+template <int Edges>
+std::vector<std::uint8_t> min_cut(CutGraph<Edges> graph) {
+  return TwoTrees<Edges>(std::move(graph)).run();
+}
+template std::vector<std::uint8_t> min_cut(CutGraph<6> graph);
+template std::vector<std::uint8_t> min_cut(CutGraph<26> graph);
 
 }  // namespace limber

@@ -5,12 +5,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/bones/min_cut.h"
 #include "core/seams/limbs.h"
 #include "core/seams/skin_layers.h"
 #include "core/skin/soft_body.h"
 #include "core/skin/tissue_front.h"
+#include "core/volume/tissue_set.h"
 
 namespace limber {
 
@@ -32,8 +34,9 @@ bool is_sheet(TissueKind kind) { return layer_of(kind) == Layer::Sheet; }
 // Of a voxel of the band: it is the limb's, it is not, or the cut decides.
 enum class Side { Limb, Other, Free };
 
-// In a CutGraph, the edges of a voxel in the six directions of its faces; edge 25 - k leads back over edge k.
-constexpr std::array<int, 6> kEdgeTowards{12, 13, 10, 15, 4, 21};
+// The edges of a voxel in a CutGraph: down along x, y, z, then up along z, y, x. Edge 5 - k leads back over edge k.
+constexpr int edge_up(int axis) { return 5 - axis; }
+constexpr int axis_of(int edge) { return edge < 3 ? edge : 5 - edge; }
 constexpr std::int32_t kCertain = 1 << 30;
 
 // What labels say of limbs. Only kinds that are found all over the body are named so; "head" of an organ is part of it.
@@ -46,7 +49,7 @@ class SeamFinder {
  public:
   SeamFinder(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const Armature& armature, const BoneParts& parts)
       : volume_(volume), tissue_(tissue), armature_(armature), limbs_(limbs_of(armature)), seams_(volume.grid.size), kind_(65536, TissueKind::Unknown),
-        named_(65536), world_(world_from_voxel(volume.grid)) {
+        named_(65536), world_(world_from_voxel(volume.grid)), inside_(tissue) {
     for (const Tissue& t : tissues.tissues) {
       kind_[t.label] = t.kind;
       named_[t.label] = limb_of_tissue(t);
@@ -60,6 +63,7 @@ class SeamFinder {
 
   Seams run(Progress& progress) {
     node_of_.assign(tissue_.size(), -1);
+    find_borders();
     for (size_t k = 0; k < limbs_.size(); ++k) {
       if (progress.cancelled()) throw Cancelled();
       progress.update("seams", double(k) / double(limbs_.size()));
@@ -76,6 +80,13 @@ class SeamFinder {
     float way;  // mm, from where the limbs meet
   };
 
+  struct Border {
+    glm::ivec3 voxel;
+    std::int64_t place;
+    bool operator<(const Border& other) const { return place < other.place; }
+    bool operator==(const Border& other) const { return place == other.place; }
+  };
+
   bool may_hold(int bone, Label label) const { return !named_[label] || !limb_of_bone_[bone] || *named_[label] == *limb_of_bone_[bone]; }
 
   // Every voxel goes to the bone nearest to it through tissue whose name does not contradict.
@@ -90,31 +101,20 @@ class SeamFinder {
       distance[place] = 0;
       if (has_soft_beside(v)) front.start(place, v);
     });
-    front.spread([&](std::int64_t from, std::int64_t to, float way) {
-      if (held_by_[to] != kSoft || way >= distance[to] || !may_hold(bone_[from], label[to])) return false;
-      distance[to] = way;
-      bone_[to] = bone_[from];
-      return true;
-    });
+    front.spread(
+        [&](std::int64_t from, std::int64_t to, float way) {
+          return held_by_[to] == kSoft && way < distance[to] && may_hold(bone_[from], label[to]);
+        },
+        [&](std::int64_t from, std::int64_t to, float way) {
+          distance[to] = way;
+          bone_[to] = bone_[from];
+        });
   }
 
   // How the free surface of the flesh of some bones is layered.
-  SkinLayers skin_layers(const std::vector<bool>& of_bones) const {
-    SkinLayers layers(volume_.grid.spacing);
-    const auto layer_at = [&](const glm::ivec3& v) {
-      const Label label = volume_.at_or_air(v);
-      return label == 0 ? std::nullopt : std::optional(layer_of(kind_[label]));
-    };
-    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
-      if (kind_at(v) != TissueKind::Skin || bone_[place] == kSoft || !of_bones[bone_[place]]) return;
-      for (int direction = 0; direction < 6; ++direction) {
-        glm::ivec3 w = v;
-        w[direction >> 1] += direction & 1 ? 1 : -1;
-        if (volume_.grid.contains(w) && volume_.at(w) == 0) layers.add_ray(v, direction ^ 1, layer_at);
-      }
-    });
-    layers.finish();
-    return layers;
+  SkinLayers skin_layers(const std::vector<bool>& of_bones) {
+    if (!rays_) rays_ = skin_rays(volume_, tissue_, kind_);
+    return SkinLayers(*rays_, volume_.grid.spacing, [&](std::int64_t place) { return bone_[place] != kSoft && of_bones[bone_[place]]; });
   }
 
   bool has_soft_beside(const glm::ivec3& v) const {
@@ -128,30 +128,17 @@ class SeamFinder {
   // Tissue that skin shuts off from every bone lies between the skins of two limbs: a scan that could not part them has
   // filled the air there. Nothing is a bridge where no skin is.
   void find_bridges() {
-    is_bridge_.assign(tissue_.size(), false);
-    std::vector<glm::ivec3> open;
-    std::vector<bool> is_inside(tissue_.size());
-    bool has_skin = false;
+    TissueSet flesh(tissue_);
     tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
-      has_skin |= kind_at(v) == TissueKind::Skin;
-      if (held_by_[place] == kSoft) return;
-      is_inside[place] = true;
-      open.push_back(v);
+      const bool is_skin = kind_at(v) == TissueKind::Skin;
+      has_skin_ |= is_skin;
+      if (!is_skin) flesh.add(v);
+      if (held_by_[place] != kSoft) inside_.add(v);
     });
-    if (!has_skin) return;
-    while (!open.empty()) {
-      const glm::ivec3 v = open.back();
-      open.pop_back();
-      for_each_joined(v, [&](int, const glm::ivec3& w, std::int64_t there) {
-        if (is_inside[there] || kind_at(w) == TissueKind::Skin) return;
-        is_inside[there] = true;
-        open.push_back(w);
-      });
-    }
-    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
-      is_bridge_[place] = !is_inside[place] && kind_at(v) != TissueKind::Skin;
-    });
+    if (has_skin_) inside_.spread(flesh);
   }
+
+  bool is_bridge(const glm::ivec3& v) const { return has_skin_ && !inside_.contains(v) && kind_at(v) != TissueKind::Skin; }
 
   // body(direction, voxel there, its place) for the tissue that a voxel hangs together with.
   template <class Body>
@@ -169,11 +156,44 @@ class SeamFinder {
   bool is_of(const Limb& limb, std::int64_t place) const { return bone_[place] != kSoft && limb.has_bone[bone_[place]]; }
   bool may_touch(const Limb& limb, std::int64_t place) const { return bone_[place] != kSoft && limb.may_touch[bone_[place]]; }
 
+  // The voxels at which tissue of different bones meets, and of some others; by place.
+  void find_borders() {
+    if (limbs_.empty()) return;
+    std::vector<bool> is_border(tissue_.size());
+    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 w = v;
+        if (++w[axis] >= volume_.grid.size[axis]) continue;
+        const std::int64_t there = tissue_.index_of(w);
+        if (there >= 0 && bone_[there] != bone_[place]) is_border[place] = is_border[there] = true;
+      }
+    });
+    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      if (is_border[place]) borders_.push_back({v, place});
+    });
+  }
+  // Where the band's voxels changed sides there are others.
+  void add_borders() {
+    const auto before = std::ssize(borders_);
+    for (std::size_t n = 0; n < band_.size(); ++n) {
+      const bool is_border = std::any_of(beside_[n].begin(), beside_[n].end(), [&](std::int32_t m) {
+        return m >= 0 && bone_[band_[m].place] != bone_[band_[n].place];
+      });
+      if (is_border) borders_.push_back({band_[n].voxel, band_[n].place});
+    }
+    std::sort(borders_.begin() + before, borders_.end());
+    std::inplace_merge(borders_.begin(), borders_.begin() + before, borders_.end());
+    borders_.erase(std::unique(borders_.begin(), borders_.end()), borders_.end());
+  }
+
   void part(const Limb& limb) {
     find_band(limb);
     if (!band_.empty()) {
+      link_band();
+      find_sides(limb);
       const std::vector<std::uint8_t> inside = cheapest_cut(limb);
       take_sides(limb, inside);
+      add_borders();
       cut_faces(limb);
     }
     for (const Node& node : band_) node_of_[node.place] = -1;
@@ -183,8 +203,8 @@ class SeamFinder {
   // The tissue around the free faces where the limb meets what it may touch.
   void find_band(const Limb& limb) {
     std::vector<std::int32_t> open;
-    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
-      if (!is_of(limb, place)) return;
+    for (const auto& [v, place] : borders_) {
+      if (!is_of(limb, place)) continue;
       for_each_joined(v, [&](int, const glm::ivec3& w, std::int64_t there) {
         if (is_of(limb, there) || !may_touch(limb, there) || !is_free(limb, armature_, face_centre(v, w))) return;
         for (const auto& [voxel, at] : {std::pair{v, place}, {w, there}})
@@ -194,7 +214,7 @@ class SeamFinder {
             band_.push_back({voxel, at, 0});
           }
       });
-    });
+    }
     const glm::dvec3 spacing = volume_.grid.spacing;
     const double longest = std::max({spacing.x, spacing.y, spacing.z});
     double width = kWidestBand;
@@ -219,6 +239,20 @@ class SeamFinder {
     }
   }
 
+  // Which of the band's voxels hang together, and which hang together with others too.
+  void link_band() {
+    std::array<std::int32_t, 6> none;
+    none.fill(-1);
+    beside_.assign(band_.size(), none);
+    is_end_.assign(band_.size(), false);
+    for (std::size_t n = 0; n < band_.size(); ++n)
+      for_each_joined(band_[n].voxel, [&](int direction, const glm::ivec3&, std::int64_t there) {
+        const int axis = direction >> 1;
+        beside_[n][direction & 1 ? edge_up(axis) : axis] = node_of_[there];
+        is_end_[n] = is_end_[n] || node_of_[there] < 0;
+      });
+  }
+
   // Of each voxel of the band that is of a sheet, how many steps lie between it and what is not: largest in the middle.
   //   is_of_sheet  tells it of a node
   template <class IsOfSheet>
@@ -233,12 +267,13 @@ class SeamFinder {
     const glm::dvec3 spacing = volume_.grid.spacing;
     const glm::vec3 step(spacing / std::min({spacing.x, spacing.y, spacing.z}));
     for (size_t i = 0; i < open.size(); ++i)
-      for_each_joined(band_[open[i]].voxel, [&](int direction, const glm::ivec3&, std::int64_t there) {
-        const std::int32_t node = node_of_[there];
-        if (node < 0 || depth[node] <= depth[open[i]] + step[direction >> 1]) return;
-        depth[node] = depth[open[i]] + step[direction >> 1];
+      for (int edge = 0; edge < 6; ++edge) {
+        const std::int32_t node = beside_[open[i]][edge];
+        const float way = depth[open[i]] + step[axis_of(edge)];
+        if (node < 0 || depth[node] <= way) continue;
+        depth[node] = way;
         open.push_back(node);
-      });
+      }
     for (float& d : depth)
       if (d == std::numeric_limits<float>::infinity()) d = 0;
     return depth;
@@ -248,63 +283,73 @@ class SeamFinder {
   // and its middle is meant.
   std::vector<double> costs() const {
     const std::vector<float> in_sheet = depth_in_sheets([&](const Node& node) { return is_sheet(kind_at(node.voxel)); });
-    const std::vector<float> in_bridge = depth_in_sheets([&](const Node& node) { return bool(is_bridge_[node.place]); });
+    const std::vector<float> in_bridge = depth_in_sheets([&](const Node& node) { return is_bridge(node.voxel); });
     std::vector<double> cost(band_.size());
     for (size_t n = 0; n < band_.size(); ++n) {
-      const bool is_bridge = is_bridge_[band_[n].place];
-      cost[n] = is_bridge ? kBridge / std::pow(1 + in_bridge[n], 3) : cost_of(kind_at(band_[n].voxel)) / (1 + in_sheet[n]);
+      cost[n] = is_bridge(band_[n].voxel) ? kBridge / std::pow(1 + in_bridge[n], 3) : cost_of(kind_at(band_[n].voxel)) / (1 + in_sheet[n]);
     }
     return cost;
   }
 
-  // What it costs that a voxel becomes the surface of its side, which lies inward of it: more where fat or muscle lies nearer
-  // to it than to free skin. Bone tells nothing of that: it is near the skin of a hand and deep in a thigh.
-  double cost_as_surface(double own_cost, glm::ivec3 v, int inward, const SkinLayers& layers) const {
-    const int axis = inward >> 1;
-    double cost = own_cost;
-    for (int k = 1; k < layers.reach(axis) && !seams_.is_cut_towards(v, inward); ++k) {
+  // What it costs that a voxel becomes the surface of the limb, or of what it touches.
+  struct SurfaceCost {
+    double of_limb, of_other;
+  };
+
+  // Of a surface that lies inward of it: more where fat or muscle lies nearer to it than to free skin. Bone tells nothing of
+  // that: it is near the skin of a hand and deep in a thigh.
+  SurfaceCost cost_as_surface(double own_cost, glm::ivec3 v, int inward, const SkinLayers& of_limb, const SkinLayers& of_other) const {
+    const int axis = inward >> 1, reach = std::max(of_limb.reach(axis), of_other.reach(axis));
+    SurfaceCost cost{own_cost, own_cost};
+    for (int k = 1; k < reach && !seams_.is_cut_towards(v, inward); ++k) {
       v[axis] += inward & 1 ? 1 : -1;
       const Label label = volume_.at_or_air(v);
       const Layer deepest = layer_of(kind_[label]);
       if (label == 0 || deepest == Layer::Deep) break;
-      for (const Layer layer : {Layer::Fat, Layer::Muscle})
-        if (layer <= deepest) cost = std::max(cost, kCostOfLayer[static_cast<int>(layer)] * layers.surprise(axis, layer, k));
+      for (const Layer layer : {Layer::Fat, Layer::Muscle}) {
+        if (layer > deepest) continue;
+        const double most = kCostOfLayer[static_cast<int>(layer)];
+        cost.of_limb = std::max(cost.of_limb, most * of_limb.surprise(axis, layer, k));
+        cost.of_other = std::max(cost.of_other, most * of_other.surprise(axis, layer, k));
+      }
     }
     return cost;
   }
 
   // Bones, tissue whose name tells, and the band's ends stay what they are.
-  Side fixed_side(const Limb& limb, const Node& node) const {
+  void find_sides(const Limb& limb) {
+    const auto limb_name = limb_of_bone_[std::find(limb.has_bone.begin(), limb.has_bone.end(), true) - limb.has_bone.begin()];
+    side_.clear();
+    for (std::size_t n = 0; n < band_.size(); ++n) side_.push_back(side_of(limb, limb_name, n));
+  }
+  Side side_of(const Limb& limb, const std::optional<LimbName>& limb_name, std::size_t n) const {
+    const Node& node = band_[n];
     const Side own = is_of(limb, node.place) ? Side::Limb : Side::Other;
     if (held_by_[node.place] != kSoft) return own;
     const auto named = named_[volume_.at(node.voxel)];
-    const auto limb_name = limb_of_bone_[std::find(limb.has_bone.begin(), limb.has_bone.end(), true) - limb.has_bone.begin()];
     if (named && limb_name && (*named != *limb_name || own == Side::Limb)) return own;
-    bool is_end = false;
-    for_each_joined(node.voxel, [&](int, const glm::ivec3&, std::int64_t there) { is_end |= node_of_[there] < 0; });
-    return is_end ? own : Side::Free;
+    return is_end_[n] ? own : Side::Free;
   }
 
-  std::vector<std::uint8_t> cheapest_cut(const Limb& limb) const {
+  std::vector<std::uint8_t> cheapest_cut(const Limb& limb) {
     const std::vector<double> cost = costs();
     const SkinLayers of_limb = skin_layers(limb.has_bone), of_other = skin_layers(limb.may_touch);
-    std::array<std::int32_t, 26> none, nothing{};
-    none.fill(-1);
-    CutGraph graph{std::vector(band_.size(), none), std::vector(band_.size(), nothing), std::vector<std::int32_t>(band_.size(), 0)};
+    CutGraph<6> graph{beside_, std::vector<std::array<std::int32_t, 6>>(band_.size()), std::vector<std::int32_t>(band_.size())};
     const glm::dvec3 s = volume_.grid.spacing, area(s.y * s.z, s.x * s.z, s.x * s.y);
     const double smallest = std::min({area.x, area.y, area.z});
     for (std::int32_t n = 0; n < std::ssize(band_); ++n) {
-      const Side side = fixed_side(limb, band_[n]);
-      graph.terminal[n] = side == Side::Limb ? kCertain : side == Side::Other ? -kCertain : 0;
-      for_each_joined(band_[n].voxel, [&](int direction, const glm::ivec3&, std::int64_t there) {
-        const std::int32_t m = node_of_[there];
-        if (m < 0) return;
-        const double surface = cost_as_surface(cost[n], band_[n].voxel, direction ^ 1, of_limb) +
-                               cost_as_surface(cost[m], band_[m].voxel, direction, of_other);
-        const double capacity = kCostUnit * area[direction >> 1] / smallest * surface;
-        graph.neighbour[n][kEdgeTowards[direction]] = m;
-        graph.capacity[n][kEdgeTowards[direction]] = std::max(1, static_cast<int>(std::lround(capacity)));
-      });
+      graph.terminal[n] = side_[n] == Side::Limb ? kCertain : side_[n] == Side::Other ? -kCertain : 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int up = edge_up(axis), down = 5 - up;
+        const std::int32_t m = beside_[n][up];
+        if (m < 0 || (side_[n] != Side::Free && side_[m] != Side::Free)) continue;  // nothing to decide
+        const SurfaceCost here = cost_as_surface(cost[n], band_[n].voxel, 2 * axis, of_limb, of_other);
+        const SurfaceCost beyond = cost_as_surface(cost[m], band_[m].voxel, 2 * axis + 1, of_limb, of_other);
+        const double unit = kCostUnit * area[axis] / smallest;
+        const auto capacity = [&](double surface) { return std::max(1, static_cast<int>(std::lround(unit * surface))); };
+        graph.capacity[n][up] = capacity(here.of_limb + beyond.of_other);
+        graph.capacity[m][down] = capacity(beyond.of_limb + here.of_other);
+      }
     }
     return min_cut(std::move(graph));
   }
@@ -315,19 +360,19 @@ class SeamFinder {
     std::vector<bool> settled(band_.size());
     std::vector<std::int32_t> open;
     for (std::int32_t n = 0; n < std::ssize(band_); ++n)
-      if (is_of(limb, band_[n].place) == bool(inside[n]) && fixed_side(limb, band_[n]) != Side::Free) {
+      if (is_of(limb, band_[n].place) == bool(inside[n]) && side_[n] != Side::Free) {
         settled[n] = true;
         open.push_back(n);
       }
     for (const bool keeps_sides : {true, false})
       for (size_t i = 0; i < open.size(); ++i)
-        for_each_joined(band_[open[i]].voxel, [&](int, const glm::ivec3&, std::int64_t there) {
-          const std::int32_t m = node_of_[there];
-          if (m < 0 || settled[m] || (keeps_sides && inside[m] != inside[open[i]])) return;
+        for (const std::int32_t m : beside_[open[i]]) {
+          if (m < 0 || settled[m] || (keeps_sides && inside[m] != inside[open[i]])) continue;
           settled[m] = true;
-          if (is_of(limb, there) != is_of(limb, band_[open[i]].place)) bone_[there] = bone_[band_[open[i]].place];
+          const std::int64_t there = band_[m].place, here = band_[open[i]].place;
+          if (is_of(limb, there) != is_of(limb, here)) bone_[there] = bone_[here];
           open.push_back(m);
-        });
+        }
   }
 
   void cut_faces(const Limb& limb) {
@@ -336,12 +381,15 @@ class SeamFinder {
       int axis;
     };
     std::vector<Face> faces;
-    for (const Node& node : band_) {
-      if (!is_of(limb, node.place)) continue;
-      for_each_joined(node.voxel, [&](int direction, const glm::ivec3& w, std::int64_t there) {
-        if (is_of(limb, there) || !may_touch(limb, there) || !is_free(limb, armature_, face_centre(node.voxel, w))) return;
-        faces.push_back({direction & 1 ? node.voxel : w, direction >> 1});
-      });
+    for (std::size_t n = 0; n < band_.size(); ++n) {
+      if (!is_of(limb, band_[n].place)) continue;
+      for (int edge = 0; edge < 6; ++edge) {
+        if (beside_[n][edge] < 0) continue;
+        const Node &here = band_[n], &there = band_[beside_[n][edge]];
+        if (is_of(limb, there.place) || !may_touch(limb, there.place)) continue;
+        if (is_free(limb, armature_, face_centre(here.voxel, there.voxel)))
+          faces.push_back({glm::min(here.voxel, there.voxel), axis_of(edge)});
+      }
     }
     for (const Face& face : faces) seams_.cut(face.lower, face.axis);
   }
@@ -356,9 +404,15 @@ class SeamFinder {
   std::vector<std::optional<LimbName>> limb_of_bone_;
   AffineTransform world_;
   std::vector<std::uint16_t> held_by_, bone_;     // by place
-  std::vector<bool> is_bridge_;                   // by place
   std::vector<std::int32_t> node_of_;             // by place, -1 outside the band
   std::vector<Node> band_;
+  std::vector<std::array<std::int32_t, 6>> beside_;  // by node of the band and edge; -1 for none
+  std::vector<bool> is_end_;                      // by node of the band
+  std::vector<Side> side_;                        // by node of the band
+  std::vector<Border> borders_;
+  bool has_skin_ = false;
+  TissueSet inside_;                              // bones, and what hangs together with them without skin between
+  std::optional<std::vector<SkinRay>> rays_;      // once they are asked for
 };
 
 }  // namespace

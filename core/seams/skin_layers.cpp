@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace limber {
 
@@ -23,11 +25,57 @@ Layer layer_of(TissueKind kind) {
   }
 }
 
+namespace {
+
+// A ray's length along an axis, voxels.
+int steps_along(const glm::dvec3& spacing, int axis) {
+  return std::clamp(static_cast<int>(kDeepest / spacing[axis]), 2, int{std::numeric_limits<std::uint16_t>::max()});
+}
+
+//   inward  direction of the ray: 0 towards lower x, 1 towards higher x, 2 and 3 along y, 4 and 5 along z
+std::optional<SkinRay> cast(const LabelVolume& volume, const std::vector<TissueKind>& kind, glm::ivec3 voxel, int inward) {
+  const int axis = inward >> 1, step = inward & 1 ? 1 : -1, steps = steps_along(volume.grid.spacing, axis);
+  SkinRay ray{0, static_cast<std::uint8_t>(axis), {}};
+  ray.first.fill(static_cast<std::uint16_t>(steps));
+  for (int k = 0; k < steps; ++k, voxel[axis] += step) {
+    const Label label = volume.at_or_air(voxel);
+    if (label == 0) return std::nullopt;
+    for (int l = 1; l <= static_cast<int>(layer_of(kind[label])); ++l)
+      ray.first[l] = std::min(ray.first[l], static_cast<std::uint16_t>(k));
+  }
+  return ray.first[1] < steps ? std::optional(ray) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kind) {
+  std::vector<SkinRay> rays;
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    if (kind[volume.at(v)] != TissueKind::Skin) return;
+    for (int direction = 0; direction < 6; ++direction) {
+      glm::ivec3 w = v;
+      w[direction >> 1] += direction & 1 ? 1 : -1;
+      if (!volume.grid.contains(w) || volume.at(w) != 0) continue;
+      if (auto ray = cast(volume, kind, v, direction ^ 1)) {
+        ray->place = place;
+        rays.push_back(*ray);
+      }
+    }
+  });
+  return rays;
+}
+
 SkinLayers::SkinLayers(const glm::dvec3& spacing) {
   for (int axis = 0; axis < 3; ++axis) {
-    steps_[axis] = std::max(2, static_cast<int>(kDeepest / spacing[axis]));
-    for (auto& count : count_[axis]) count.assign(steps_[axis], 0);
+    steps_[axis] = steps_along(spacing, axis);
+    for (auto& met : met_[axis]) met.assign(steps_[axis], 0);
   }
+}
+
+void SkinLayers::add(const SkinRay& ray) {
+  ++rays_[ray.axis];
+  for (int l = 1; l < kLayers; ++l)
+    if (ray.first[l] < steps_[ray.axis]) ++met_[ray.axis][l][ray.first[l]];
 }
 
 void SkinLayers::finish() {
@@ -36,8 +84,10 @@ void SkinLayers::finish() {
       std::vector<double>& surprise = surprise_[axis][l];
       surprise.assign(steps_[axis], 0);
       if (l == 0 || rays_[axis] < kFewestRays) continue;
+      std::int64_t met = 0;
       for (int k = 0; k < steps_[axis]; ++k) {
-        const double share = static_cast<double>(count_[axis][l][k]) / static_cast<double>(rays_[axis]);
+        met += met_[axis][l][k];
+        const double share = static_cast<double>(met) / static_cast<double>(rays_[axis]);
         surprise[k] = std::clamp(std::log(std::max(share, 1e-9) / kUsual) / std::log(kUnusual / kUsual), 0.0, 1.0);
         if (surprise[k] > 0) reach_[axis] = std::max(reach_[axis], k + 1);
       }

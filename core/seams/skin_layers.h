@@ -7,13 +7,13 @@
 // Depths are counted in voxels along an axis, on rays that come from the air and go in through skin.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "core/volume/label_volume.h"
 #include "core/volume/tissue_table.h"
+#include "core/volume/tissue_voxels.h"
 
 namespace limber {
 
@@ -23,31 +23,27 @@ constexpr int kLayers = 4;
 
 Layer layer_of(TissueKind kind);
 
+// Where a ray that goes in through skin meets fat, muscle and what is deeper.
+struct SkinRay {
+  std::int64_t place;  // of the skin in the list of tissue voxels
+  std::uint8_t axis;
+  std::array<std::uint16_t, kLayers> first;  // voxels below the air's face; for a layer that is not met, the ray's length
+};
+
+// All rays through the skin of a body. One that comes out again or never leaves the skin says nothing and is left out.
+//   kind  by label
+std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kind);
+
 class SkinLayers {
  public:
-  //   spacing  of voxels, mm
-  explicit SkinLayers(const glm::dvec3& spacing);
-
-  // Counts the ray that goes in through the skin of a voxel; one that comes out again or never leaves the skin says nothing.
-  //   inward    direction of the ray: 0 towards lower x, 1 towards higher x, 2 and 3 along y, 4 and 5 along z
-  //   layer_at  (voxel) -> std::optional<Layer>, none in air; voxels may lie outside the grid
-  template <class LayerAt>
-  void add_ray(glm::ivec3 voxel, int inward, const LayerAt& layer_at) {
-    const int axis = inward >> 1, step = inward & 1 ? 1 : -1;
-    std::array<int, kLayers> first;
-    first.fill(steps_[axis]);
-    for (int k = 0; k < steps_[axis]; ++k, voxel[axis] += step) {
-      const auto layer = layer_at(voxel);
-      if (!layer) return;
-      for (int l = 1; l <= static_cast<int>(*layer); ++l) first[l] = std::min(first[l], k);
-    }
-    if (first[1] == steps_[axis]) return;
-    ++rays_[axis];
-    for (int l = 1; l < kLayers; ++l)
-      for (int k = first[l]; k < steps_[axis]; ++k) ++count_[axis][l][k];
+  //   rays     of one body, whose voxels have this spacing, mm
+  //   is_of    (place) -> whether the skin there counts
+  template <class IsOf>
+  SkinLayers(const std::vector<SkinRay>& rays, const glm::dvec3& spacing, const IsOf& is_of) : SkinLayers(spacing) {
+    for (const SkinRay& ray : rays)
+      if (is_of(ray.place)) add(ray);
+    finish();
   }
-  // Call once all rays are counted.
-  void finish();
 
   // How unusual it is that a layer or what lies deeper is met within `steps` voxels along an axis below the air's face: 0
   // where half of the rays meet it there, 1 where a twentieth or fewer do. 0 where too few rays were counted to tell.
@@ -58,9 +54,13 @@ class SkinLayers {
   int reach(int axis) const { return reach_[axis]; }
 
  private:
+  explicit SkinLayers(const glm::dvec3& spacing);
+  void add(const SkinRay& ray);
+  void finish();
+
   std::array<int, 3> steps_{}, reach_{};
   std::array<std::int64_t, 3> rays_{};
-  std::array<std::array<std::vector<std::int64_t>, kLayers>, 3> count_;  // by axis, layer and depth
+  std::array<std::array<std::vector<std::int64_t>, kLayers>, 3> met_;  // by axis, layer and depth
   std::array<std::array<std::vector<double>, kLayers>, 3> surprise_;
 };
 

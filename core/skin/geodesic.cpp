@@ -50,12 +50,14 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
       distance[place] = 0;
       front.start(place, glm::ivec3(voxel));
     }
-    front.spread([&](std::int64_t, std::int64_t to, float way) {
-      if (held_by[to] != kSoft || way >= distance[to] || way > kFurthest * nearest.distance[to]) return false;
-      if (distance[to] == std::numeric_limits<float>::infinity()) reached.push_back(to);
-      distance[to] = way;
-      return true;
-    });
+    front.spread(
+        [&](std::int64_t, std::int64_t to, float way) {
+          return held_by[to] == kSoft && way < distance[to] && way <= kFurthest * nearest.distance[to];
+        },
+        [&](std::int64_t, std::int64_t to, float way) {
+          if (distance[to] == std::numeric_limits<float>::infinity()) reached.push_back(to);
+          distance[to] = way;
+        });
     // Over the nearest bone's, so that a weight is at most one before the sum is.
     std::vector<float> weight(reached.size());
     for (size_t i = 0; i < reached.size(); ++i) {

@@ -81,6 +81,18 @@ class SoftBody {
 
  private:
   struct Window;
+  struct CoarseCell {
+    glm::i16vec3 octant;
+    std::int32_t brick;
+  };
+  struct Link {
+    std::int32_t from, to;
+    float conductance;
+  };
+  std::vector<std::int32_t> number_cells(const std::vector<std::int32_t>& bricks, Region& region) const;
+  void find_cells(std::int64_t brick, Window& window, std::vector<std::int32_t>& cell_of, std::vector<CoarseCell>& found) const;
+  void link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of, std::vector<float>& diagonal,
+                  std::vector<Link>& links, std::vector<HeldFace>& held) const;
   float face(std::int64_t axis, Label a, Label b) const;
   float attraction(std::int64_t place, Label label) const;
 

@@ -50,10 +50,18 @@ class TissueVoxels {
   std::int64_t index_of(const glm::ivec3& v) const {
     const int brick = brick_at(v);
     if (brick < 0) return -1;
-    const Brick& b = bricks_[brick];
-    const int z = v.z & 7, bit = (v.x & 7) + 8 * (v.y & 7);
-    if (!(b.mask[z] >> bit & 1)) return -1;
-    return b.first + b.below[z] + std::popcount(b.mask[z] & ((std::uint64_t{1} << bit) - 1));
+    return index_in(bricks_[brick], v & 7);
+  }
+  // Of a voxel that lies `in` a brick, 0 .. 7 along each axis.
+  static std::int64_t index_in(const Brick& brick, const glm::ivec3& in) {
+    const int bit = in.x + 8 * in.y;
+    if (!(brick.mask[in.z] >> bit & 1)) return -1;
+    return brick.first + brick.below[in.z] + bits_in(brick.mask[in.z] & ((std::uint64_t{1} << bit) - 1));
+  }
+  // Whether voxel v, which must lie inside the grid, is tissue.
+  bool holds(const glm::ivec3& v) const {
+    const int brick = brick_at(v);
+    return brick >= 0 && (bricks_[brick].mask[v.z & 7] >> ((v.x & 7) + 8 * (v.y & 7)) & 1);
   }
 
   RowSet rows() const;  // that hold tissue
@@ -82,6 +90,15 @@ class TissueVoxels {
   }
 
  private:
+  // Sums of 2, 4 and 8 neighbouring bits, then of the bytes: std::popcount is a call where the processor's own instruction
+  // may not be assumed.
+  static int bits_in(std::uint64_t word) {
+    word -= word >> 1 & 0x5555555555555555;
+    word = (word & 0x3333333333333333) + (word >> 2 & 0x3333333333333333);
+    word = (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0f;
+    return static_cast<int>(word * 0x0101010101010101 >> 56);
+  }
+
   glm::ivec3 grid_size_{0}, brick_grid_{0};
   std::int64_t size_ = 0;
   std::vector<Brick> bricks_;

@@ -11,9 +11,9 @@ namespace {
 enum class Ways { Alike, Differ };  // to and fro along an edge
 
 // A cube of `side` voxels with random capacities; edge k of the 26 leads where the k-th of the offsets in z, y, x order does.
-CutGraph random_cube(int side, unsigned seed, int most_edge, int most_terminal, Ways ways) {
+CutGraph<26> random_cube(int side, unsigned seed, int most_edge, int most_terminal, Ways ways) {
   std::mt19937 random(seed);
-  CutGraph graph;
+  CutGraph<26> graph;
   const int count = side * side * side;
   std::array<std::int32_t, 26> none;
   none.fill(-1);
@@ -34,7 +34,7 @@ CutGraph random_cube(int side, unsigned seed, int most_edge, int most_terminal, 
   }
   return graph;
 }
-std::int64_t cost_of(const CutGraph& graph, const std::vector<std::uint8_t>& is_source) {
+std::int64_t cost_of(const CutGraph<26>& graph, const std::vector<std::uint8_t>& is_source) {
   std::int64_t cost = 0;
   for (std::size_t i = 0; i < is_source.size(); ++i) {
     if (graph.terminal[i] > 0 && !is_source[i]) cost += graph.terminal[i];
@@ -49,7 +49,7 @@ std::int64_t cost_of(const CutGraph& graph, const std::vector<std::uint8_t>& is_
 TEST_CASE("min cut: no other cut of a small graph costs less") {
   for (unsigned seed = 0; seed < 200; ++seed) {
     CAPTURE(seed);
-    const CutGraph graph = random_cube(2, seed, 9, 12, seed % 2 ? Ways::Differ : Ways::Alike);
+    const CutGraph<26> graph = random_cube(2, seed, 9, 12, seed % 2 ? Ways::Differ : Ways::Alike);
     const std::int64_t found = cost_of(graph, min_cut(graph));
     for (int pattern = 0; pattern < 256; ++pattern) {
       std::vector<std::uint8_t> is_source(8);
@@ -62,7 +62,7 @@ TEST_CASE("min cut: no other cut of a small graph costs less") {
 TEST_CASE("min cut: in a larger graph no voxel and no slab can change sides for less") {
   for (unsigned seed = 0; seed < 20; ++seed) {
     CAPTURE(seed);
-    const CutGraph graph = random_cube(9, seed, 5, 40, seed % 2 ? Ways::Differ : Ways::Alike);
+    const CutGraph<26> graph = random_cube(9, seed, 5, 40, seed % 2 ? Ways::Differ : Ways::Alike);
     const std::vector<std::uint8_t> cut = min_cut(graph);
     const std::int64_t found = cost_of(graph, cut);
     for (std::size_t i = 0; i < cut.size(); ++i) {
@@ -80,7 +80,7 @@ TEST_CASE("min cut: in a larger graph no voxel and no slab can change sides for 
 }
 
 TEST_CASE("min cut: two bars joined by one edge part at it, and what is tied to neither side lies on the sink's") {
-  CutGraph graph;
+  CutGraph<26> graph;
   std::array<std::int32_t, 26> none;
   none.fill(-1);
   graph.neighbour.assign(7, none);

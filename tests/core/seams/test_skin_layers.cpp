@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/seams/skin_layers.h"
 
-#include <optional>
+#include <algorithm>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -10,27 +10,40 @@ using namespace limber;
 
 namespace {
 
-// A ray along x through the tissues of a word, from the air on: S skin, f fat, m muscle, b bone.
-void add_ray(SkinLayers& layers, const std::string& tissues, bool upwards = true) {
-  const int last = static_cast<int>(tissues.size()) - 1;
-  layers.add_ray({upwards ? 0 : last, 0, 0}, upwards ? 1 : 0, [&](const glm::ivec3& v) -> std::optional<Layer> {
-    const int place = upwards ? v.x : last - v.x;
-    if (place < 0 || place > last) return std::nullopt;
-    const char c = tissues[place];
-    return c == 'S' ? Layer::Sheet : c == 'f' ? Layer::Fat : c == 'm' ? Layer::Muscle : Layer::Deep;
-  });
+constexpr int kLongest = 6, kSide = 64;
+
+std::vector<TissueKind> kinds() {
+  std::vector<TissueKind> kind(65536, TissueKind::Unknown);
+  kind['S'] = TissueKind::Skin;
+  kind['f'] = TissueKind::Fat;
+  kind['m'] = TissueKind::Muscle;
+  kind['b'] = TissueKind::Bone;
+  return kind;
+}
+
+// Rows of tissue along x, one voxel thick, with air around them. Each is a word: S skin, f fat, m muscle, b bone.
+SkinLayers layers_of(const std::vector<std::string>& words, double spacing) {
+  LabelVolume volume;
+  volume.grid.size = {kLongest + 2, 2 * kSide + 1, 2 * kSide + 1};
+  volume.grid.spacing = glm::dvec3(spacing);
+  volume.voxels.resize(volume.grid.voxel_count());
+  for (std::size_t i = 0; i < words.size(); ++i)
+    for (std::size_t x = 0; x < words[i].size(); ++x)
+      volume.at({1 + int(x), 1 + 2 * int(i % kSide), 1 + 2 * int(i / kSide)}) = static_cast<Label>(words[i][x]);
+  const TissueVoxels tissue(volume);
+  return SkinLayers(skin_rays(volume, tissue, kinds()), volume.grid.spacing, [](std::int64_t) { return true; });
 }
 
 }  // namespace
 
 TEST_CASE("skin layers: what lies nearer to the surface than it does on free skin surprises") {
-  SkinLayers layers(glm::dvec3(5));  // six voxels are looked at
+  std::vector<std::string> words;
   for (int ray = 0; ray < 1000; ++ray) {
-    add_ray(layers, ray % 2 ? "Sfmmmm" : "SSfmmm", ray % 3 != 0);
-    add_ray(layers, "Sfmm");    // comes out again
-    add_ray(layers, "SSSSSS");  // along the skin
+    std::string word = ray % 2 ? "Sfmmmm" : "SSfmmm";
+    if (ray % 3 == 0) std::reverse(word.begin(), word.end());
+    words.insert(words.end(), {word, "Sfmm", "SSSSSS"});  // the second comes out again, the third never leaves the skin
   }
-  layers.finish();
+  const SkinLayers layers = layers_of(words, 5);  // six voxels are looked at
   CHECK(layers.surprise(0, Layer::Fat, 0) == 1);
   CHECK(layers.surprise(0, Layer::Fat, 1) == 0);
   CHECK(layers.surprise(0, Layer::Muscle, 1) == 1);
@@ -41,10 +54,22 @@ TEST_CASE("skin layers: what lies nearer to the surface than it does on free ski
 }
 
 TEST_CASE("skin layers: too little free skin tells nothing, and neither does another axis") {
-  SkinLayers layers(glm::dvec3(5));
-  for (int ray = 0; ray < 100; ++ray) add_ray(layers, "Sfmmmm");
-  layers.finish();
+  const SkinLayers layers = layers_of(std::vector<std::string>(100, "Sfmmmm"), 5);
   CHECK(layers.reach(0) == 0);
   CHECK(layers.surprise(0, Layer::Muscle, 0) == 0);
   CHECK(layers.reach(1) == 0);
+}
+
+TEST_CASE("skin layers: only the skin that is asked for counts") {
+  LabelVolume volume;
+  volume.grid.size = {8, 1, 1};
+  volume.voxels = {0, 'S', 'f', 'm', 'm', 'b', 'm', 'm'};
+  const TissueVoxels tissue(volume);
+  const std::vector<SkinRay> rays = skin_rays(volume, tissue, kinds());
+  REQUIRE(rays.size() == 0);  // of thirty voxels, it comes out again
+  volume.grid.spacing = {5, 5, 5};
+  const std::vector<SkinRay> short_rays = skin_rays(volume, tissue, kinds());
+  REQUIRE(short_rays.size() == 1);
+  CHECK(short_rays[0].place == 0);
+  CHECK(short_rays[0].first == std::array<std::uint16_t, kLayers>{6, 1, 2, 4});
 }

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A set of tissue voxels, one bit each, in the bricks of a list of tissue voxels. It spreads 64 voxels at a time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/volume/tissue_voxels.h"
+
+namespace limber {
+
+class TissueSet {
+ public:
+  // Empty. The reference is kept.
+  explicit TissueSet(const TissueVoxels& tissue) : tissue_(tissue), bricks_(tissue.bricks().size(), Brick{}) {}
+
+  // Voxels are tissue.
+  void add(const glm::ivec3& voxel) { slice(voxel) |= bit(voxel); }
+  bool contains(const glm::ivec3& voxel) const { return slice(voxel) & bit(voxel); }
+
+  // Adds all voxels of `within` that hang together with the set through faces of voxels of `within`; seams do not count.
+  //   within  of the same list of tissue voxels
+  void spread(const TissueSet& within);
+
+ private:
+  using Brick = std::array<std::uint64_t, 8>;  // one word a z slice: bit x + 8 y
+
+  static std::uint64_t bit(const glm::ivec3& v) { return std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7)); }
+  std::uint64_t& slice(const glm::ivec3& v) { return bricks_[tissue_.brick_at(v)][v.z & 7]; }
+  std::uint64_t slice(const glm::ivec3& v) const { return bricks_[tissue_.brick_at(v)][v.z & 7]; }
+
+  const TissueVoxels& tissue_;
+  std::vector<Brick> bricks_;
+};
+
+}  // namespace limber
