@@ -45,6 +45,7 @@ Armature moved(Armature armature, const Move& move) {
 }
 
 std::optional<std::string> doubt_about_grey(const LabelVolume& volume, const TissueTable& tissues) {
+  if (!NeighbourChanges::may_be_grey(tissues.tissues.size())) return std::nullopt;
   NeighbourChanges changes(volume.grid.size.x);
   changes.add(volume.voxels.data(), volume.voxels.size());
   if (!changes.looks_grey(tissues.tissues.size())) return std::nullopt;

@@ -21,20 +21,12 @@ struct Box {
   glm::dvec3 low{1e300}, high{-1e300};
 
   void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
-  void add(const Box& other) { add(other.low), add(other.high); }
   bool empty() const { return !glm::all(glm::lessThanEqual(low, high)); }  // or not finite
+  bool contains(const glm::dvec3& p) const {
+    return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, high));
+  }
   Box grown(double by) const { return {low - by, high + by}; }
 };
-Box intersection(const Box& a, const Box& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
-
-// Around the image of a box.
-Box image(const Box& box, const AffineTransform& motion) {
-  Box around;
-  for (int corner = 0; corner < 8; ++corner)
-    around.add(motion * glm::dvec3(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                                   corner & 4 ? box.high.z : box.low.z));
-  return around;
-}
 
 AffineTransform back(const AffineTransform& rigid) {
   const glm::dmat3 linear = glm::transpose(rigid.linear);
@@ -141,17 +133,22 @@ class BentJoints {
   const Pose& pose_;
 };
 
-// Around the part of a bone that the other can come to, of which a shift is no longer than `reach`.
-VoxelBox reached_box(const BoneTissue& bone, const Box& other, double reach, const glm::dvec3& spacing) {
-  const Box near = intersection(bone.box, other.grown(reach));
-  if (near.empty()) return {};
-  glm::ivec3 low(std::numeric_limits<int>::max()), high(std::numeric_limits<int>::min());
+// Around the voxels of a bone that some of the motions take into a box.
+Box taken_into(const Box& box, const BoneTissue& bone, const std::vector<AffineTransform>& motions,
+               const glm::dvec3& spacing) {
+  Box around;
   for (const glm::ivec3& v : bone.voxels) {
     const glm::dvec3 place = glm::dvec3(v) * spacing;
-    if (glm::any(glm::lessThan(place, near.low)) || glm::any(glm::greaterThan(place, near.high))) continue;
-    low = glm::min(low, v), high = glm::max(high, v);
+    const auto arrives = [&](const AffineTransform& motion) { return box.contains(motion * place); };
+    if (std::any_of(motions.begin(), motions.end(), arrives)) around.add(place);
   }
-  return low.x > high.x ? VoxelBox{} : VoxelBox{low - kMargin, high - low + 1 + 2 * kMargin};
+  return around;
+}
+
+VoxelBox voxels_around(const Box& box, const glm::dvec3& spacing) {
+  if (box.empty()) return {};
+  const glm::ivec3 low(glm::round(box.low / spacing)), high(glm::round(box.high / spacing));
+  return {low - kMargin, high - low + 1 + 2 * kMargin};
 }
 
 // The shift along the grid's axes as the fixed bone stands.
@@ -165,14 +162,14 @@ LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, c
         {to_grid * turn * grid.direction, to_grid * (turn * grid.origin + motion.translation - grid.origin)});
   }
   const BoneTissue &fixed = tissue[joint.against], &turning = tissue[joint.bone];
-  const double voxel = glm::length(grid.spacing);
-  Box swept, swept_back;  // of either bone as the other one stands
-  for (const AffineTransform& motion : path) {
-    swept.add(image(turning.box.grown(voxel), motion));
-    swept_back.add(image(fixed.box.grown(voxel), back(motion)));
-  }
-  const VoxelBox of_fixed = reached_box(fixed, swept, bound.most_mm, grid.spacing),
-                 of_turning = reached_box(turning, swept_back, bound.most_mm, grid.spacing);
+  std::vector<AffineTransform> way_back;
+  for (const AffineTransform& motion : path) way_back.push_back(back(motion));
+  // The part of either bone that the other can come to, narrowed in turns.
+  const double reach = bound.most_mm + glm::length(grid.spacing);
+  const Box first = taken_into(turning.box.grown(reach), fixed, way_back, grid.spacing);
+  const Box near_turning = taken_into(first.grown(reach), turning, path, grid.spacing);
+  const Box near_fixed = taken_into(near_turning.grown(reach), fixed, way_back, grid.spacing);
+  const VoxelBox of_fixed = voxels_around(near_fixed, grid.spacing), of_turning = voxels_around(near_turning, grid.spacing);
   if (of_fixed.size.x == 0 || of_turning.size.x == 0) return {};
   const BoneDistance from_fixed(grid.spacing, fixed.voxels, of_fixed),
       from_turning(grid.spacing, turning.voxels, of_turning);

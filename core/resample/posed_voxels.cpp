@@ -160,21 +160,27 @@ class PosedVoxels {
     if (own) posed_.volume.at(voxel) = volume_.at(*own);
   }
 
-  // The rest point of a voxel of the output, of the map alone; what is near is soon asked for as well.
+  // The rest point of a voxel of the output, of the map alone. Where many are asked for those around them soon are as well.
   glm::dvec3 rest_of_soft(const glm::ivec3& voxel) {
-    constexpr int kBlock = 8;
+    constexpr int kBlock = 8, kMany = 3;
     const glm::ivec3 block = voxel / kBlock;
-    std::vector<glm::vec3>& rest = rest_blocks_[output_.grid.index(block * kBlock)];
+    RestBlock& known = rest_blocks_[output_.grid.index(block * kBlock)];
+    if (known.rest.empty() && known.asked++ < kMany) return glm::dvec3(rest_in({output_.range.low + voxel, output_.range.low + voxel})[0]);
     const glm::ivec3 low = output_.range.low + block * kBlock, high = glm::min(low + kBlock - 1, output_.range.high);
     const glm::ivec3 in = voxel - block * kBlock, size = high - low + 1;
-    if (rest.empty()) {
-      InverseMap map;
-      fill(map, {low, high});
-      rest.assign(map.rest.size(), glm::vec3(0));
-      for (std::size_t i = 0; i < rest.size(); ++i)
-        if (is_covered(map, static_cast<std::int64_t>(i))) rest[i] = map.rest[i];
-    }
-    return glm::dvec3(rest[in.x + std::size_t(size.x) * (in.y + std::size_t(size.y) * in.z)]);
+    if (known.rest.empty()) known.rest = rest_in({low, high});
+    return glm::dvec3(known.rest[in.x + std::size_t(size.x) * (in.y + std::size_t(size.y) * in.z)]);
+  }
+
+  // x fastest; 0 where there is no tissue.
+  std::vector<glm::vec3> rest_in(const VoxelRange& range) const {
+    InverseMap map;
+    fill(map, range);
+    const glm::ivec3 size = range.high - range.low + 1;
+    std::vector<glm::vec3> rest(std::size_t(size.x) * size.y * size.z, glm::vec3(0));
+    for (std::size_t i = 0; i < map.rest.size(); ++i)
+      if (is_covered(map, static_cast<std::int64_t>(i))) rest[i] = map.rest[i];
+    return rest;
   }
 
   void carry_fields(const Origins& origins) {
@@ -453,7 +459,11 @@ class PosedVoxels {
   Posed& posed_;
   std::optional<SkinAtRest> skin_;
   LabelSet flesh_;  // soft tissues but skin
-  std::unordered_map<std::int64_t, std::vector<glm::vec3>> rest_blocks_;  // by their lowest voxels
+  struct RestBlock {
+    int asked = 0;
+    std::vector<glm::vec3> rest;  // once many were asked for
+  };
+  std::unordered_map<std::int64_t, RestBlock> rest_blocks_;  // by their lowest voxels
   std::vector<UnderSkin> under_skin_;
   std::vector<InnerSkin> inner_skin_;
   RowSet rows_, bone_rows_;  // of the output that hold tissue, and bone

@@ -31,7 +31,9 @@ class NeighbourChanges {
   // Atlases of a body have up to some 500 labels and differ at a tenth of their faces; a CT has 250 values and more and
   // differs at nine tenths. Few labels that lie finely mixed are no image.
   //   labels  how many there are
-  bool looks_grey(std::size_t labels) const { return labels >= kManyLabels && share() > kMostlyDiffers; }
+  bool looks_grey(std::size_t labels) const { return may_be_grey(labels) && share() > kMostlyDiffers; }
+  // Whether there are enough of them for a grey image.
+  static bool may_be_grey(std::size_t labels) { return labels >= kManyLabels; }
 
  private:
   static constexpr std::size_t kManyLabels = 64;
