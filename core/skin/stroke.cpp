@@ -10,8 +10,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/skin/smooth_weights.h"
 #include "core/skin/weight_lanes.h"
-#include "core/skin/weights_around.h"
 
 namespace limber {
 
@@ -20,6 +20,8 @@ namespace {
 constexpr int kBrick = TissueVoxels::kBrick;
 // Bricks done by one thread at a time. Dabs of fewer are not worth waking another for.
 constexpr std::int64_t kBricksAtOnce = 16;
+// Of the radius: the width of the curve that smooth and sharpen draw weights to the mean by.
+constexpr double kSmoothWidth = 0.45;
 
 using Target = WeightSum;
 using Words = std::array<std::uint64_t, 2>;  // of an influence
@@ -122,8 +124,7 @@ class Stroke::Work {
 
   // Of the weights that this dab starts from.
   InfluenceView source(int brick) const { return accumulate_ ? view(brick) : weights_->chunk(brick); }
-  bool target_at(const Side& side, const glm::ivec3& voxel, const std::optional<WeightsAround>& views, const Influence& own,
-                 Target& target) const;
+  bool target_at(const Side& side, const glm::ivec3& voxel, int brick, int cell, const Influence& own, Target& target) const;
   void smeared(const Side& side, const glm::ivec3& voxel, Target& target) const;
   void find_average(Side& side, const Reached& reached, float strength);
 
@@ -133,6 +134,7 @@ class Stroke::Work {
   const bool accumulate_, relative_to_locks_;
   WeightRules rules_;
   BrushReach reach_;
+  SmoothWeights smooth_;
   AffineTransform voxel_from_world_;
   std::array<Side, 2> sides_;
   std::optional<MirrorPlane> mirror_;
@@ -189,6 +191,7 @@ Stroke::Work::Work(const StrokeBody& body, std::shared_ptr<const SkinWeights> we
       relative_to_locks_(settings.relative_to_locks),
       rules_(body.armature, settings.locked, settings.normalize),
       reach_(body.volume, body.tissue, filter_of(body, settings)),
+      smooth_(body.tissue, body.volume.grid.spacing),
       voxel_from_world_(voxel_from_world(body.volume.grid)),
       mirror_(settings.mirror),
       locked_(settings.locked),
@@ -309,6 +312,11 @@ void Stroke::Work::dab_side(int side, const glm::dvec3& centre, double strength)
   const int plane = same_bones_ ? 0 : side;
   touch(reached, plane);
   if (brush_.kind == BrushKind::Average) find_average(sides_[side], reached, static_cast<float>(strength));
+  if (brush_.kind == BrushKind::Smooth || brush_.kind == BrushKind::Sharpen) {
+    std::vector<int> bricks;
+    for (const Reached::Brick& part : reached.bricks) bricks.push_back(part.brick);
+    smooth_.spread(bricks, kSmoothWidth * brush_.radius, [&](int brick) { return source(brick); });
+  }
   // What looks around must not see what this dab does.
   const bool keep = looks_around() && accumulate_;
   const bool plain = brush_.kind <= BrushKind::Multiply && sides_[side].bones.size() == 1 && (!mirror_ || same_bones_ || accumulate_) && !relative_to_locks_;
@@ -490,11 +498,6 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
   const int plane = same_bones_ ? 0 : side, other = 1 - plane;
   const bool two = mirror_ && !same_bones_ && !accumulate_ && !brick.cover[other].empty();
   const bool around = looks_around();
-  std::optional<WeightsAround> views;
-  const auto look = [&] {
-    if ((brush_.kind == BrushKind::Smooth || brush_.kind == BrushKind::Sharpen) && !views)
-      views.emplace(body_.tissue, part.brick, [&](int index) { return source(index); });
-  };
   Target target, other_target;
   for (int i = part.begin; i < part.end; ++i) {
     const int at = reached.at[i], cell = reached.cell[i];
@@ -509,15 +512,13 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
     Influence made = now;
     if (accumulate_) {
       if (!(cover > 0)) continue;
-      look();
-      if (around && !target_at(sides_[side], voxel, views, now, target)) continue;
+      if (around && !target_at(sides_[side], voxel, part.brick, cell, now, target)) continue;
       apply(sides_[side], made, around ? &target : nullptr, voxel, cover, blocked_here);
     } else {
       brick.cover[plane][at] = covered;
       made = original[at];
-      look();
       const std::uint16_t beside = two ? brick.cover[other][at] : 0;
-      const bool has_target = !around || target_at(sides_[side], voxel, views, original[at], target);
+      const bool has_target = !around || target_at(sides_[side], voxel, part.brick, cell, original[at], target);
       const auto here = [&] {
         if (has_target) apply(sides_[side], made, around ? &target : nullptr, voxel, double(covered) / kFullWeight, blocked_here);
       };
@@ -525,7 +526,7 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
         here();
       } else {
         // What covers more comes first, so that the two sides stay mirror images.
-        const bool other_has = !around || target_at(sides_[other], voxel, views, original[at], other_target);
+        const bool other_has = !around || target_at(sides_[other], voxel, part.brick, cell, original[at], other_target);
         if (beside <= covered) here();
         if (other_has) apply(sides_[other], made, around ? &other_target : nullptr, voxel, double(beside) / kFullWeight, blocked_here);
         if (beside > covered) here();
@@ -578,8 +579,7 @@ void Stroke::Work::apply(const Side& side, Influence& influence, const Target* t
 // What brushes that look around make of a voxel
 
 // False where nothing would change.
-bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, const std::optional<WeightsAround>& views, const Influence& own,
-                             Target& target) const {
+bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, int brick, int cell, const Influence& own, Target& target) const {
   target.clear();
   if (brush_.kind == BrushKind::Average) {
     target = side.average;
@@ -589,29 +589,12 @@ bool Stroke::Work::target_at(const Side& side, const glm::ivec3& voxel, const st
     smeared(side, voxel, target);
     return !target.empty();
   }
-  std::array<Influence, 6> beside;
-  const int count = views->beside(voxel & (kBrick - 1), beside);
-  bool differs = false;
-  for (int i = 0; i < count; ++i) differs = differs || !equal(beside[i], own);
-  if (!differs) return false;
-  if (brush_.kind == BrushKind::Smooth) {
-    // Most often all follow the same bones in the same order.
-    bool alike = true;
-    std::array<int, 4> sum{};
-    for (int i = 0; i < count; ++i) {
-      alike = alike && std::bit_cast<Words>(beside[i])[0] == std::bit_cast<Words>(beside[0])[0];
-      for (int k = 0; k < 4; ++k) sum[k] += beside[i].weight[k];
-    }
-    if (alike) {
-      for (int k = 0; k < 4; ++k)
-        if (sum[k] > 0) target.emplace_back(beside[0].bone[k], sum[k]);
-      return true;
-    }
-    for (int i = 0; i < count; ++i) add_to(target, beside[i], 1);
-  } else {
+  if (smooth_.is_uniform()) return false;
+  smooth_.at(brick, cell, target);
+  if (brush_.kind == BrushKind::Sharpen) {
     // As far again from the mean as it is.
-    add_to(target, own, 2 * count);
-    for (int i = 0; i < count; ++i) add_to(target, beside[i], -1);
+    for (auto& [_, weight] : target) weight = -weight;
+    add_to(target, own, 2);
     std::erase_if(target, [](const auto& t) { return t.second <= 0; });
   }
   return !target.empty();

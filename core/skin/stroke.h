@@ -26,7 +26,7 @@ enum class BrushKind {
   Subtract,      // w - cover
   Set,           // w to `value` by cover
   Multiply,      // w to w * value by cover
-  Smooth,        // to the mean of the six neighbours
+  Smooth,        // to the mean around, by a Gauss curve as wide as 0.45 radii
   Sharpen,       // away from it
   Average,       // to the mean over the dab
   Smear,         // weights are dragged along the stroke; always accumulates
