@@ -174,7 +174,12 @@ void start_export(Editor& editor, const std::shared_ptr<const Result>& result, c
     const DeckFormat format = deck_format(path);
     if (is_mesh(path)) write_mesh(*result, *tissues, path, warnings);
     else if (is_surface_path(path)) write_surface_files(*result->volume, *tissues, path, progress);
-    else if (format != DeckFormat::None) write_deck(*result->volume, *tissues, needs_frequency(format) ? materials_at(*tissues, frequency) : std::vector<TissueMaterial>(), frequency, path, warnings);
+    else if (format != DeckFormat::None) {
+      std::vector<TissueMaterial> materials;
+      if (needs_frequency(format)) materials = materials_at(*tissues, frequency);
+      if (std::string text = stand_ins_text(materials); !text.empty()) warnings.push_back(std::move(text));
+      write_deck(*result->volume, *tissues, materials, frequency, path, warnings);
+    }
     else write_volume(*result->volume, path, *tissues, type);
     return [path, warnings](Editor& e) {
       e.messages.ok("Exported " + path.filename().string(), path.parent_path().string());

@@ -25,6 +25,7 @@ void write_as_deck(DeckFormat format, const VolumeFile& file, const Options& opt
   std::vector<std::string> warnings;
   std::vector<TissueMaterial> materials;
   if (needs_frequency(format)) materials = materials_of(tissues, options.material, options.out);
+  if (std::string text = stand_ins_text(materials); !text.empty()) warnings.push_back(std::move(text));
   write_deck(file.volume, tissues, std::move(materials), options.material.frequency.value_or(0), options.out, warnings);
   warn(warnings);
 }

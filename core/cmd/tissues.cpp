@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber tissues [VOLUME] --frequency HZ [--tissues T] [--properties P.csv] [--json] [-o OUT.csv]: permittivity, conductivity and
-// density of each tissue of a volume, or of every row of the table.
+// density of each tissue of a volume, or of every row of the table, each with the row that it was matched to, and how.
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -10,6 +10,7 @@
 #include "core/cmd/command.h"
 #include "core/cmd/tissue_options.h"
 #include "core/volume/header_text.h"
+#include "core/volume/tissue_rows.h"
 
 namespace limber::cmd {
 
@@ -20,33 +21,47 @@ struct Options {
   bool json = false;
 };
 
+std::string matched(const TissueMaterial& material) { return material.by_name ? "name" : "kind"; }
+
 std::string csv_of(const TissueMaterials& tissues) {
-  std::string text = "label,tissue,row,matched,density_kg_m3,relative_permittivity,conductivity_S_m,source\n";
+  std::string text = "label,tissue,row,matched,found,density_kg_m3,density_source,properties,stand_in,"
+                     "relative_permittivity,conductivity_S_m,source\n";
   for (const TissueMaterial& m : tissues.materials)
-    text += text_of(m.file_value) + "," + csv_field(m.name) + "," + csv_field(m.row) + "," + (m.by_name ? "name" : "kind") + "," + text_of(m.density) + "," +
-            text_of(m.dielectric.permittivity) + "," + text_of(m.dielectric.conductivity) + "," + csv_field(m.source) + "\n";
+    text += text_of(m.file_value) + "," + csv_field(m.name) + "," + csv_field(m.row) + "," + matched(m) + "," +
+            csv_field(m.found) + "," + text_of(m.density) + "," + csv_field(m.density_source) + "," +
+            csv_field(m.properties) + "," + csv_field(m.stand_in) + "," + text_of(m.dielectric.permittivity) + "," +
+            text_of(m.dielectric.conductivity) + "," + csv_field(m.source) + "\n";
   return text;
 }
 
 nlohmann::ordered_json json_of(const TissueMaterials& tissues, double frequency) {
   nlohmann::ordered_json json = {{"kind", "tissue properties"}, {"frequency", frequency}, {"tissues", nlohmann::ordered_json::array()}, {"unmatched", tissues.unmatched}};
   for (const TissueMaterial& m : tissues.materials)
-    json["tissues"].push_back({{"label", m.file_value}, {"name", m.name}, {"row", m.row}, {"matched", m.by_name ? "name" : "kind"}, {"density_kg_m3", m.density},
-                               {"relative_permittivity", m.dielectric.permittivity}, {"conductivity_S_m", m.dielectric.conductivity}, {"source", m.source}});
+    json["tissues"].push_back({{"label", m.file_value}, {"name", m.name}, {"row", m.row}, {"matched", matched(m)},
+                               {"found", m.found}, {"density_kg_m3", m.density}, {"density_source", m.density_source},
+                               {"properties", m.properties}, {"stand_in", m.stand_in},
+                               {"relative_permittivity", m.dielectric.permittivity},
+                               {"conductivity_S_m", m.dielectric.conductivity}, {"source", m.source}});
   return json;
 }
 
 void print_table(const TissueMaterials& tissues) {
-  std::printf("%8s  %-28s %-26s %10s %12s %12s\n", "label", "tissue", "properties of", "kg/m3", "eps_r", "S/m");
+  std::printf("%8s  %-28s %-22s %-28s %10s %12s %12s  %s\n", "label", "tissue", "taken for", "found by", "kg/m3", "eps_r",
+              "S/m", "properties of");
   for (const TissueMaterial& m : tissues.materials)
-    std::printf("%8s  %-28s %-26s %10.4g %12.5g %12.5g\n", text_of(m.file_value).c_str(), one_line(m.name).c_str(),
-                one_line(m.row + (m.by_name ? "" : " (by kind)")).c_str(), m.density, m.dielectric.permittivity, m.dielectric.conductivity);
+    std::printf("%8s  %-28s %-22s %-28s %10.4g %12.5g %12.5g  %s\n", text_of(m.file_value).c_str(),
+                one_line(m.name).c_str(), one_line(m.row).c_str(), one_line(m.found).c_str(), m.density,
+                m.dielectric.permittivity, m.dielectric.conductivity,
+                one_line(m.properties + (m.stand_in.empty() ? "" : " (stand-in: " + m.stand_in + ")")).c_str());
 }
 
-// The table itself, a row as if it were a tissue.
+// The user's rows and the program's, each as if it were a tissue.
 TissueTable rows_as_tissues(const DielectricTable& table) {
+  std::vector<TissueNames> all(table.names.begin(), table.names.begin() + static_cast<std::ptrdiff_t>(table.user_rows));
+  for (const TissueRow& row : tissue_rows().rows)
+    if (!row.dielectric.empty() || !row.mixture.empty()) all.push_back(row.names);
   TissueTable rows;
-  for (const TissueNames& names : table.names) {
+  for (const TissueNames& names : all) {
     Tissue tissue;
     tissue.name = names.name;
     tissue.kind = names.kinds.empty() ? tissue_kind_from_name(names.name) : names.kinds.front();

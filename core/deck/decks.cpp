@@ -156,7 +156,8 @@ void write_gprmax(const Deck& deck, const Path& path) {
   std::string text = "## relative permittivity, conductivity (S/m), relative permeability, magnetic loss, name; at " + text_of(deck.frequency) + " Hz\n";
   for (std::size_t i = 0; i < names.size(); ++i) {
     const TissueMaterial& m = deck.materials[i];
-    text += "## density of " + names[i] + ": " + text_of(m.density) + " kg/m3; " + m.source + "\n#material: " + text_of(m.dielectric.permittivity) + " " +
+    text += "## " + names[i] + ": " + m.row + " (" + m.found + "), density " + text_of(m.density) +
+            " kg/m3; properties of " + m.properties + "; " + m.source + "\n#material: " + text_of(m.dielectric.permittivity) + " " +
             text_of(m.dielectric.conductivity) + " 1 0 " + names[i] + "\n";
   }
   // z fastest; -1 leaves what is there.

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <set>
 
 #include "core/base/asset.h"
 #include "core/base/error.h"
 #include "core/volume/header_text.h"
+#include "core/volume/tissue_rows.h"
 
 namespace limber {
 
@@ -67,13 +69,27 @@ Dielectric dielectric_at(const ColeCole& tissue, double frequency) {
   return {epsilon.real(), tissue.conductivity - epsilon.imag() * w * kVacuumPermittivity};
 }
 
-TissueMatch DielectricTable::match(const Tissue& tissue) const {
+TissueMatch DielectricTable::match_user(const Tissue& tissue) const {
   const std::span<const TissueNames> rows = names;
-  const TissueMatch by_user = match_tissue(tissue, rows.first(user_rows));
-  if (by_user.row >= 0) return by_user;
-  TissueMatch match = match_tissue(tissue, rows.subspan(user_rows));
-  if (match.row >= 0) match.row += static_cast<int>(user_rows);
-  return match;
+  return match_tissue(tissue, rows.first(user_rows));
+}
+
+int DielectricTable::row_named(const std::string& name) const {
+  for (std::size_t i = user_rows; i < names.size(); ++i)
+    if (names[i].name == name) return static_cast<int>(i);
+  throw Error("the table of dielectric properties has no row " + in_quotes(name), "tissues/dielectric.csv",
+              "install Limber again");
+}
+
+Dielectric DielectricTable::of_tissue_row(int row, double frequency) const {
+  const TissueRows& tissues = tissue_rows();
+  Dielectric mean{0, 0};
+  for (const TissueShare& part : tissues.parts(row)) {
+    const Dielectric here = dielectric_at(parameters[row_named(tissues.rows[part.row].dielectric)], frequency);
+    mean.permittivity += part.volume * here.permittivity;
+    mean.conductivity += part.volume * here.conductivity;
+  }
+  return mean;
 }
 
 DielectricTable read_dielectric_table(const Path& user) {
@@ -84,19 +100,65 @@ DielectricTable read_dielectric_table(const Path& user) {
   return table;
 }
 
+namespace {
+std::string found_text(const TissueMatch& match, const Tissue& tissue) {
+  return match.by_name ? "name: " + match.words : "kind: " + std::string(to_string(tissue.kind));
+}
+
+// The sources of a row's parts, each once.
+std::string sources_of(const DielectricTable& table, int row) {
+  const TissueRows& tissues = tissue_rows();
+  std::string text;
+  for (const TissueShare& part : tissues.parts(row)) {
+    const std::string& source = table.sources[table.row_named(tissues.rows[part.row].dielectric)];
+    if (text.find(source) == text.npos) text += (text.empty() ? "" : "; ") + source;
+  }
+  return text;
+}
+}  // namespace
+
 TissueMaterials tissue_materials(const TissueTable& tissues, const DielectricTable& table, double frequency) {
+  const TissueRows& rows = tissue_rows();
   TissueMaterials found;
   for (const Tissue& tissue : tissues.tissues) {
-    const std::string name = tissue.name.empty() ? "label " + text_of(tissue.file_value) : tissue.name;
-    const TissueMatch match = table.match(tissue);
-    if (match.row < 0) {
-      found.unmatched.push_back(name);
+    const TissueMatch match = rows.match(tissue), user = table.match_user(tissue);
+    TissueMaterial material{.label = tissue.label, .file_value = tissue.file_value, .name = tissue.name};
+    material.density = 1000 * tissue.density;
+    if (material.name.empty()) material.name = "label " + text_of(tissue.file_value);
+    const UsualDensity usual = usual_density(tissue);
+    material.density_source = usual.value == tissue.density ? usual.source : "the body's table of tissues";
+    if (user.row >= 0) {
+      material.dielectric = dielectric_at(table.parameters[user.row], frequency);
+      material.row = material.properties = table.names[user.row].name;
+      material.source = table.sources[user.row];
+      material.found = "own row, " + found_text(user, tissue);
+      material.by_name = user.by_name;
+    } else if (match.row >= 0 && !rows.parts_text(match.row, &TissueRow::dielectric).empty()) {
+      material.dielectric = table.of_tissue_row(match.row, frequency);
+      material.row = rows.rows[match.row].names.name;
+      material.properties = rows.parts_text(match.row, &TissueRow::dielectric);
+      material.stand_in = rows.rows[match.row].stand_in;
+      material.source = sources_of(table, match.row);
+      material.found = found_text(match, tissue);
+      material.by_name = match.by_name;
+    } else {
+      found.unmatched.push_back(material.name);
       continue;
     }
-    found.materials.push_back({tissue.label, tissue.file_value, name, 1000 * tissue.density, dielectric_at(table.parameters[match.row], frequency),
-                               table.names[match.row].name, table.sources[match.row], match.by_name});
+    found.materials.push_back(std::move(material));
   }
   return found;
+}
+
+std::string stand_ins_text(const std::vector<TissueMaterial>& materials) {
+  std::string text;
+  std::set<std::string> named;
+  for (const TissueMaterial& m : materials)
+    if (!m.stand_in.empty() && named.insert(m.row).second)
+      text += (text.empty() ? "" : "; ") + m.row + " as " + m.properties;
+  if (text.empty()) return text;
+  return "tissues without published properties of their own take others': " + text +
+         " (`limber tissues` says why, and lists every match)";
 }
 
 }  // namespace limber

@@ -20,9 +20,8 @@ std::vector<std::string> parts_of(std::string_view text) {
   return parts;
 }
 
-// How many words of `synonym` the name holds: all of them, or 0.
-int words_met(const TissueWords& name, const std::string& synonym) {
-  const TissueWords wanted = words_in_tissue_name(synonym);
+// How many words of `wanted` the name holds: all of them, or 0.
+int words_met(const TissueWords& name, const TissueWords& wanted) {
   const bool all = std::all_of(wanted.begin(), wanted.end(), [&](const std::string& word) { return has_word(name, word); });
   return all ? static_cast<int>(wanted.size()) : 0;
 }
@@ -52,18 +51,25 @@ bool has_word(const TissueWords& words, std::string_view word) {
 }
 
 TissueMatch match_tissue(const Tissue& tissue, std::span<const TissueNames> rows) {
+  return match_tissue(tissue, rows.size(), [&](std::size_t row) -> const TissueNames& { return rows[row]; });
+}
+
+TissueMatch match_tissue(const Tissue& tissue, std::size_t rows,
+                         const std::function<const TissueNames&(std::size_t)>& names_of) {
   const TissueWords name = words_in_tissue_name(tissue.name);
   TissueMatch best;
   int best_score = 0;
-  for (int row = 0; row < static_cast<int>(rows.size()); ++row) {
-    const TissueNames& names = rows[row];
+  for (std::size_t row = 0; row < rows; ++row) {
+    const TissueNames& names = names_of(row);
     const bool same_kind = std::find(names.kinds.begin(), names.kinds.end(), tissue.kind) != names.kinds.end();
-    int words = words_met(name, names.name);
-    for (const std::string& synonym : names.synonyms) words = std::max(words, words_met(name, synonym));
+    int words = 0;
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < names.words.size(); ++i)
+      if (const int met = words_met(name, names.words[i]); met > words) words = met, found = i;
     const int score = words > 0 ? 2 * words + 1 + same_kind : same_kind;
     if (score > best_score) {
       best_score = score;
-      best = {row, words > 0};
+      best = {static_cast<int>(row), words > 0, words == 0 ? "" : found == 0 ? names.name : names.synonyms[found - 1]};
     }
   }
   return best;
@@ -94,13 +100,15 @@ std::string csv_field(const std::string& text) {
 }
 
 TissueNames tissue_names_of(const std::vector<std::string>& fields, const std::string& where) {
-  TissueNames names{fields.at(0), parts_of(fields.at(1)), {}};
+  TissueNames names{fields.at(0), parts_of(fields.at(1)), {}, {}};
   if (names.name.empty()) throw Error("the row has no name", where, "name the tissue in its first field");
   for (const std::string& text : parts_of(fields.at(2))) {
     const auto kind = tissue_kind_from_text(text);
     if (!kind) throw Error("unknown kind " + in_quotes(text), where, "use skin, fat, muscle, bone, cartilage, tendon, vessel, nerve, organ ...");
     names.kinds.push_back(*kind);
   }
+  names.words.push_back(words_in_tissue_name(names.name));
+  for (const std::string& synonym : names.synonyms) names.words.push_back(words_in_tissue_name(synonym));
   return names;
 }
 

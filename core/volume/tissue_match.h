@@ -2,6 +2,7 @@
 // Which row of a table of tissue properties a tissue is: by the words of its name, else by its kind.
 #pragma once
 
+#include <functional>
 #include <set>
 #include <span>
 #include <string>
@@ -22,15 +23,20 @@ struct TissueNames {
   std::string name;
   std::vector<std::string> synonyms;  // each one word or several; a tissue is meant whose name holds all of them
   std::vector<TissueKind> kinds;      // taken for tissues of these kinds that no name fits
+  std::vector<TissueWords> words;     // of the name, then of each synonym
 };
 
 struct TissueMatch {
   int row = -1;          // -1: none
   bool by_name = false;  // else by kind
+  std::string words;     // the name or synonym that was found in the tissue's name
 };
 
 // The row whose synonym has most words of the tissue's name; of several the one that fits its kind, then the first.
 TissueMatch match_tissue(const Tissue& tissue, std::span<const TissueNames> rows);
+//   names  of a row, 0 .. rows - 1
+TissueMatch match_tissue(const Tissue& tissue, std::size_t rows,
+                         const std::function<const TissueNames&(std::size_t)>& names);
 
 // Fields of a line of comma-separated values; a field in double quotes may hold commas, "" in it is one quote.
 std::vector<std::string> csv_fields(std::string_view line);

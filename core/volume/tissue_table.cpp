@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/volume/builtin_tissues.h"
 #include "core/volume/header_text.h"
+#include "core/volume/tissue_rows.h"
 
 namespace limber {
 
@@ -17,7 +18,6 @@ struct KindDefaults {
   TissueKind kind;
   std::string_view name;
   std::uint32_t colour;  // 0xRRGGBB
-  double density;        // g/cm3 [ICRP 110, 2009], rounded
   double young_modulus;  // kPa: the finite elements' shear moduli times 3, bone far stiffer than flesh
   double poisson_ratio;
   int priority;  // bone first, then what is thin and stiff, skin last
@@ -31,24 +31,24 @@ constexpr std::uint32_t kByLabel = 0xffffffff;  // every label its own
 // One row per kind, in the order of the enumeration.
 constexpr int kKinds = 18;
 const std::array<KindDefaults, kKinds> kDefaults = {{
-    {TissueKind::Unknown, "unknown", kByLabel, 1.05, 12, 0.4999, 20},
-    {TissueKind::Skin, "skin", 0xE3B597, 1.09, 120, 0.4999, 10},
-    {TissueKind::Fat, "fat", 0xF0D27A, 0.95, 3, 0.4999, 15},
-    {TissueKind::Muscle, "muscle", 0xB8463F, 1.05, 12, 0.4999, 30},
-    {TissueKind::CorticalBone, "cortical bone", 0xEDE6D4, 1.92, 1.7e7, 0.3, 100},
-    {TissueKind::CancellousBone, "cancellous bone", 0xE0CCA0, 1.18, 3e5, 0.3, 95},
-    {TissueKind::Marrow, "marrow", 0xD9A06B, 1.03, 12, 0.45, 90},
-    {TissueKind::Bone, "bone", 0xEDE6D4, 1.60, 1e7, 0.3, 97},
-    {TissueKind::Cartilage, "cartilage", 0x8FC9D6, 1.10, 1000, 0.45, 60},
-    {TissueKind::Tendon, "tendon", 0xCFC8DC, 1.12, 500, 0.45, 50},
-    {TissueKind::Connective, "connective", 0xD4BAA8, 1.03, 12, 0.4999, 25},
-    {TissueKind::Vessel, "vessel", 0xD9372F, 1.06, 100, 0.4999, 45},
-    {TissueKind::Blood, "blood", 0x4A74D8, 1.06, 3, 0.4999, 40},
-    {TissueKind::Nerve, "nerve", 0xF2E14C, 1.04, 30, 0.4999, 47},
-    {TissueKind::Brain, "brain", 0xD6A8AB, 1.04, 6, 0.4999, 35},
-    {TissueKind::Organ, "organ", kByLabel, 1.05, 12, 0.4999, 33},
-    {TissueKind::Cavity, "cavity", 0x738C9E, 0.50, 3, 0.45, 12},
-    {TissueKind::Nail, "nail", 0xF0C8B4, 1.30, 1000, 0.40, 55},
+    {TissueKind::Unknown, "unknown", kByLabel, 12, 0.4999, 20},
+    {TissueKind::Skin, "skin", 0xE3B597, 120, 0.4999, 10},
+    {TissueKind::Fat, "fat", 0xF0D27A, 3, 0.4999, 15},
+    {TissueKind::Muscle, "muscle", 0xB8463F, 12, 0.4999, 30},
+    {TissueKind::CorticalBone, "cortical bone", 0xEDE6D4, 1.7e7, 0.3, 100},
+    {TissueKind::CancellousBone, "cancellous bone", 0xE0CCA0, 3e5, 0.3, 95},
+    {TissueKind::Marrow, "marrow", 0xD9A06B, 12, 0.45, 90},
+    {TissueKind::Bone, "bone", 0xEDE6D4, 1e7, 0.3, 97},
+    {TissueKind::Cartilage, "cartilage", 0x8FC9D6, 1000, 0.45, 60},
+    {TissueKind::Tendon, "tendon", 0xCFC8DC, 500, 0.45, 50},
+    {TissueKind::Connective, "connective", 0xD4BAA8, 12, 0.4999, 25},
+    {TissueKind::Vessel, "vessel", 0xD9372F, 100, 0.4999, 45},
+    {TissueKind::Blood, "blood", 0x4A74D8, 3, 0.4999, 40},
+    {TissueKind::Nerve, "nerve", 0xF2E14C, 30, 0.4999, 47},
+    {TissueKind::Brain, "brain", 0xD6A8AB, 6, 0.4999, 35},
+    {TissueKind::Organ, "organ", kByLabel, 12, 0.4999, 33},
+    {TissueKind::Cavity, "cavity", 0x738C9E, 3, 0.45, 12},
+    {TissueKind::Nail, "nail", 0xF0C8B4, 1000, 0.40, 55},
 }};
 glm::vec3 srgb_of(std::uint32_t colour) { return glm::vec3(colour >> 16 & 255, colour >> 8 & 255, colour & 255) / 255.0f; }
 
@@ -86,8 +86,7 @@ bool is_bone(TissueKind kind) {
 
 MaterialSources material_sources(TissueKind kind) {
   constexpr std::string_view kChosen = "chosen by Limber";
-  const bool is_measured = kind != TissueKind::Unknown && kind != TissueKind::Cavity && kind != TissueKind::Nail;
-  MaterialSources sources{is_measured ? "ICRP Publication 110, 2009, rounded" : kChosen, "chosen by Limber: published values spread over two decades", kChosen};
+  MaterialSources sources{"of the tissue, by its name or kind", "chosen by Limber: published values spread over two decades", kChosen};
   if (kind == TissueKind::Skin || kind == TissueKind::Fat || kind == TissueKind::Muscle)
     sources.stiffness = "3 times a shear modulus of 40 kPa for skin, 1 for fat, 4 for muscle; others take 8, 0.8 and 0.5: Int. Wound J. 15(3), 402-416, 2018";
   if (defaults_of(kind).poisson_ratio > 0.49) sources.poisson = "flesh is mostly water; lower ratios lose volume";
@@ -100,7 +99,7 @@ std::string_view to_string(TissueKind kind) { return defaults_of(kind).name; }
 void apply_kind_defaults(Tissue& tissue) {
   const KindDefaults& from = defaults_of(tissue.kind);
   tissue.colour = from.colour == kByLabel ? label_colour(tissue.file_value) : srgb_of(from.colour);
-  tissue.density = from.density;
+  tissue.density = usual_density(tissue).value;
   tissue.young_modulus = from.young_modulus;
   tissue.poisson_ratio = from.poisson_ratio;
   tissue.priority = from.priority;

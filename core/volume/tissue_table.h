@@ -78,7 +78,8 @@ class FileValueIndex {
   std::unordered_map<double, const Tissue*> by_value_;
 };
 
-// Colour, density, stiffness and priority that a tissue of this kind starts with.
+// Colour, stiffness and priority that a tissue of this kind starts with, and the density of the tissue that its name says,
+// else its kind (tissue_rows.h).
 void apply_kind_defaults(Tissue& tissue);
 // Where the numbers come from that a tissue of a kind starts with, for a user to read.
 struct MaterialSources {

@@ -2,6 +2,7 @@
 // The chosen tissue: name, colour, opacity, material.
 #include <cstdio>
 
+#include "core/volume/tissue_rows.h"
 #include "editor/fields.h"
 #include "editor/panels/panels.h"
 #include "editor/tissues.h"
@@ -14,9 +15,10 @@ namespace {
 // Whether a number is the usual one of the tissue's kind, and where that comes from.
 std::string where_from(const Tissue& tissue, double Tissue::*member, const char* format, const char* unit, std::string_view source) {
   Tissue usual;
+  usual.name = tissue.name;
   usual.kind = tissue.kind;
   apply_kind_defaults(usual);
-  const std::string kind(to_string(tissue.kind)), from = " (" + std::string(source) + ").";
+  const std::string kind(tissue.name.empty() ? to_string(tissue.kind) : tissue.name), from = " (" + std::string(source) + ").";
   if (tissue.*member == usual.*member) return "As usual for " + kind + from;
   char number[40];
   std::snprintf(number, sizeof number, format, usual.*member);
@@ -118,7 +120,7 @@ void draw_tissue(Editor& editor, Column& column) {
     draw_colour(editor, column, tissue);
     draw_opacity(editor, column, tissue);
     const MaterialSources sources = material_sources(tissue.kind);
-    draw_number(editor, column, tissue, "Density", &Tissue::density, 0.001, 25, "%.3f", "g/cm\u00b3", sources.density);
+    draw_number(editor, column, tissue, "Density", &Tissue::density, 0.001, 25, "%.3f", "g/cm\u00b3", usual_density(tissue).source);
     draw_number(editor, column, tissue, "Stiffness", &Tissue::young_modulus, 0.01, 1e6, "%.1f", "kPa", sources.stiffness);
     draw_number(editor, column, tissue, "Poisson ratio", &Tissue::poisson_ratio, 0, 0.4999, "%.4f", "", sources.poisson);
     column.space(6);

@@ -108,6 +108,24 @@ TEST_CASE("convert: simulation decks are read back by h5py and numpy, voxel for 
   REQUIRE(run_limber({"convert", folder / "vf.txt", folder / "vf.nii.gz"}).exit_code == 0);
 }
 
+TEST_CASE("convert: a volume with every class of TotalSegmentator goes to openEMS, gprMax and ICRP slices, no name unmatched, and stand-ins are named") {
+  const TemporaryFolder folder;
+  const std::string volume = folder / "total.nrrd";
+  std::string voxels;
+  for (int label = 0; label <= 127; ++label) voxels += static_cast<char>(label <= 117 ? label : 0);
+  std::ofstream(volume, std::ios::binary) << "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 8 4 4\n"
+                                             "space directions: (2,0,0) (0,2,0) (0,0,2)\nspace origin: (0,0,0)\nencoding: raw\n\n" << voxels;
+  for (const char* name : {"t.xml", "t.gprmax.h5", "t.csxcad.h5", "t.dat"}) {
+    const auto run = run_limber({"convert", volume, folder / name, "--frequency", "900e6"});
+    CHECK_MESSAGE(run.exit_code == 0, name, run.err);
+    if (std::string(name) != "t.dat") CHECK_MESSAGE(run.err.find("pancreas as thyroid") != std::string::npos, run.err);
+  }
+  const auto listed = run_limber({"tissues", volume, "--frequency", "900e6", "--json"});
+  CHECK(listed.exit_code == 0);
+  CHECK(listed.out.find("\"unmatched\": []") != std::string::npos);
+  CHECK(listed.out.find("\"found\": \"name: vena cava\"") != std::string::npos);
+}
+
 TEST_CASE("convert: openEMS reads the boxes and finds in every cell the tissue that is there") {
   NEEDS_PROGRAM("openEMS")
   const TemporaryFolder folder;

@@ -20,7 +20,8 @@ namespace {
 //   BMEO   BioMedical Engineering OnLine 17 (2018), s12938-018-0473-9, table 3
 //   Duke   the tissue file of the Virtual Family's Duke at 400 and 900 MHz, Chalmers (github.com/ravanis/Hyperthermia_Treatment_Plan), whose
 //          values come from fits over that band, so that they agree to 2 % only
-enum Source { Ifac, BMEO, Duke };
+//   Mhz900 the IFAC-CNR calculator's output at 900 MHz for all tissues it knows, four digits, as kept in gprMax's AustinManWoman_materials.txt
+enum Source { Ifac, BMEO, Duke, Mhz900 };
 struct Published {
   const char* row;
   Source source;
@@ -56,8 +57,32 @@ const std::vector<Published> kPublished = {
     {"trachea", Duke, 4e8, 44.144, 0.63530},       {"trachea", Duke, 9e8, 41.996, 0.77360},
     {"cornea", Duke, 4e8, 59.184, 1.1908},         {"cornea", Duke, 9e8, 55.197, 1.3986},
     {"sclera", Duke, 4e8, 58.435, 0.99633},        {"sclera", Duke, 9e8, 54.480, 1.1557},
-    {"eye lens", Duke, 4e8, 48.622, 0.66040},      {"eye lens", Duke, 9e8, 46.063, 0.79279},
+    {"lens cortex", Duke, 4e8, 48.622, 0.66040},      {"lens cortex", Duke, 9e8, 46.063, 0.79279},
     {"vitreous humour", Duke, 4e8, 69.002, 1.5292}, {"vitreous humour", Duke, 9e8, 68.901, 1.6363},
+    {"bladder", Ifac, 10, 5.0997e6, 0.20278},      {"bladder", Ifac, 12.023, 4.1888e6, 0.20329}, {"bladder", Ifac, 1e11, 3.6516, 17.371},
+    {"breast fat", Ifac, 1e11, 2.5891, 1.8358},    {"cervix", Ifac, 1e11, 7.6893, 52.569},       {"colon", Ifac, 1e11, 8.1777, 59.211},
+    {"dura", Ifac, 1e11, 8.2149, 47.578},          {"gall bladder", Ifac, 1e11, 7.5090, 64.825}, {"bile", Ifac, 1e11, 8.2107, 78.118},
+    {"lung deflated", Ifac, 1e11, 7.7319, 52.895}, {"ovary", Ifac, 1e11, 7.9463, 46.426},        {"testis", Ifac, 1e11, 8.5170, 64.401},
+    {"uterus", Ifac, 1e11, 8.5337, 64.615},        {"lung", Ifac, 1e11, 4.0026, 21.384},         {"thyroid", Ifac, 1e11, 8.5046, 64.066},
+    {"lens cortex", Ifac, 1e11, 7.4369, 48.910},   {"muscle", Ifac, 1e11, 8.6307, 62.499},       {"brain grey matter", Ifac, 1e11, 7.7561, 53.246},
+    {"brain white matter", Ifac, 1e11, 6.7126, 38.009}, {"uterus", Ifac, 9.0053e10, 9.1887, 62.924},
+    {"cervix", Ifac, 100, 2.0139e7, 0.41134},      {"colon", Ifac, 100, 2.0091e7, 0.12134},      {"dura", Ifac, 100, 19486, 0.50056},
+    {"ovary", Ifac, 100, 4.8714e5, 0.32211},       {"testis", Ifac, 100, 4.9453e5, 0.42211},     {"uterus", Ifac, 100, 2.4512e7, 0.29009},
+    {"gas", Mhz900, 9e8, 1, 0}, {"gas", Ifac, 1e11, 1, 0},
+    {"blood vessel", Mhz900, 9e8, 44.77, 0.6961},  {"bladder", Mhz900, 9e8, 18.94, 0.3831},       {"blood", Mhz900, 9e8, 61.36, 1.538},
+    {"bone cancellous", Mhz900, 9e8, 20.79, 0.34}, {"bone cortical", Mhz900, 9e8, 12.45, 0.1433}, {"bone marrow", Mhz900, 9e8, 5.504, 0.04021},
+    {"brain grey matter", Mhz900, 9e8, 52.73, 0.9423}, {"brain white matter", Mhz900, 9e8, 38.89, 0.5908}, {"breast fat", Mhz900, 9e8, 5.424, 0.04896},
+    {"cartilage", Mhz900, 9e8, 42.65, 0.7824},     {"cerebellum", Mhz900, 9e8, 49.44, 1.263},    {"cerebrospinal fluid", Mhz900, 9e8, 68.64, 2.413},
+    {"cervix", Mhz900, 9e8, 49.78, 0.9591},        {"colon", Mhz900, 9e8, 57.94, 1.08},          {"cornea", Mhz900, 9e8, 55.23, 1.394},
+    {"dura", Mhz900, 9e8, 44.43, 0.9611},          {"sclera", Mhz900, 9e8, 55.27, 1.167},        {"fat", Mhz900, 9e8, 5.462, 0.05104},
+    {"gall bladder", Mhz900, 9e8, 59.14, 1.257},   {"bile", Mhz900, 9e8, 70.19, 1.838},          {"heart", Mhz900, 9e8, 59.89, 1.23},
+    {"kidney", Mhz900, 9e8, 58.67, 1.392},         {"lens cortex", Mhz900, 9e8, 46.57, 0.7934},  {"liver", Mhz900, 9e8, 46.83, 0.855},
+    {"lung deflated", Mhz900, 9e8, 51.42, 0.858},  {"lung", Mhz900, 9e8, 22, 0.4567},            {"muscle", Mhz900, 9e8, 55.03, 0.9429},
+    {"nerve", Mhz900, 9e8, 32.53, 0.5737},         {"ovary", Mhz900, 9e8, 50.47, 1.29},          {"skin dry", Mhz900, 9e8, 41.41, 0.8667},
+    {"skin wet", Mhz900, 9e8, 46.08, 0.8447},      {"small intestine", Mhz900, 9e8, 59.49, 2.165}, {"spleen", Mhz900, 9e8, 57.18, 1.273},
+    {"stomach", Mhz900, 9e8, 65.06, 1.187},        {"tendon", Mhz900, 9e8, 45.83, 0.7184},       {"testis", Mhz900, 9e8, 60.55, 1.21},
+    {"thyroid", Mhz900, 9e8, 59.68, 1.038},        {"tongue", Mhz900, 9e8, 55.27, 0.9363},       {"trachea", Mhz900, 9e8, 42.01, 0.7711},
+    {"uterus", Mhz900, 9e8, 61.12, 1.27},          {"vitreous humour", Mhz900, 9e8, 68.9, 1.636},
 };
 
 int row_named(const DielectricTable& table, const std::string& name) {
@@ -75,7 +100,7 @@ Tissue tissue_named(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("dielectric: every tissue of the table gives what others published, at two frequencies or more") {
+TEST_CASE("dielectric: all 44 published tissues give what others published, at two frequencies or more, but for liver at one and the lens' nucleus at none") {
   const DielectricTable table = read_dielectric_table();
   std::vector<int> checked(table.names.size());
   for (const Published& published : kPublished) {
@@ -84,15 +109,16 @@ TEST_CASE("dielectric: every tissue of the table gives what others published, at
     ++checked[row];
     const Dielectric d = dielectric_at(table.parameters[row], published.frequency);
     // As exact as the digits that were published; conductivities of dry skin at 10 kHz have two.
-    const double epsilon = published.source == Duke ? 0.02 : 1e-4;
+    const double epsilon = published.source == Duke ? 0.02 : published.source == Mhz900 ? 6e-4 : 1e-4;
     const double last_digit = published.source == BMEO ? (published.frequency == 1e4 && published.conductivity < 0.001 ? 5e-6 : 6e-5) : 0;
     INFO(published.row, " at ", published.frequency, " Hz: ", d.permittivity, ", ", d.conductivity, " S/m");
     CHECK(std::abs(d.permittivity - published.permittivity) <= epsilon * published.permittivity);
     CHECK(std::abs(d.conductivity - published.conductivity) <= (last_digit > 0 ? last_digit : epsilon * published.conductivity));
   }
+  CHECK(checked.size() == 45);  // and gas
   for (std::size_t row = 0; row < checked.size(); ++row) {
     INFO(table.names[row].name);
-    CHECK(checked[row] >= 2);
+    CHECK(checked[row] >= (table.names[row].name == "lens nucleus" ? 0 : table.names[row].name == "liver" ? 1 : 2));
     CHECK(table.sources[row].size() > 20);
   }
 }
@@ -120,20 +146,29 @@ TEST_CASE("dielectric: permittivity falls and conductivity rises with frequency,
   for (const double wrong : {0.0, 9.9, 1.1e11, -1.0, std::nan("")}) CHECK_THROWS_AS(dielectric_at(plain, wrong), Error);
 }
 
-TEST_CASE("dielectric: tissues find their row by the words of their name, else by their kind, else not at all") {
-  const DielectricTable table = read_dielectric_table();
-  const auto row_of = [&](const std::string& name) {
-    const TissueMatch match = table.match(tissue_named(name));
-    return match.row < 0 ? std::string("none") : table.names[match.row].name + (match.by_name ? "" : " (kind)");
-  };
-  for (const auto& [name, row] : std::vector<std::pair<std::string, std::string>>{
-           {"muscle", "muscle"}, {"biceps brachii", "muscle (kind)"}, {"shin muscles", "muscle"}, {"visceral fat", "fat"}, {"Fat (Average Infiltrated)", "fat infiltrated"},
-           {"skin", "skin dry"}, {"Skin (Wet)", "skin wet"}, {"cortical bone", "bone cortical"}, {"Bone (Cancellous)", "bone cancellous"}, {"femur_left", "bone cortical (kind)"},
-           {"marrow", "bone marrow"}, {"BoneMarrow (Red)", "bone marrow infiltrated"}, {"tendon", "tendon"}, {"anterior cruciate ligament", "tendon"},
-           {"nerve", "nerve"}, {"spinal_cord", "nerve"}, {"blood", "blood"}, {"vein", "blood"}, {"vessel wall", "blood vessel"}, {"Blood_vessels", "blood vessel"},
-           {"costal_cartilages", "cartilage"}, {"intervertebral disc", "cartilage"}, {"nail", "bone cortical"}, {"kidney_left", "kidney"}, {"small_bowel", "small intestine"},
-           {"Brain (White Matter)", "brain white matter"}, {"brain", "cerebellum"}, {"liver", "none"}, {"prosthesis", "none"}, {"", "none"}})
-    CHECK_MESSAGE(row_of(name) == row, name);
+TEST_CASE("dielectric: a whole bone lies between the bones it is made of, by the share that its density tells, and a brain is no cerebellum") {
+  TissueTable tissues;
+  for (const char* name : {"vertebrae_L3", "brain", "cortical bone", "cancellous bone", "cerebellum", "grey matter", "white matter"}) {
+    tissues.tissues.push_back(tissue_named(name));
+    tissues.tissues.back().label = static_cast<Label>(tissues.tissues.size());
+    apply_kind_defaults(tissues.tissues.back());
+  }
+  const TissueMaterials found = tissue_materials(tissues, read_dielectric_table(), 900e6);
+  REQUIRE(found.unmatched.empty());
+  const auto& m = found.materials;
+  const double cortical = (1.33 - 1.18) / (1.92 - 1.18);
+  CHECK(m[0].density == doctest::Approx(1330));
+  CHECK(m[0].dielectric.permittivity == doctest::Approx(cortical * 12.454 + (1 - cortical) * 20.788).epsilon(1e-4));
+  CHECK(m[0].dielectric.conductivity == doctest::Approx(cortical * 0.14332 + (1 - cortical) * 0.34).epsilon(1e-4));
+  CHECK(m[0].properties == "20 % bone cortical + 80 % bone cancellous");
+  CHECK(m[0].found == "name: vertebrae");
+  CHECK_FALSE(m[0].stand_in.empty());
+  CHECK(m[1].dielectric.permittivity == doctest::Approx((m[5].dielectric.permittivity + m[6].dielectric.permittivity) / 2));
+  CHECK(m[1].row == "brain");
+  CHECK(m[1].stand_in.find("grey and white matter") != std::string::npos);
+  CHECK(m[4].dielectric.permittivity == doctest::Approx(49.44).epsilon(1e-3));
+  CHECK(stand_ins_text(found.materials).find("brain as 50 % brain grey matter + 50 % brain white matter") != std::string::npos);
+  CHECK(stand_ins_text({m[2], m[3]}).empty());
 }
 
 TEST_CASE("dielectric: a user's rows go before the table's, and a damaged one is refused with its line") {
@@ -144,8 +179,14 @@ TEST_CASE("dielectric: a user's rows go before the table's, and a damaged one is
     return read_dielectric_table(folder / "p.csv");
   };
   const DielectricTable table = table_of(columns + "# mine\n\nmy muscle,muscle,,60,0,0,0,0,0,0,0,0,0,0,0,0,1.5,\"measured, by me\"\r\n");
-  REQUIRE(table.match(tissue_named("muscle")).row == 0);
-  CHECK(table.names[table.match(tissue_named("fat")).row].name == "fat");
+  REQUIRE(table.match_user(tissue_named("muscle")).row == 0);
+  CHECK(table.match_user(tissue_named("fat")).row == -1);
+  TissueTable tissues;
+  for (const char* name : {"muscle", "fat"}) tissues.tissues.push_back(tissue_named(name));
+  const auto materials = tissue_materials(tissues, table, 5e7).materials;
+  CHECK(materials[0].row == "my muscle");
+  CHECK(materials[0].found == "own row, name: muscle");
+  CHECK(materials[1].row == "fat");
   CHECK(table.sources[0] == "measured, by me");
   CHECK(dielectric_at(table.parameters[0], 5e7).conductivity == 1.5);
   for (const char* row : {"a,a,,60,0,0\n", "a,a,,60,0,0,0,0,0,0,0,0,0,0,0,0,x,s\n", "a,a,,60,0,0,0,0,0,0,0,0,0,0,0,0,-1,s\n", "a,a,,0.5,0,0,0,0,0,0,0,0,0,0,0,0,1,s\n",
@@ -168,10 +209,10 @@ TEST_CASE("tissues command: lists a volume's tissues as text, JSON and CSV, and 
   CHECK(std::filesystem::file_size(csv) > 500);
   CHECK(run_limber({"tissues", "--frequency", "1e6"}).out.find("vitreous humour") != std::string::npos);
 
-  std::ofstream(folder / "odd.json") << R"({"1": {"name": "liver"}})";
+  std::ofstream(folder / "odd.json") << R"({"1": {"name": "unobtainium"}})";
   const auto unmatched = run_limber({"tissues", volume, "--tissues", folder / "odd.json", "--frequency", "1e6"});
   CHECK(unmatched.exit_code == 0);
-  CHECK(unmatched.err.find("liver") != std::string::npos);
+  CHECK(unmatched.err.find("unobtainium") != std::string::npos);
   const auto wrong = run_limber({"tissues", volume, "--frequency", "5"});
   CHECK(wrong.exit_code == 1);
   CHECK(std::count(wrong.err.begin(), wrong.err.end(), '\n') == 1);
