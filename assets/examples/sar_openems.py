@@ -7,10 +7,10 @@
   sar_openems.py study OUT [--method fem-contact] [--spacing MM] [--poses A,B] [--frequency HZ] [--cell MM] [--limber PROGRAM]
 
 DECK.xml is what `limber convert POSED.nrrd DECK.xml --frequency HZ` writes: boxes of tissues with permittivity, conductivity and
-density. For each deck: the SAR averaged over all tissue and its largest average over 10 g, in W/kg for an incident power density
-of 1 W/m2 at the deck's frequency. `sphere` does the same for a ball of muscle-like tissue and compares the power it takes up with
+density. For each deck: the SAR averaged over all tissue and its largest average over 10 g (by peak_sar.py, which lies
+beside this program), in W/kg for an incident power density of 1 W/m2 at the deck's frequency. `sphere` does the same for a ball of muscle-like tissue and compares the power it takes up with
 Mie's exact solution [Bohren & Huffman 1983, 4.4]; it exits with 1 where they differ by more than 10 %. `study` does both for the
-posed bodies of a study that `limber experiment ... -o OUT` has computed, and writes OUT/sar.json (schema limber-sar/1, see
+posed bodies of a study that `limber experiment ... -o OUT` has computed, and writes OUT/sar.json (schema limber-sar/2, see
 core/study/sar_figures.h): the next `limber experiment ... -o OUT` shows it as a figure of its page.
 
 Needs openEMS (Debian: openems), h5py, numpy and scipy. Every run works in a folder of its own that is taken away again.
@@ -30,12 +30,17 @@ import h5py
 import numpy as np
 from scipy.special import spherical_jn, spherical_yn
 
+sys.dont_write_bytecode = True
+import peak_sar
+
 LIGHT = 299792458.0  # m/s
 EPS_0 = 8.8541878128e-12  # F/m
 PADDING = 10  # cells of air between tissue and the box in which the wave is made
 AROUND = 4  # cells between that box and the absorbing layer
 PML = 8  # cells
 MARGIN = PADDING + AROUND + PML
+GRAMS = 10  # that SAR is averaged over
+FOUND = ("air", "cube about the cell", "cube that holds the cell", "cube with the cell in its face", "none")  # as peak_sar counts
 SOUNDEST = ("fem-contact", "fem", "dqs", "lbs")  # methods of a study: the mass of a limb that passes through itself is not that of the limb
 
 
@@ -152,43 +157,8 @@ def absorption(deck, polarization, towards, threads):
     return deck.of_cells("kappa") / 2 * squared * per_power
 
 
-def peak_average(deck, watts, mass, grams):
-    """The largest average over a cube about a cell of tissue that grows until it holds so much mass, air being at most a tenth of it
-    [IEC/IEEE 62704-1]. A cube's mass between two sizes is taken in proportion."""
-    sums = [np.pad(v, ((1, 0),) * 3).cumsum(0).cumsum(1).cumsum(2) for v in (mass, watts, (deck.index < 0).astype(float))]
-    shape = deck.index.shape
-
-    def cubes(total, half):
-        n = 2 * half + 1
-        part = [slice(n, None), slice(None, -n)]
-        value = 0
-        for k in range(8):
-            corner = tuple(part[k >> a & 1] for a in range(3))
-            value = value + (-1) ** (bin(k).count("1")) * total[corner]
-        return value
-
-    best = 0.0
-    done = deck.index < 0
-    before = None
-    for half in range(1, min(shape) // 2):
-        held, power, air = (cubes(s, half) for s in sums)
-        middle = tuple(slice(half, n - half) for n in shape)
-        enough = (held >= grams / 1000) & ~done[middle]
-        valid = enough & (air <= 0.1 * (2 * half + 1) ** 3)
-        if valid.any():
-            if before is None:
-                average = power / np.maximum(held, 1e-30)
-            else:
-                inner = tuple(slice(1, -1) for _ in range(3))
-                held_before, power_before = before[0][inner], before[1][inner]
-                share = np.clip((grams / 1000 - held_before) / np.maximum(held - held_before, 1e-30), 0, 1)
-                average = (power_before + share * (power - power_before)) / (grams / 1000)
-            best = max(best, float(average[valid].max()))
-        done[middle] |= enough
-        if done.all():
-            break
-        before = (held, power)
-    return best
+def say(text):
+    print("sar_openems.py: " + text, file=sys.stderr)
 
 
 def result_of(deck, polarization, towards, threads):
@@ -196,6 +166,14 @@ def result_of(deck, polarization, towards, threads):
     density = absorption(deck, polarization, towards, threads)
     volume = (deck.cell / 1000) ** 3
     watts, mass = density * volume, deck.of_cells("density") * volume
+    averages, found = peak_sar.average_sar(watts, mass, GRAMS)
+    place = np.unravel_index(np.nanargmax(averages), mass.shape)
+    count = lambda kind: int((found == kind).sum())
+    heavy, without = int((mass >= GRAMS / 1000).sum()), count(peak_sar.WITHOUT)
+    if heavy:
+        say(f"{heavy} cells weigh {GRAMS} g or more each: averages there are over a part of one cell; make --cell smaller")
+    if without:
+        say(f"{without} cells have no cube of {GRAMS} g: the body weighs too little beside them")
     return {
         "frequency_hz": deck.frequency,
         "cell_mm": deck.cell,
@@ -203,7 +181,13 @@ def result_of(deck, polarization, towards, threads):
         "mass_kg": float(mass.sum()),
         "absorbed_w": float(watts.sum()),
         "sar_average_w_per_kg": float(watts.sum() / mass.sum()),
-        "sar_peak_10g_w_per_kg": peak_average(deck, watts, mass, 10),
+        "sar_peak_10g_w_per_kg": float(averages[place]),
+        "sar_peak_found": FOUND[found[place]],
+        "cells_valid": count(peak_sar.VALID),
+        "cells_used": count(peak_sar.USED),
+        "cells_unused": count(peak_sar.UNUSED),
+        "cells_without": without,
+        "cells_heavier_than_10g": heavy,
         "seconds": round(time.time() - start, 1),
     }
 
@@ -273,7 +257,7 @@ def sar_of_study(out, options):
         poses.append({"pose": cell["pose"], "key": cell["key"], **result})
         print(f"{cell['pose']}: {1000 * result['sar_average_w_per_kg']:.2f} mW/kg on average, {1000 * result['sar_peak_10g_w_per_kg']:.1f} over 10 g, {result['seconds']} s", file=sys.stderr)
     return {
-        "schema": "limber-sar/1",
+        "schema": "limber-sar/2",
         "frequency_hz": options.frequency,
         "cell_mm": poses[0]["cell_mm"],
         "polarization": options.polarization,

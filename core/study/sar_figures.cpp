@@ -43,7 +43,7 @@ std::optional<SarFigures> read_sar(const Path& out, const Study& study, const st
   const Path path = out / "sar.json";
   if (!std::filesystem::exists(path)) return {};
   const Json json = Json::parse(read_file(path, kLargest), nullptr, false);
-  if (!json.is_object() || json.value("schema", Json()) != "limber-sar/1") throw Error("this is no SAR of a study", path.string(), "delete it, or let sar_openems.py study write it again");
+  if (!json.is_object() || json.value("schema", Json()) != "limber-sar/2") throw Error("this is no SAR of a study, or that of an older version", path.string(), "delete it, or let sar_openems.py study write it again");
   try {
     return figures_of(json, study, cells);
   } catch (const Json::exception& error) {

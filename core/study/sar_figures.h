@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a simulation found of a study's posed bodies: OUT/sar.json, which `assets/examples/sar_openems.py study OUT` writes there:
-//   {"schema": "limber-sar/1", "frequency_hz", "cell_mm", "polarization", "towards", "spacing_mm", "method",
-//    "poses": [{"pose", "key", "sar_average_w_per_kg", "sar_peak_10g_w_per_kg", "mass_kg", "cells", "seconds"}],
+//   {"schema": "limber-sar/2", "frequency_hz", "cell_mm", "polarization", "towards", "spacing_mm", "method",
+//    "poses": [{"pose", "key", "sar_average_w_per_kg", "sar_peak_10g_w_per_kg", "mass_kg", "cells", "seconds", and how the
+//               peak was found: "sar_peak_found", "cells_valid", "cells_used", "cells_unused", "cells_without",
+//               "cells_heavier_than_10g"}],
 //    "sphere": {"cell_mm", "absorbed_w", "absorbed_by_mie_w", "difference_percent"}}
+// Version 1 averaged over cubes that IEC/IEEE 62704-1 does not know; it is refused.
 // SAR is for an incident power density of 1 W/m2. `key` is that of the cell it was computed from.
 #pragma once
 

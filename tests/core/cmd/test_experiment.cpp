@@ -160,7 +160,7 @@ TEST_CASE("experiment: masses made exact are a technique of their own, and SAR t
   CHECK(page.find("Voxels that mass-exact moved") != page.npos);
   CHECK(page.find("id=\"sar\"") == page.npos);
 
-  json sar{{"schema", "limber-sar/1"}, {"frequency_hz", 9e8}, {"cell_mm", 6}, {"polarization", "z"}, {"towards", "y"}, {"spacing_mm", 8}, {"method", "dqs"},
+  json sar{{"schema", "limber-sar/2"}, {"frequency_hz", 9e8}, {"cell_mm", 6}, {"polarization", "z"}, {"towards", "y"}, {"spacing_mm", 8}, {"method", "dqs"},
            {"sphere", {{"cell_mm", 6}, {"absorbed_w", 0.0102}, {"absorbed_by_mie_w", 0.01}, {"difference_percent", 2.0}}}};
   for (const int i : {2, 0}) sar["poses"].push_back({{"pose", cells[i]["pose"]}, {"key", cells[i]["key"]}, {"sar_average_w_per_kg", 0.0123 + 1e-3 * i}, {"sar_peak_10g_w_per_kg", 0.0667}, {"mass_kg", 2.5}, {"seconds", 68}, {"cells", 12000}});
   const auto page_with = [&](const json& of) {
@@ -178,7 +178,7 @@ TEST_CASE("experiment: masses made exact are a technique of their own, and SAR t
   const std::string doubted = page_with(sar);
   for (const char* part : {"do not trust", "Left out:</b> SAR of +40", "<td>12.30</td>"}) CHECK_MESSAGE(doubted.find(part) != doubted.npos, part);
   CHECK(doubted.find("<td>14.30</td>") == doubted.npos);
-  for (const json& damaged : {json("text"), json{{"schema", "limber-sar/1"}}}) {
+  for (const json& damaged : {json("text"), json{{"schema", "limber-sar/2"}}, json{{"schema", "limber-sar/1"}}}) {
     const std::string said = page_with(damaged);
     INFO(said);
     CHECK(said.find("sar.json") != said.npos);

@@ -44,6 +44,11 @@ TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth,
   CHECK(figures["poses"][0]["pose"] == "bent");
   CHECK(figures["poses"][0]["cell_mm"] == 8);
   CHECK(figures["poses"][0]["sar_peak_10g_w_per_kg"] > figures["poses"][0]["sar_average_w_per_kg"]);
+  const auto counted = [](const nlohmann::json& of) {
+    return of["cells_valid"].get<int>() + of["cells_used"].get<int>() + of["cells_unused"].get<int>() + of["cells_without"].get<int>();
+  };
+  CHECK(counted(figures["poses"][0]) == figures["poses"][0]["cells"].get<int>());
+  CHECK(figures["poses"][0]["cells_unused"] > 0);
   REQUIRE(run_limber(experiment).exit_code == 0);
   std::ifstream page(folder / "out" / "report.html");
   const std::string html{std::istreambuf_iterator<char>(page), {}};
@@ -56,6 +61,11 @@ TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth,
   const auto posed = folder / "out" / read(folder / "out" / "cells.json")["cells"][0]["folder"].get<std::string>() / "posed.nrrd";
   const auto deck = run_limber({"convert", posed, folder / "elbow.xml", "--frequency", "900e6"});
   REQUIRE_MESSAGE(deck.exit_code == 0, deck.err);
+  const auto coarse = sar({"deck", folder / "elbow.xml", "--cell", "20", "-o", folder / "coarse.json"});
+  CHECK(coarse.exit_code == 0);
+  const auto of_coarse = read(folder / "coarse.json")["elbow"];
+  CHECK(of_coarse["cells_heavier_than_10g"] > 0);  // cortical bone: 15 g
+  CHECK(coarse.err.find("make --cell smaller") != std::string::npos);
   const auto arm = sar({"deck", folder / "elbow.xml", "--cell", "12", "-o", folder / "sar.json", "--plot", folder / "sar.svg"});
   REQUIRE_MESSAGE(arm.exit_code == 0, arm.out, arm.err);
   const auto of_elbow = read(folder / "sar.json")["elbow"];
