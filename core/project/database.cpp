@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/project/database.h"
 
+#include <array>
+#include <fstream>
 #include <new>
+#include <utility>
 
 #include <sqlite3.h>
 
@@ -12,9 +15,53 @@ namespace limber {
 namespace {
 constexpr int kBusyMilliseconds = 2000;
 constexpr int kLargestValue = 32 << 20;  // bytes: no damaged length makes SQLite allocate more
+
+// What SQLite may meet in a project and in our own statements, with room to spare.
+constexpr std::array<std::pair<int, int>, 10> kLimits = {{{SQLITE_LIMIT_LENGTH, kLargestValue},
+                                                          {SQLITE_LIMIT_SQL_LENGTH, 1 << 16},
+                                                          {SQLITE_LIMIT_COLUMN, 16},
+                                                          {SQLITE_LIMIT_EXPR_DEPTH, 16},
+                                                          {SQLITE_LIMIT_COMPOUND_SELECT, 2},
+                                                          {SQLITE_LIMIT_VDBE_OP, 50'000},
+                                                          {SQLITE_LIMIT_FUNCTION_ARG, 8},
+                                                          {SQLITE_LIMIT_ATTACHED, 0},
+                                                          {SQLITE_LIMIT_TRIGGER_DEPTH, 1},
+                                                          {SQLITE_LIMIT_WORKER_THREADS, 0}}};
+constexpr std::array<std::pair<int, int>, 9> kSwitches = {{{SQLITE_DBCONFIG_DEFENSIVE, 1},
+                                                           {SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0},
+                                                           {SQLITE_DBCONFIG_ENABLE_TRIGGER, 0},
+                                                           {SQLITE_DBCONFIG_ENABLE_VIEW, 0},
+                                                           {SQLITE_DBCONFIG_ENABLE_FKEY, 0},
+                                                           {SQLITE_DBCONFIG_ENABLE_FTS3_TOKENIZER, 0},
+                                                           {SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 0},
+                                                           {SQLITE_DBCONFIG_DQS_DDL, 0},
+                                                           {SQLITE_DBCONFIG_DQS_DML, 0}}};
+
+// Whether another program has set the database to write-ahead logging, which Limber never does. Asks SQLite's own file:
+// a descriptor of ours would take the locks of this process's other connections with it when it is closed.
+bool uses_wal(sqlite3* handle) {
+  sqlite3_file* file = nullptr;
+  std::array<char, 20> header{};
+  if (sqlite3_file_control(handle, "main", SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK || !file->pMethods)
+    return false;
+  if (file->pMethods->xRead(file, header.data(), header.size(), 0) != SQLITE_OK) return false;
+  return header[18] == 2 || header[19] == 2;
+}
+
+// A journal or a write-ahead log of SQLite's, by its first bytes; one that has ended is empty or begins with zeros.
+bool begins_as_journal(const Path& path) {
+  constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06";
+  std::array<char, 8> bytes{};
+  std::ifstream in(path, std::ios::binary);
+  in.read(bytes.data(), bytes.size());
+  const std::string_view begin(bytes.data(), static_cast<std::size_t>(in.gcount()));
+  return begin.empty() || begin[0] == '\0' || begin.starts_with(kJournal) || begin.starts_with(kLog);
+}
 }  // namespace
 
 void Database::fail(int code) const {
+  if (const auto& refusal = vfs_.refusal(); !refusal.what.empty())
+    throw Error(refusal.what, refusal.where, refusal.what_to_do);
   switch (code & 0xff) {
     case SQLITE_NOMEM:
       throw std::bad_alloc();
@@ -43,7 +90,7 @@ void Database::fail(int code) const {
   }
 }
 
-Database::Database(const Path& path, Mode mode) : where_(path.string()) {
+Database::Database(const Path& path, Mode mode) : where_(path.string()), vfs_(path) {
   if (mode != Mode::Create) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) throw Error("the project does not exist", where_, "check the name");
@@ -51,19 +98,56 @@ Database::Database(const Path& path, Mode mode) : where_(path.string()) {
   }
   // A reader may have to undo a transaction that was cut off, so it too asks to write; SQLite falls back by itself.
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | (mode == Mode::Create ? SQLITE_OPEN_CREATE : 0);
-  const int opened = sqlite3_open_v2(path.c_str(), &handle_, flags, nullptr);
+  const int opened = sqlite3_open_v2(vfs_.database().c_str(), &handle_, flags, vfs_.name().c_str());
   try {
     if (!handle_) throw std::bad_alloc();
     if (opened != SQLITE_OK) fail(opened);
     sqlite3_extended_result_codes(handle_, 1);
     sqlite3_busy_timeout(handle_, kBusyMilliseconds);
-    sqlite3_limit(handle_, SQLITE_LIMIT_LENGTH, kLargestValue);
-    sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-    sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    distrust();
     run("PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY; PRAGMA mmap_size = 0");
+    // Without shared memory a write-ahead log can only be used by one alone.
+    if (uses_wal(handle_)) run("PRAGMA locking_mode = EXCLUSIVE");
   } catch (...) {
     sqlite3_close(handle_);
     throw;
+  }
+}
+
+void Database::distrust() {
+  for (const auto& [limit, most] : kLimits) sqlite3_limit(handle_, limit, most);
+  for (const auto& [option, on] : kSwitches) {
+    const int code = sqlite3_db_config(handle_, option, on, nullptr);
+    if (code != SQLITE_OK) fail(code);
+  }
+}
+
+void Database::clear_journal(const Path& path) {
+  std::error_code error;
+  const auto is_there = [&](const Path& file) {
+    return std::filesystem::symlink_status(file, error).type() != std::filesystem::file_type::not_found;
+  };
+  const Path journal = path.string() + "-journal", log = path.string() + "-wal";
+  if (!is_there(journal) && !is_there(log)) return;
+  if (std::filesystem::is_regular_file(path, error)) {
+    const Database database(path, Mode::Read);
+    sqlite3_stmt* statement = nullptr;
+    int code = sqlite3_prepare_v2(database.handle_, "PRAGMA schema_version", -1, &statement, nullptr);
+    if (code == SQLITE_OK) sqlite3_step(statement);
+    code = sqlite3_finalize(statement);
+    const bool is_broken =
+        (code & 0xff) == SQLITE_NOTADB || (code & 0xff) == SQLITE_CORRUPT;  // and is about to be replaced
+    if (code != SQLITE_OK && !is_broken) database.fail(code);
+  }
+  for (const Path& file : {journal, log}) {
+    if (!is_there(file)) continue;
+    const bool ours = std::filesystem::symlink_status(file, error).type() == std::filesystem::file_type::regular &&
+                      begins_as_journal(file);
+    if (!ours)
+      throw Error("a file stands where the project's journal goes", file.string(),
+                  "move it away, or choose another name");
+    std::filesystem::remove(file, error);
+    if (error) throw Error("the journal of an earlier project cannot be removed", file.string(), error.message());
   }
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // SQLite, in the few words that a project needs. Every failure is an Error that says what the user can do: the disk is
 // full, the file cannot be written, another program is writing it, it is no database, it is damaged.
+//
+// A database is hostile until it has shown otherwise: SQLite sees only the database and its journal
+// (core/project/named_file_vfs.h), and triggers, views, attached databases and extensions are off.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +13,7 @@
 #include <string_view>
 
 #include "core/base/file.h"
+#include "core/project/named_file_vfs.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -26,13 +30,20 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
+  // Rolls back what a save that was cut off has left beside `path`, and removes a journal that belongs to no database
+  // any more, so that a new file may take the name. throws Error when the database is in use, or when what stands
+  // beside it is no journal of Limber's.
+  static void clear_journal(const Path& path);
+
   void run(const char* sql);
   std::int64_t number(const std::string& sql);  // the first column of the first row; 0 without one
   [[noreturn]] void fail(int code) const;
 
  private:
   friend class Statement;
+  void distrust();
   std::string where_;
+  NamedFileVfs vfs_;
   sqlite3* handle_ = nullptr;
 };
 

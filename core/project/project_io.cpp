@@ -77,7 +77,11 @@ void check_schema(Database& database, const Path& path) {
   const std::int64_t version = database.number("PRAGMA user_version");
   if (version > kSchemaVersion)
     throw Error("the project was written by a newer version of Limber", path.string(), "open it with that version");
-  const std::string ours = "SELECT count(*) FROM sqlite_schema WHERE sql IN ('" + std::string(kChunkTable) + "', '" + kStateTable + "')";
+  const std::string ours = std::string("SELECT count(*) FROM sqlite_schema WHERE sql IN ('")
+                               .append(kChunkTable)
+                               .append("', '")
+                               .append(kStateTable)
+                               .append("')");
   if (version != kSchemaVersion || database.number(ours) != 2 || database.number("SELECT count(*) FROM sqlite_schema WHERE sql IS NOT NULL") != 2)
     throw damaged(path);
 }
@@ -212,6 +216,7 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
     throw Error(message.substr(0, first), first < last ? message.substr(first + 2, last - first - 2) : path.string(), message.substr(last + 2));
   }
   sync(temporary, O_RDONLY);
+  Database::clear_journal(path);  // or it would be rolled back into the new file
   fs::rename(temporary, path, error);
   if (error) throw Error("the project cannot be written", path.string(), error.message());
   sync(folder, O_RDONLY | O_DIRECTORY);

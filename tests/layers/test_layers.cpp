@@ -60,7 +60,7 @@ const std::vector<Door> kDoors = {
     {"ITK", {"itk"}, {"tests/independent/"}},
     {"CHOLMOD", {"cholmod", "suitesparse/"}, {"core/base/cholesky.cpp"}},
     {"TBB", {"tbb/", "oneapi/"}, {"core/base/parallel.cpp", "core/base/background.cpp"}},
-    {"SQLite", {"sqlite3"}, {"core/project/", "tests/support/power_cut.cpp"}},
+    {"SQLite", {"sqlite3"}, {"core/project/", "tests/core/project/", "tests/support/power_cut.cpp"}},
     {"zstd", {"zstd"}, {"core/project/"}},
     {"CLI11", {"CLI/"}, {"core/cmd/", "editor/main.cpp", "editor/commands/"}},
     {"Expat", {"expat"}, {"core/rig/bender_armature.cpp"}},
