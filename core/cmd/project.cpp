@@ -15,6 +15,8 @@
 #include "core/cmd/pose_options.h"
 #include "core/pose/gltf_export.h"
 #include "core/pose/pose_io.h"
+#include "core/project/carved_project.h"
+#include "core/project/database.h"
 #include "core/project/journal.h"
 #include "core/project/project_io.h"
 #include "core/rig/armature_io.h"
@@ -111,11 +113,36 @@ void verify(const Options& options) {
   std::printf("%s is whole\n", options.file.c_str());
 }
 
+// Where the project cannot be read as it is, what is whole of it is put together again. `chunks` outlives the project.
+Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chunks, Progress& progress) {
+  std::string failure;
+  try {
+    Project project = read_project(options.file, progress);
+    std::printf("no unsaved edits were found; what the project holds is kept\n");
+    return project;
+  } catch (const ProjectInUse&) {
+    throw;
+  } catch (const Error& error) {
+    failure = error.what();
+  }
+  std::error_code error;
+  require(std::filesystem::is_regular_file(options.file, error), "the project does not exist", options.file,
+          "check the name");
+  chunks = std::make_unique<CarvedChunks>(options.file, progress);
+  require(!chunks->latest_first().empty(), "nothing of a project was found", options.file,
+          "name a .limber file, or open an earlier copy");
+  warn({failure});
+  Project project = put_together(*chunks, options.file, progress);
+  std::printf("%zu chunks of the damaged project are whole; what they hold is kept\n", chunks->latest_first().size());
+  return project;
+}
+
 void recover(const Options& options) {
   require(!options.output.empty(), "recover needs a file to write", options.file, "name it with -o OUT.limber");
   require_new(options.output, options.replace);
   CommandProgress progress(options.progress);
   Project project;
+  std::unique_ptr<CarvedChunks> chunks;
   auto left = recoverable(options.file);  // a journal itself
   if (!left) left = recoverable(journal_path(std::filesystem::absolute(options.file)));
   if (left) {
@@ -124,14 +151,13 @@ void recover(const Options& options) {
     project.document = std::move(recovered.document);
     std::printf("edits recovered up to: %s\n", recovered.label.c_str());
   } else {
-    ReadLimits limits;
-    limits.leave_out_damaged = true;
-    project = read_project(options.file, progress, limits);
+    project = read_or_carve(options, chunks, progress);
     warn(project.warnings);
-    std::printf("no unsaved edits were found; what the project holds is kept\n");
   }
   DocumentWriter writer;
-  create_project(project, options.output, writer, progress);
+  // What no part could use stays in the file until it is saved again.
+  create_project(project, options.output, writer, progress,
+                 chunks ? SpareChunks{chunks->latest_first(), chunks.get()} : SpareChunks{});
 }
 
 // ---- export

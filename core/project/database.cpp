@@ -69,7 +69,7 @@ void Database::fail(int code) const {
       throw Error("the project cannot be written: the disk is full", where_, "free some space, or save elsewhere");
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      throw Error("another program is using the project", where_, "wait until it is done and try again");
+      throw ProjectInUse("another program is using the project", where_, "wait until it is done and try again");
     case SQLITE_READONLY:
     case SQLITE_PERM:
       throw Error("the project cannot be written: it or its folder is read-only", where_, "save elsewhere");

@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/project/named_file_vfs.h"
 
@@ -19,6 +20,12 @@ struct sqlite3;
 struct sqlite3_stmt;
 
 namespace limber {
+
+// Thrown where another program has the file just now: trying again helps, recovering does not.
+class ProjectInUse : public Error {
+ public:
+  using Error::Error;
+};
 
 class Statement;
 

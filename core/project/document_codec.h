@@ -44,7 +44,9 @@ class DocumentWriter {
 
 struct ReadLimits {
   std::int64_t most_bytes = 0;  // of voxels and weights; 0: what the machine has
-  bool leave_out_damaged = false;  // keep the parts that are whole, and say which are not
+  // Keep the parts that are whole, and of the volume and of weights the blocks that are; say what is not: lost voxels are
+  // air, lost weights those of a block beside them.
+  bool leave_out_damaged = false;
 };
 
 // `where` names the file in messages. throws Error when a chunk is missing or damaged, or does not make sense.

@@ -336,6 +336,12 @@ class Reading {
   // take(i, bytes) for each leaf, in order.
   template <class Take>
   void for_leaves(const std::vector<ChunkHash>& leaves, std::size_t first, const std::string& what, const Take& take) {
+    for_leaves(leaves, first, what, take, [&](std::int64_t) { throw damaged(what); });
+  }
+  // lost(i) for each that is missing or damaged.
+  template <class Take, class Lost>
+  void for_leaves(const std::vector<ChunkHash>& leaves, std::size_t first, const std::string& what, const Take& take,
+                  const Lost& lost) {
     const std::int64_t count = std::ssize(leaves) - static_cast<std::int64_t>(first);
     for (std::int64_t begin = 0; begin < count; begin += kBatch) {
       progress_.update("open", static_cast<double>(begin) / static_cast<double>(count));
@@ -355,8 +361,10 @@ class Reading {
         }
       });
       for (std::int64_t i = 0; i < batch; ++i) {
-        if (!whole[i]) throw damaged(what);
-        take(begin + i, bytes[i]);
+        if (whole[i])
+          take(begin + i, bytes[i]);
+        else
+          lost(begin + i);
       }
     }
   }
@@ -436,11 +444,32 @@ class Reading {
     take_memory(bytes, "volume");
     volume.voxels.resize(grid.voxel_count());
     char* to = reinterpret_cast<char*>(volume.voxels.data());
-    for_leaves(node.leaves, 0, "volume", [&](std::int64_t i, const std::string& leaf) {
-      in.require(std::ssize(leaf) == std::min(kLeafBytes, bytes - i * kLeafBytes));
-      if (!is_all_zero(leaf.data(), leaf.size())) std::memcpy(to + i * kLeafBytes, leaf.data(), leaf.size());
-    });
+    std::vector<std::int64_t> lost;
+    for_leaves(
+        node.leaves, 0, "volume",
+        [&](std::int64_t i, const std::string& leaf) {
+          in.require(std::ssize(leaf) == std::min(kLeafBytes, bytes - i * kLeafBytes));
+          if (!is_all_zero(leaf.data(), leaf.size())) std::memcpy(to + i * kLeafBytes, leaf.data(), leaf.size());
+        },
+        [&](std::int64_t i) { lose(lost, i, "volume"); });
+    if (lost.empty()) return volume;
+    if (lost.size() == node.leaves.size()) throw damaged("volume");
+    const auto slice_of = [&](std::int64_t byte) {
+      return byte / (std::int64_t{sizeof(Label)} * grid.size.x * grid.size.y);
+    };
+    warnings_.push_back(part_lost("volume", lost.size(), node.leaves.size()) + "their voxels, within slices " +
+                        std::to_string(slice_of(lost.front() * kLeafBytes)) + " to " +
+                        std::to_string(slice_of(std::min(bytes, (lost.back() + 1) * kLeafBytes) - 1)) + ", are air");
     return volume;
+  }
+
+  // Without a block only where what is whole is to be kept.
+  void lose(std::vector<std::int64_t>& lost, std::int64_t block, const std::string& what) const {
+    if (!limits_.leave_out_damaged) throw damaged(what);
+    lost.push_back(block);
+  }
+  static std::string part_lost(const std::string& what, std::size_t lost, std::size_t all) {
+    return std::to_string(lost) + " of " + std::to_string(all) + " blocks of the " + what + " are lost: ";
   }
 
   static std::int64_t checked_voxel_bytes(const Grid& grid, const ByteReader& in) {
@@ -461,20 +490,49 @@ class Reading {
     in.require(std::ssize(node.leaves) - 1 == (bricks + kGroupBricks - 1) / kGroupBricks);
 
     std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
-    for_leaves(node.leaves, 1, "weights", [&](std::int64_t group, const std::string& leaf) {
-      const auto first = lengths.begin() + group * kGroupBricks;
-      const std::vector<std::uint16_t> counts(first, first + std::min(kGroupBricks, bricks - group * kGroupBricks));
-      // Two weights with the same group share its bricks.
-      auto& known = groups_[node.leaves[group + 1].bytes];
-      const bool shared = std::equal(known.begin(), known.end(), counts.begin(), counts.end(),
-                                     [](const auto& brick, std::uint16_t count) { return brick->size() == count; });
-      if (!shared || known.empty()) known = read_group(leaf, counts, in);
-      for (const auto& brick : known)
-        for (const Influence influence : *brick)
-          for (int k = 0; k < 4; ++k) in.require(influence.bone[k] < std::max<std::size_t>(1, bones.size()));
-      chunks.insert(chunks.end(), known.begin(), known.end());
-    });
+    std::vector<std::int64_t> lost;
+    for_leaves(
+        node.leaves, 1, "weights",
+        [&](std::int64_t group, const std::string& leaf) {
+          const auto first = lengths.begin() + group * kGroupBricks;
+          const std::vector<std::uint16_t> counts(first, first + std::min(kGroupBricks, bricks - group * kGroupBricks));
+          // Two weights with the same group share its bricks.
+          auto& known = groups_[node.leaves[group + 1].bytes];
+          const bool shared = std::equal(known.begin(), known.end(), counts.begin(), counts.end(),
+                                         [](const auto& brick, std::uint16_t count) { return brick->size() == count; });
+          if (!shared || known.empty()) known = read_group(leaf, counts, in);
+          for (const auto& brick : known)
+            for (const Influence influence : *brick)
+              for (int k = 0; k < 4; ++k) in.require(influence.bone[k] < std::max<std::size_t>(1, bones.size()));
+          chunks.insert(chunks.end(), known.begin(), known.end());
+        },
+        [&](std::int64_t group) {
+          lose(lost, group, "weights");
+          chunks.resize(static_cast<std::size_t>(std::min(bricks, (group + 1) * kGroupBricks)));
+        });
+    if (!lost.empty()) {
+      if (lost.size() + 1 == node.leaves.size()) throw damaged("weights");
+      warnings_.push_back(part_lost("weights", lost.size(), node.leaves.size() - 1) +
+                          "their voxels follow the bones of a block beside them; compute or paint them anew");
+      fill_lost_bricks(chunks, lengths);
+    }
     return {std::move(bones), std::move(chunks)};
+  }
+
+  // Bricks that are lost take the last influence that is known before them, or else the first behind them.
+  static void fill_lost_bricks(std::vector<std::shared_ptr<const SkinWeights::Chunk>>& bricks,
+                               const std::vector<std::uint16_t>& lengths) {
+    Influence known = rigid_influence(0);
+    for (const auto& brick : bricks)
+      if (brick && brick->size() > 0) {
+        known = *brick->begin();
+        break;
+      }
+    for (std::size_t i = 0; i < bricks.size(); ++i) {
+      if (!bricks[i])
+        bricks[i] = std::make_shared<const SkinWeights::Chunk>(SkinWeights::Influences(lengths[i], known));
+      for (const Influence influence : *bricks[i]) known = influence;
+    }
   }
 
   std::vector<std::shared_ptr<const SkinWeights::Chunk>> read_group(const std::string& leaf, const std::vector<std::uint16_t>& counts,

@@ -182,7 +182,8 @@ std::string read_thumbnail(const Path& path) {
   }
 }
 
-SaveMark create_project(const Project& project, const Path& path, DocumentWriter& writer, Progress& progress) {
+SaveMark create_project(const Project& project, const Path& path, DocumentWriter& writer, Progress& progress,
+                        const SpareChunks& spare) {
   check_place(path);
   check_editor_bytes(project, path);
   const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
@@ -208,6 +209,8 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
     database.run(kStateTable);
     Store store(database);
     mark = fill(store, project, writer, Packing::Dense, progress);
+    for (const ChunkHash& hash : spare.hashes)
+      if (const auto packed = spare.source->find(hash)) store.put(hash, *packed);  // ignored where it is there
     transaction.commit();
   } catch (const Error& failure) {
     std::string message = failure.what();  // it names the temporary file

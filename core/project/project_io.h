@@ -43,8 +43,15 @@ Project read_project(const Path& path, Progress& progress = no_progress(), const
 // The picture alone, "" when there is none or the file cannot be read.
 std::string read_thumbnail(const Path& path);
 
+// Chunks that a new file keeps beside the document's own, until it is saved again.
+struct SpareChunks {
+  std::vector<ChunkHash> hashes;
+  ChunkSource* source = nullptr;
+};
+
 // A new file, whole or not at all; replaces what stands there.
-SaveMark create_project(const Project& project, const Path& path, DocumentWriter& writer, Progress& progress = no_progress());
+SaveMark create_project(const Project& project, const Path& path, DocumentWriter& writer,
+                        Progress& progress = no_progress(), const SpareChunks& spare = {});
 
 // Chunks of earlier saves that this one does not need.
 enum class Unused { Remove, Keep };

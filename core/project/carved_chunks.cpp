@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/project/carved_chunks.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+
+constexpr unsigned char kTableLeaf = 0x0d, kIndexLeaf = 0x0a, kIndexInterior = 0x02;
+constexpr std::int64_t kHashType = 12 + 2 * 32;  // the serial type of a blob of 32 bytes
+constexpr std::uint32_t kMostPayload = (16u << 20) + (1u << 20);
+constexpr std::int64_t kBatch = 32;  // chunks unpacked together
+constexpr std::size_t kLeastCell = 38;  // bytes of a row of the table of chunks
+constexpr std::int64_t kMostReading = 4;  // times the file: honest rows, of now and from before, share nothing
+constexpr std::array<std::string_view, 5> kStates = {"root", "mark", "editor", "thumbnail", "program"};
+
+std::uint32_t big_endian(const char* bytes, int count) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < count; ++i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  return value;
+}
+
+// SQLite's number of one to nine bytes. Moves `at` behind it; nothing at the end of the bytes.
+std::optional<std::int64_t> varint(std::string_view bytes, std::size_t& at) {
+  std::uint64_t value = 0;
+  for (int i = 0; i < 9; ++i) {
+    if (at >= bytes.size()) return std::nullopt;
+    const auto byte = static_cast<unsigned char>(bytes[at++]);
+    if (i == 8) return static_cast<std::int64_t>(value << 8 | byte);
+    value = value << 7 | (byte & 0x7f);
+    if (!(byte & 0x80)) break;
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+// How many bytes of a payload lie in the page itself.
+std::uint32_t local_bytes(std::uint32_t payload, std::int64_t usable, bool index) {
+  const std::int64_t most = index ? (usable - 12) * 64 / 255 - 23 : usable - 35, least = (usable - 12) * 32 / 255 - 23;
+  if (payload <= most) return payload;
+  const std::int64_t fitting = least + (payload - least) % (usable - 4);
+  return static_cast<std::uint32_t>(fitting <= most ? fitting : least);
+}
+
+// A record's two columns.
+struct TwoColumns {
+  std::int64_t first_type, second_type;
+  std::size_t header;  // bytes
+  static std::int64_t blob_bytes(std::int64_t type) { return type >= 12 && type % 2 == 0 ? (type - 12) / 2 : -1; }
+};
+std::optional<TwoColumns> two_columns(std::string_view record) {
+  std::size_t at = 0;
+  const auto header = varint(record, at), first = varint(record, at), second = varint(record, at);
+  if (!header || !first || !second || *header != static_cast<std::int64_t>(at)) return std::nullopt;
+  return TwoColumns{*first, *second, at};
+}
+
+}  // namespace
+
+CarvedChunks::CarvedChunks(const Path& path, Progress& progress)
+    : where_(path.string()), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+  if (descriptor_ < 0) throw Error("the project cannot be opened", where_, std::strerror(errno));
+  try {
+    size_ = ::lseek(descriptor_, 0, SEEK_END);
+    bytes_left_ = kMostReading * size_;
+    std::string header(100, '\0');
+    if (size_ >= 100 && read_at(0, header.data(), header.size()) && header.starts_with("SQLite format 3")) {
+      const std::uint32_t told = big_endian(header.data() + 16, 2);
+      const std::int64_t bytes = told == 1 ? 65536 : told;
+      if (bytes >= 512 && std::has_single_bit(static_cast<std::uint64_t>(bytes))) page_bytes_ = bytes;
+    }
+    scan(progress);
+    keep_whole(progress);
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+CarvedChunks::~CarvedChunks() { ::close(descriptor_); }
+
+bool CarvedChunks::read_at(std::int64_t offset, char* to, std::size_t size) const {
+  while (size > 0) {
+    const ssize_t got = ::pread(descriptor_, to, size, offset);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    to += got;
+    offset += got;
+    size -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+void CarvedChunks::scan(Progress& progress) {
+  std::string page(static_cast<std::size_t>(page_bytes_), '\0');
+  for (std::int64_t number = 1; number * page_bytes_ <= size_; ++number) {
+    if (number % 256 == 1)
+      progress.update("recover", .5 * static_cast<double>(number * page_bytes_) / static_cast<double>(size_));
+    if (!read_at((number - 1) * page_bytes_, page.data(), page.size())) continue;  // a bad sector: the next may be read
+    const auto type = static_cast<unsigned char>(page[0]);
+    if (type == kTableLeaf) scan_table_page(page, number);
+    if (type == kIndexLeaf || type == kIndexInterior) scan_index_page(page);
+  }
+}
+
+void CarvedChunks::scan_table_page(const std::string& page, std::int64_t number) {
+  constexpr std::size_t kHeader = 8;
+  const std::size_t count = std::min<std::size_t>(big_endian(page.data() + 3, 2), page.size() / kLeastCell);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t at = big_endian(page.data() + kHeader + 2 * i, 2);
+    const auto payload = varint(page, at), rowid = varint(page, at);
+    if (!payload || !rowid || *payload < 36 || *payload > kMostPayload) continue;
+    const auto size = static_cast<std::uint32_t>(*payload);
+    const std::uint32_t local = local_bytes(size, page_bytes_, false);
+    if (at + local + (local < size ? 4 : 0) > page.size()) continue;
+    const auto columns = two_columns(std::string_view(page).substr(at, local));
+    if (!columns || columns->first_type != kHashType) continue;
+    const std::int64_t blob = TwoColumns::blob_bytes(columns->second_type);
+    if (blob < 0 || static_cast<std::int64_t>(columns->header) + 32 + blob != *payload) continue;
+    if (columns->header + 32 > local) continue;
+    ChunkHash hash;
+    std::memcpy(hash.bytes.data(), page.data() + at + columns->header, hash.bytes.size());
+    cells_[hash].push_back({*rowid, (number - 1) * page_bytes_ + static_cast<std::int64_t>(at), size, local});
+  }
+}
+
+// The table of states keeps its rows in an index.
+void CarvedChunks::scan_index_page(const std::string& page) {
+  const bool interior = static_cast<unsigned char>(page[0]) == kIndexInterior;
+  const std::size_t header = interior ? 12 : 8, count = big_endian(page.data() + 3, 2);
+  for (std::size_t i = 0; i < count && header + 2 * i + 2 <= page.size(); ++i) {
+    std::size_t at = big_endian(page.data() + header + 2 * i, 2) + (interior ? 4 : 0);
+    const auto size = varint(page, at);
+    if (!size || *size < 4 || *size > kMostPayload) continue;
+    const std::uint32_t local = local_bytes(static_cast<std::uint32_t>(*size), page_bytes_, true);
+    const bool overflows = local < *size;
+    if (at + local + (overflows ? 4 : 0) > page.size()) continue;
+    const auto columns = two_columns(std::string_view(page).substr(at, local));
+    if (!columns) continue;
+    const std::int64_t name = TwoColumns::blob_bytes(columns->first_type),
+                       value = TwoColumns::blob_bytes(columns->second_type);
+    if (name < 1 || name > 32 || value < 0 || static_cast<std::int64_t>(columns->header) + name + value != *size) continue;
+    if (!may_read(static_cast<std::uint32_t>(*size))) return;
+    const auto record = payload(page.substr(at, local), static_cast<std::uint32_t>(*size),
+                                overflows ? big_endian(page.data() + at + local, 4) : 0);
+    if (!record) continue;
+    const auto behind_name = columns->header + static_cast<std::size_t>(name);
+    const std::string key = record->substr(columns->header, static_cast<std::size_t>(name));
+    if (std::find(kStates.begin(), kStates.end(), key) != kStates.end()) states_.emplace(key, record->substr(behind_name));
+  }
+}
+
+bool CarvedChunks::may_read(std::uint32_t bytes) { return (bytes_left_ -= bytes) >= 0; }
+
+// The local bytes and those of the overflow pages; nothing where the chain ends early.
+std::optional<std::string> CarvedChunks::payload(const std::string& local, std::uint32_t size, std::uint32_t next) const {
+  std::string bytes = local;
+  std::string page(static_cast<std::size_t>(page_bytes_), '\0');
+  while (bytes.size() < size) {
+    if (next < 2 || next * page_bytes_ > size_) return std::nullopt;
+    if (!read_at((static_cast<std::int64_t>(next) - 1) * page_bytes_, page.data(), page.size())) return std::nullopt;
+    next = big_endian(page.data(), 4);
+    bytes.append(page, 4, std::min<std::size_t>(page.size() - 4, size - bytes.size()));
+  }
+  return bytes;
+}
+
+std::optional<std::string> CarvedChunks::packed(const Cell& cell) const {
+  std::string local(cell.local + (cell.local < cell.payload ? 4 : 0), '\0');
+  if (!read_at(cell.offset, local.data(), local.size())) return std::nullopt;
+  const std::uint32_t next = cell.local < cell.payload ? big_endian(local.data() + cell.local, 4) : 0;
+  local.resize(cell.local);
+  auto record = payload(local, cell.payload, next);
+  const auto columns = record ? two_columns(*record) : std::nullopt;
+  if (!columns) return std::nullopt;
+  return record->substr(columns->header + sizeof(ChunkHash));
+}
+
+// Drops what has not its name's hash. Of rows of one name, as free pages may still hold, any that is whole will do.
+void CarvedChunks::keep_whole(Progress& progress) {
+  std::vector<std::pair<ChunkHash, std::vector<Cell>>> all(cells_.begin(), cells_.end());
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return std::pair(b.second[0].rowid, b.first.bytes) < std::pair(a.second[0].rowid, a.first.bytes);
+  });
+  cells_.clear();
+  for (std::int64_t first = 0; first < std::ssize(all); first += kBatch) {
+    progress.update("recover", .5 + .5 * static_cast<double>(first) / static_cast<double>(all.size()));
+    const std::int64_t batch = std::min(kBatch, std::ssize(all) - first);
+    for (std::int64_t i = first; i < first + batch; ++i)
+      std::erase_if(all[i].second, [&](const Cell& cell) { return !may_read(cell.payload); });
+    parallel_for(batch, 1, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) {
+        auto& [hash, cells] = all[first + i];
+        std::erase_if(cells, [&](const Cell& cell) {
+          const auto bytes = packed(cell);
+          return !bytes || !unpack(*bytes, hash);
+        });
+      }
+    });
+    for (std::int64_t i = first; i < first + batch; ++i) {
+      if (all[i].second.empty()) continue;
+      all[i].second.resize(1);
+      latest_first_.push_back(all[i].first);
+      cells_.insert(std::move(all[i]));
+    }
+  }
+}
+
+std::optional<std::string> CarvedChunks::find(const ChunkHash& hash) {
+  const auto found = cells_.find(hash);
+  return found == cells_.end() ? std::nullopt : packed(found->second[0]);
+}
+
+std::optional<std::string> CarvedChunks::state(const std::string& name) const {
+  const auto found = states_.find(name);
+  return found == states_.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace limber
