@@ -16,11 +16,9 @@ ScratchFolder::ScratchFolder(const std::string& inside) {
   std::string name = (base / "limber-XXXXXX").string();
   if (!::mkdtemp(name.data())) throw Error("no scratch folder can be made", base.string(), std::string(std::strerror(errno)) + ": choose another one in the preferences");
   path_ = name;
+  unfinished_ = std::make_unique<Unfinished>(path_);
 }
 
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
+ScratchFolder::~ScratchFolder() = default;
 
 }  // namespace limber::editor

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A folder for files on their way: empty at first, gone with all that is in it at the end.
+// A folder for files on their way: empty at first, gone with all that is in it at the end; after a crash, at the next start.
 #pragma once
 
-#include "core/base/file.h"
+#include <memory>
+
+#include "core/base/leftovers.h"
 
 namespace limber::editor {
 
@@ -19,6 +21,7 @@ class ScratchFolder {
 
  private:
   Path path_;
+  std::unique_ptr<Unfinished> unfinished_;
 };
 
 }  // namespace limber::editor

@@ -10,10 +10,13 @@
 
 #include <fcntl.h>
 #include <openssl/evp.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/leftovers.h"
 #include "core/base/pages.h"
+#include "core/base/replaced_file.h"
 
 namespace limber {
 
@@ -41,25 +44,23 @@ class Sha256 {
 
 // A file without a name in `folder`: if the process dies, by whatever signal, nothing is left of it. -1 where the file
 // system cannot do that.
-int open_nameless(const Path& folder) { return ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666); }
+int open_nameless(const Path& folder, mode_t mode) {
+  return ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, mode);
+}
 
-// Closes a descriptor and removes a name when it goes.
-struct Temporary {
-  int descriptor = -1;
-  Path name;
-  ~Temporary() {
-    std::error_code ignored;
-    if (!name.empty()) fs::remove(name, ignored);
-    if (descriptor >= 0) ::close(descriptor);
+struct Descriptor {
+  int number = -1;
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
   }
 };
 
-void flush_to_disk(const Path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  ::fsync(file);
-  ::close(file);
+Error not_written(const Path& path) {
+  const bool full = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
+  return {"the file cannot be written", path.string(),
+          full ? "the disk is full: free some space, or write elsewhere" : std::strerror(errno)};
 }
+
 }  // namespace
 
 std::string read_file(const Path& path, std::uint64_t limit) {
@@ -88,28 +89,48 @@ void check_place(const Path& path) {
   if (fs::is_directory(path, error)) throw Error("a folder stands where the file should go", path.string(), "choose another name");
 }
 
+namespace {
+
+// Writes into the open file under the name `temporary`, and onto the disk, with the permissions of what it replaces.
+void fill(int descriptor, const Path& temporary, const Path& target, const Path& path,
+          const std::function<void(const Path&)>& write) {
+  try {
+    write(temporary);
+  } catch (const Error& error) {
+    throw with_name(error, temporary, path);
+  }
+  take_permissions(descriptor, target);
+  if (::fsync(descriptor) != 0) throw not_written(path);
+}
+
+// Others may not read what is written over a file that they may not read.
+mode_t first_mode(const Path& target) { return ::access(target.c_str(), F_OK) == 0 ? 0600 : 0666; }
+
+}  // namespace
+
 void write_atomically(const Path& path, const std::function<void(const Path&)>& write) {
   check_place(path);
-  std::error_code error;
-  const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
-  const Path name = folder / (".limber-" + std::to_string(::getpid()) + "-" + path.filename().string());
-  Temporary temporary{open_nameless(folder), {}};
-  if (temporary.descriptor >= 0) {
-    const std::string nameless = "/proc/self/fd/" + std::to_string(temporary.descriptor);
-    write(nameless);
-    ::fsync(temporary.descriptor);
-    if (::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
+  const Path target = target_of(path);
+  check_place(target);
+  const Path folder = target.has_parent_path() ? target.parent_path() : Path(".");
+  const Path name = temporary_name(target);
+  const Descriptor nameless{open_nameless(folder, first_mode(target))};
+  if (nameless.number >= 0) {
+    const std::string from = "/proc/self/fd/" + std::to_string(nameless.number);
+    fill(nameless.number, from, target, path, write);
+    if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, target.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
+    if (errno != EEXIST) throw not_written(path);
     // A name is taken over only by renaming another.
-    if (errno != EEXIST || ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0)
-      throw Error("the file cannot be written", path.string(), std::strerror(errno));
-    temporary.name = name;
-  } else {
-    temporary.name = name;
-    write(name);
-    flush_to_disk(name);
+    const Unfinished unfinished(name);
+    if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) throw not_written(path);
+    if (::rename(name.c_str(), target.c_str()) != 0) throw not_written(path);
+    return;
   }
-  fs::rename(name, path, error);
-  if (error) throw Error("the file cannot be written", path.string(), error.message());
+  const Unfinished unfinished(name);
+  const Descriptor named{::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, first_mode(target))};
+  if (named.number < 0) throw not_written(path);
+  fill(named.number, name, target, path, write);
+  if (::rename(name.c_str(), target.c_str()) != 0) throw not_written(path);
 }
 
 void write_file_atomically(const Path& path, const std::string& bytes) {

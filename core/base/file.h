@@ -21,7 +21,8 @@ void check_place(const Path& path);
 
 // Writes a file without a name in the same folder (where the file system has none of those: under a temporary name),
 // flushes it, and gives it the name `path` in one step: whoever looks sees the old file or the new one, and a process that
-// is killed leaves nothing behind. When `write` throws, `path` is as before.
+// is killed leaves nothing behind. When `write` throws, `path` is as before, and the error names `path`. A file that is
+// replaced keeps its permissions; a symbolic link stays, and the file that it names is replaced.
 //   write  gets a path to open for writing (with no meaningful extension)
 void write_atomically(const Path& path, const std::function<void(const Path& temporary)>& write);
 void write_file_atomically(const Path& path, const std::string& bytes);

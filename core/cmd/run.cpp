@@ -6,6 +6,7 @@
 #include <new>
 
 #include "core/base/error.h"
+#include "core/base/leftovers.h"
 #include "core/cmd/surface_options.h"
 
 namespace limber::cmd {
@@ -38,6 +39,7 @@ void add_commands(CLI::App& app) {
 }
 
 int run(CLI::App& app, int argc, char** argv) {
+  remove_leftovers();
   try {
     app.parse(argc, argv);
     return 0;

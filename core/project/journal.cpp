@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/leftovers.h"
 #include "core/project/bytes.h"
 
 namespace limber {
@@ -71,13 +72,7 @@ struct Malformed {};
 
 JournalWriter::JournalWriter(Start start, DocumentWriter& writer, const OpenLog& open) : chunks_(std::move(start.base_chunks)) {
   const Path fresh = start.path.string() + ".new";
-  struct Remove {
-    const Path& path;
-    ~Remove() {
-      std::error_code ignored;
-      fs::remove(path, ignored);
-    }
-  } remove{fresh};
+  const Unfinished unfinished(fresh);
   file_ = open(fresh);
   append(kHeader, header_payload(start));
   if (start.document)

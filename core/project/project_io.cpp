@@ -10,6 +10,8 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/leftovers.h"
+#include "core/base/replaced_file.h"
 #include "core/project/database.h"
 
 namespace limber {
@@ -182,22 +184,44 @@ std::string read_thumbnail(const Path& path) {
   }
 }
 
+namespace {
+// For the reason in errno.
+Error not_written(const Path& path) {
+  if (errno == EACCES || errno == EROFS)
+    return {"the project cannot be opened", path.string(), "check that it and its folder may be read and written"};
+  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG)
+    return {"the project cannot be written: the disk is full", path.string(), "free some space, or save elsewhere"};
+  return {"the project cannot be written", path.string(), std::strerror(errno)};
+}
+
+// Onto the disk, with the permissions of what it replaces.
+void finish(const Path& temporary, const Path& target, const Path& path) {
+  const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) throw not_written(path);
+  take_permissions(file, target);
+  const bool synced = ::fsync(file) == 0;
+  const Error failure = not_written(path);
+  ::close(file);
+  if (!synced) throw failure;
+}
+}  // namespace
+
 SaveMark create_project(const Project& project, const Path& path, DocumentWriter& writer, Progress& progress,
                         const SpareChunks& spare) {
   check_place(path);
   check_editor_bytes(project, path);
-  const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
-  const Path temporary = folder / (".limber-" + std::to_string(::getpid()) + "-" + path.filename().string());
-  struct Remove {
-    const Path& path;
-    ~Remove() {
-      std::error_code ignored;
-      fs::remove(path, ignored);
-      fs::remove(path.string() + "-journal", ignored);
-    }
-  } remove{temporary};
+  const Path target = target_of(path);
+  check_place(target);
+  const Path folder = target.has_parent_path() ? target.parent_path() : Path(".");
+  const Path temporary = temporary_name(target);
+  const Unfinished unfinished(temporary);
   std::error_code error;
   fs::remove(temporary, error);
+  // Others may not read what is written over a project that they may not read.
+  const int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
+                          fs::exists(target, error) ? 0600 : 0666);
+  if (file < 0) throw not_written(path);
+  ::close(file);
 
   SaveMark mark;
   try {
@@ -213,15 +237,11 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
       if (const auto packed = spare.source->find(hash)) store.put(hash, *packed);  // ignored where it is there
     transaction.commit();
   } catch (const Error& failure) {
-    std::string message = failure.what();  // it names the temporary file
-    if (const std::size_t at = message.find(temporary.string()); at != std::string::npos) message.replace(at, temporary.string().size(), path.string());
-    const std::size_t first = message.find(": "), last = message.rfind(": ");
-    throw Error(message.substr(0, first), first < last ? message.substr(first + 2, last - first - 2) : path.string(), message.substr(last + 2));
+    throw with_name(failure, temporary, path);
   }
-  sync(temporary, O_RDONLY);
-  Database::clear_journal(path);  // or it would be rolled back into the new file
-  fs::rename(temporary, path, error);
-  if (error) throw Error("the project cannot be written", path.string(), error.message());
+  Database::clear_journal(target);  // or it would be rolled back into the new file
+  finish(temporary, target, path);
+  if (::rename(temporary.c_str(), target.c_str()) != 0) throw not_written(path);
   sync(folder, O_RDONLY | O_DIRECTORY);
   return mark;
 }

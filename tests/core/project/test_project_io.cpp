@@ -233,6 +233,20 @@ TEST_CASE("project: weights, seams and a pose that fit no volume or rig are left
   CHECK(back.document.armature != nullptr);
 }
 
+TEST_CASE("project: one that is written over keeps its permissions, and a link to it stays") {
+  const TemporaryFolder folder;
+  DocumentWriter writer;
+  fs::create_directory(folder / "far");
+  create_project({}, folder / "far/a.limber", writer);
+  fs::permissions(folder / "far/a.limber", fs::perms(0600));
+  fs::create_symlink("far/a.limber", folder / "link.limber");
+  create_project(small_project(), folder / "link.limber", writer);
+  CHECK(fs::is_symlink(folder / "link.limber"));
+  CHECK(fs::status(folder / "far/a.limber").permissions() == fs::perms(0600));
+  CHECK(same_contents(read_project(folder / "far/a.limber").document, small_document()));
+  CHECK(std::distance(fs::directory_iterator(folder / "far"), {}) == 1);
+}
+
 TEST_CASE("project: where there is no room, and in a folder that is read-only, a save leaves the file as it was") {
   const TemporaryFolder folder;
   const Path path = folder / "a.limber";
