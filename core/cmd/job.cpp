@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -83,6 +84,8 @@ struct Options {
 
 void run(const Options& options) {
   become_worker(options.memory_limit, options.yields, options.parent);
+  std::optional<Heartbeat> heartbeat;  // where someone listens
+  if (options.parent > 0) heartbeat.emplace();
   const Path path = options.file;
   Json job = read_job(path);
   if (!options.progress.empty()) job["progress"] = options.progress;

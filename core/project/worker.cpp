@@ -5,9 +5,13 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <cstring>
+#include <mutex>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -37,6 +41,8 @@ constexpr double kDying = 0.01;  // seconds that a worker is given to be gone on
 constexpr std::size_t kMostOutput = std::size_t{16} << 20;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 constexpr std::size_t kMostWarnings = 1000;
+constexpr auto kBeat = std::chrono::seconds(1);
+constexpr double kLeastWork = .001;  // seconds of processor time between two signs of work; a beat takes a tenth of it
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -155,6 +161,15 @@ class Listener {
       bytes = line_end + 1;
     }
   }
+  // Since the worker last showed that it works. Shows its silence from `shown` seconds on, and what it told last when
+  // it answers again.
+  double silence(double shown) {
+    const double seconds = seconds_since(sign_);
+    const bool silent = seconds > shown;
+    if (silent != silent_) tell(silent ? WorkerProgress{kNotAnswering, 0, {}, {}, {}, {}} : last_);
+    silent_ = silent;
+    return seconds;
+  }
   std::vector<std::string> warnings;
   std::string complaint;  // its last line that is neither progress nor a warning
 
@@ -163,18 +178,31 @@ class Listener {
     constexpr std::string_view kWarning = "limber: warning: ", kName = "limber: ";
     if (line_.starts_with('{')) {
       const auto json = nlohmann::json::parse(line_, nullptr, false);
+      if (json.is_object() && json.contains("processor_seconds"))
+        return on_beat(number(json, "processor_seconds").value_or(0));
       if (!json.is_object() || !json.contains("stage") || !json["stage"].is_string()) return;
       if (!json.contains("fraction") || !json["fraction"].is_number()) return;
       WorkerProgress now{json["stage"].get<std::string>(), json["fraction"].get<double>(), number(json, "angle_degrees"), number(json, "residual_mm"), number(json, "seconds_left"), {}};
       if (const auto iteration = number(json, "iteration")) now.iteration = static_cast<int>(*iteration);
-      if (progress_.cancelled()) return;
-      progress_.update(now.stage, now.fraction);
-      if (on_progress_) on_progress_(now);
+      sign_ = Clock::now();
+      last_ = std::move(now);
+      silent_ = false;
+      tell(last_);
     } else if (line_.starts_with(kWarning)) {
       if (warnings.size() < kMostWarnings) warnings.push_back(line_.substr(kWarning.size()));
     } else if (!line_.empty()) {
       complaint = line_.starts_with(kName) ? line_.substr(kName.size()) : line_;
     }
+  }
+  void on_beat(double processor_seconds) {
+    if (processor_seconds - worked_ < kLeastWork) return;
+    worked_ = processor_seconds;
+    sign_ = Clock::now();
+  }
+  void tell(const WorkerProgress& now) {
+    if (now.stage.empty() || progress_.cancelled()) return;
+    progress_.update(now.stage, now.fraction);
+    if (on_progress_) on_progress_(now);
   }
   static std::optional<double> number(const nlohmann::json& json, const char* key) {
     return json.contains(key) && json[key].is_number() ? std::optional(json[key].get<double>()) : std::nullopt;
@@ -182,6 +210,10 @@ class Listener {
   Progress& progress_;
   const std::function<void(const WorkerProgress&)>& on_progress_;
   std::string line_;
+  Clock::time_point sign_ = Clock::now();
+  double worked_ = 0;  // seconds of processor time at the last sign
+  bool silent_ = false;
+  WorkerProgress last_;
 };
 
 // A message of the worker's own, "what: where: what to do", as an Error of ours.
@@ -194,7 +226,8 @@ Error relay(const std::string& line, const Path& job) {
 Error death(int signal, const Path& job) {
   if (signal == SIGKILL)
     return {"the worker was ended by the system, most likely for lack of memory", job.string(), "use a coarser spacing, or close other programs"};
-  return {"the worker crashed", job.string() + ", " + ::strsignal(signal), "try other settings, and please report it with the job's files"};
+  return {"the worker crashed", job.string() + ", " + ::strsignal(signal),
+          "try other settings, and please report what you asked for"};
 }
 
 }  // namespace
@@ -218,7 +251,7 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
   };
   const auto take_err = [&](const char* bytes, std::size_t size) { listener.take(bytes, size); };
 
-  enum class Stop { None, Cancel, Time } stop = Stop::None;
+  enum class Stop { None, Cancel, Time, Silence } stop = Stop::None;
   const auto started = Clock::now();
   Clock::time_point asked, killed;
   bool out_open = true, err_open = true;
@@ -229,6 +262,8 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
     if (err_open && ends[1].revents) err_open = err.drain(take_err);
     if (stop == Stop::None) {
       if (progress.cancelled()) stop = Stop::Cancel;
+      const double silence = listener.silence(settings.silence_shown);
+      if (settings.silence_limit > 0 && silence > settings.silence_limit) stop = Stop::Silence;
       if (settings.time_limit > 0 && seconds_since(started) > settings.time_limit) stop = Stop::Time;
       if (stop == Stop::None) continue;
       asked = Clock::now();
@@ -248,12 +283,42 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
   if (stop == Stop::Time)
     throw Error("the worker took longer than " + std::to_string(static_cast<long>(settings.time_limit)) + " s", job_file.string(),
                 "raise the time limit, or use a coarser spacing");
+  if (stop == Stop::Silence)
+    throw Error("the worker stopped answering and was ended after " +
+                    std::to_string(static_cast<long>(settings.silence_limit)) + " s",
+                job_file.string(), "run it again; if that happens again use a coarser spacing, and check the disk");
   const int status = process.status();
   if (WIFSIGNALED(status)) throw death(WTERMSIG(status), job_file);
   if (WEXITSTATUS(status) == 3) throw Cancelled();
   output.pose_reached = WEXITSTATUS(status) != 4;
   if (WEXITSTATUS(status) != 0 && output.pose_reached) throw relay(listener.complaint, job_file);
   return output;
+}
+
+struct Heartbeat::Beating {
+  std::mutex mutex;
+  std::condition_variable_any changed;
+  std::jthread thread;
+};
+
+Heartbeat::Heartbeat() : beating_(std::make_unique<Beating>()) {
+  beating_->thread = std::jthread([beating = beating_.get()](const std::stop_token& stop) {
+    std::unique_lock lock(beating->mutex);
+    while (!beating->changed.wait_for(lock, stop, kBeat, [&] { return stop.stop_requested(); })) {
+      timespec spent{};
+      ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &spent);
+      char line[64];
+      const int size = std::snprintf(line, sizeof line, "{\"processor_seconds\": %lld.%06ld}\n",
+                                     static_cast<long long>(spent.tv_sec), spent.tv_nsec / 1000);
+      // In one piece, and past the buffers of a stream that a child of this process may hold locked.
+      if (::write(STDERR_FILENO, line, static_cast<std::size_t>(size)) < 0 && errno != EINTR) return;
+    }
+  });
+}
+
+Heartbeat::~Heartbeat() {
+  beating_->thread.request_stop();
+  beating_->changed.notify_all();
 }
 
 void become_worker(std::int64_t memory_limit_mb, bool yields, int parent) {

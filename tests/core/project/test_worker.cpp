@@ -148,7 +148,8 @@ TEST_CASE("worker: one that yields is given only what all others leave of the ma
 
 TEST_CASE("worker: a crash, a kill and a failure without a word become clear messages") {
   const TemporaryFolder folder;
-  CHECK(message_of(folder, "kill -SEGV $$") == "the worker crashed: job.json, Segmentation fault: try other settings, and please report it with the job's files");
+  CHECK(message_of(folder, "kill -SEGV $$") ==
+        "the worker crashed: job.json, Segmentation fault: try other settings, and please report what you asked for");
   CHECK(message_of(folder, "kill -ABRT $$").find("Aborted") != std::string::npos);
   CHECK(message_of(folder, "kill -KILL $$").find("lack of memory") != std::string::npos);
   CHECK(message_of(folder, "exit 1") == "the worker failed: job.json: it gave no reason");
@@ -156,6 +157,68 @@ TEST_CASE("worker: a crash, a kill and a failure without a word become clear mes
   CHECK(message_of(folder, "sleep 60", {.time_limit = 0.1}).starts_with("the worker took longer than"));
   Progress quiet;
   CHECK_THROWS_AS(run_worker("job.json", quiet, {.program = "/no/such/program"}), Error);
+}
+
+TEST_CASE("worker: one that is frozen is said not to answer, not to have a few seconds left, and is ended by a limit") {
+  const TemporaryFolder folder;
+  write_job(folder, "0.8");
+  std::vector<WorkerProgress> told;
+  WorkerSettings settings{
+      .silence_shown = 1.5,
+      .silence_limit = 3,
+      .program = script(folder, "echo $$ > " + (folder / "pid").string() + "\nexec " LIMBER_PROGRAM " \"$@\"")};
+  settings.on_progress = [&](const WorkerProgress& now) {
+    told.push_back(now);
+    pid_t id = 0;
+    if (std::ifstream(folder / "pid") >> id; told.size() == 1) ::kill(id, SIGSTOP);
+  };
+  Seen progress;
+  std::string message;
+  const auto began = Clock::now();
+  try {
+    run_worker(folder / "job.json", progress, settings);
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  CHECK(message.starts_with("the worker stopped answering and was ended after 3 s: "));
+  CHECK(Clock::now() - began < std::chrono::seconds(20));
+  REQUIRE(told.size() >= 2);
+  CHECK(told.back().stage == kNotAnswering);
+  CHECK_FALSE(told.back().seconds_left);
+  CHECK(progress.last == kNotAnswering);
+  CHECK_FALSE(alive(folder / "pid"));
+}
+
+TEST_CASE("worker: one that answers again is shown as before, and a slow one that works is not ended") {
+  const TemporaryFolder folder;
+  std::vector<std::string> stages;
+  Progress quiet;
+  const std::string text = R"(echo '{"stage": "solve", "fraction": 0.5, "seconds_left": 3}' >&2
+sleep 1.2
+echo '{"processor_seconds": 1.5}' >&2
+sleep 0.1)";
+  run_worker("job.json", quiet,
+             {.silence_shown = 0.6, .program = script(folder, text), .on_progress = [&](const WorkerProgress& now) {
+                stages.push_back(now.stage);
+              }});
+  CHECK(stages == std::vector<std::string>{"solve", kNotAnswering, "solve"});
+  const std::string works = R"(for i in 1 2 3 4 5 6 7; do echo "{\"processor_seconds\": $i}" >&2; sleep 0.2; done)";
+  CHECK(message_of(folder, works, {.silence_limit = 1}).empty());
+  // Beats without work are no sign of it.
+  const std::string waits = R"(while true; do echo '{"processor_seconds": 1.0}' >&2; sleep 0.1; done)";
+  CHECK(message_of(folder, waits, {.silence_limit = 0.5}).starts_with("the worker stopped answering"));
+}
+
+TEST_CASE("worker: a job that someone listens to tells every second what it has taken of the processor") {
+  const TemporaryFolder folder;
+  write_job(folder, "0.8");
+  const std::string job = std::string(LIMBER_PROGRAM) + " job " + (folder / "job.json").string() + " --progress json";
+  const auto said = [&](const std::string& more) {
+    return run_program("/bin/sh", {"-c", job + more + " & sleep 2.4; kill -KILL $!"})
+               .err.find("{\"processor_seconds\": ") != std::string::npos;
+  };
+  CHECK(said(" --parent $$"));
+  CHECK_FALSE(said(""));
 }
 
 #ifndef LIMBER_ADDRESS_SANITIZER
