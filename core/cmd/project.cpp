@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber project NAME.limber [inspect] [--json]           what is in it
-// limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P | --pose-name NAME] [--joint "J M=DEG"] [--motion F.bvh [--up y|z|auto]] [--seams S.nrrd] [--bone-map M.json]
-// limber project NAME.limber verify                        checks every byte; exit code 1 when something is wrong
-// limber project NAME.limber recover -o OUT.limber         with the edits that a crash left; of a damaged one, what is whole
-// limber project NAME.limber export PART -o OUT            volume, tissues, rig, weights, pose, motion, gltf, seams, bone-map, or a result by its name
+// limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P | --pose-name NAME]
+// [--joint "J M=DEG"] [--motion F.bvh [--up y|z|auto]] [--seams S.nrrd] [--bone-map M.json] limber project NAME.limber
+// verify                        checks every byte; exit code 1 when something is wrong limber project NAME.limber
+// recover [FILE] -o OUT.limber  with the edits that a crash left; of a damaged one, what is whole,
+//                                                          and what FILE, an earlier copy or the volume it was made
+//                                                          from, still has
+// limber project NAME.limber export PART -o OUT            volume, tissues, rig, weights, pose, motion, gltf, seams,
+// bone-map, or a result by its name
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <unordered_map>
 
 #include "core/base/error.h"
 #include "core/bones/bone_map.h"
@@ -113,6 +119,33 @@ void verify(const Options& options) {
   std::printf("%s is whole\n", options.file.c_str());
 }
 
+// The chunks of a document, kept in memory.
+class DocumentChunks final : public ChunkSource, public ChunkSink {
+ public:
+  explicit DocumentChunks(const Document& document) { DocumentWriter().write(document, *this, Packing::Quick); }
+  bool has(const ChunkHash& hash) override { return chunks_.contains(hash); }
+  void put(const ChunkHash& hash, const std::string& packed) override { chunks_.emplace(hash, packed); }
+  std::optional<std::string> find(const ChunkHash& hash) override {
+    const auto at = chunks_.find(hash);
+    return at == chunks_.end() ? std::nullopt : std::optional(at->second);
+  }
+
+ private:
+  std::unordered_map<ChunkHash, std::string, ChunkHash::Hasher> chunks_;
+};
+
+// An earlier copy of the project, whole or not, or the volume that it was made from.
+void add_help(CarvedChunks& chunks, const Options& options, Progress& progress) {
+  if (options.part.empty()) return;
+  if (is_project(options.part)) {
+    chunks.add(std::make_unique<CarvedChunks>(options.part, progress));
+    return;
+  }
+  Document document;
+  read_body_parts(options, document, progress);
+  chunks.add(std::make_unique<DocumentChunks>(document));
+}
+
 // Where the project cannot be read as it is, what is whole of it is put together again. `chunks` outlives the project.
 Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chunks, Progress& progress) {
   std::string failure;
@@ -131,7 +164,8 @@ Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chu
   chunks = std::make_unique<CarvedChunks>(options.file, progress);
   require(!chunks->latest_first().empty(), "nothing of a project was found", options.file,
           "name a .limber file, or open an earlier copy");
-  warn({failure});
+  warn(failure);
+  add_help(*chunks, options, progress);
   Project project = put_together(*chunks, options.file, progress);
   std::printf("%zu chunks of the damaged project are whole; what they hold is kept\n", chunks->latest_first().size());
   return project;
@@ -223,7 +257,10 @@ void add_project(CLI::App& app) {
   command->add_option("NAME", options->file, "NAME.limber")->required();
   command->add_option("ACTION", options->action, "inspect (as without), create, verify, recover or export")
       ->check(CLI::IsMember({"inspect", "info", "create", "verify", "recover", "export"}));
-  command->add_option("PART", options->part, "of create: a label volume; of export: volume, tissues, rig, weights, pose, motion, gltf, seams, bone-map, or a result's name");
+  command->add_option("PART", options->part,
+                      "of create: a label volume; of recover: an earlier copy of the project, or the volume that it "
+                      "was made from, which may have what is lost; of export: volume, tissues, rig, weights, pose, "
+                      "motion, gltf, seams, bone-map, or a result's name");
   command->add_flag("--json", options->json, "inspect as JSON");
   command->add_option("--tissues", options->tissues, "of create: tissue table");
   command->add_option("--rig", options->rig, "of create: rig");

@@ -219,8 +219,10 @@ void CarvedChunks::keep_whole(Progress& progress) {
 }
 
 std::optional<std::string> CarvedChunks::find(const ChunkHash& hash) {
-  const auto found = cells_.find(hash);
-  return found == cells_.end() ? std::nullopt : packed(found->second[0]);
+  if (const auto found = cells_.find(hash); found != cells_.end()) return packed(found->second[0]);
+  for (const auto& other : others_)
+    if (auto bytes = other->find(hash)) return bytes;
+  return std::nullopt;
 }
 
 std::optional<std::string> CarvedChunks::state(const std::string& name) const {

@@ -8,9 +8,11 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "core/base/file.h"
@@ -27,8 +29,11 @@ class CarvedChunks final : public ChunkSource {
   CarvedChunks(const CarvedChunks&) = delete;
   CarvedChunks& operator=(const CarvedChunks&) = delete;
 
-  // Packed; nothing unless it is whole.
+  // Packed; nothing unless it is whole, here or in what was added.
   std::optional<std::string> find(const ChunkHash& hash) override;
+  // Chunks from elsewhere take the place of those that are lost here: of an earlier copy, or of what the project was
+  // made from.
+  void add(std::unique_ptr<ChunkSource> other) { others_.push_back(std::move(other)); }
   // All that are whole, those first that were written last.
   const std::vector<ChunkHash>& latest_first() const { return latest_first_; }
   // A row of the table of states ("root", "editor", ...), where it is left.
@@ -55,6 +60,7 @@ class CarvedChunks final : public ChunkSource {
   std::unordered_map<ChunkHash, std::vector<Cell>, ChunkHash::Hasher> cells_;  // after keep_whole() one each
   std::vector<ChunkHash> latest_first_;
   std::map<std::string, std::string> states_;
+  std::vector<std::unique_ptr<ChunkSource>> others_;
 };
 
 }  // namespace limber

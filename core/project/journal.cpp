@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
 #include "core/project/bytes.h"
+#include "core/project/carved_chunks.h"
 
 namespace limber {
 
@@ -273,6 +274,48 @@ std::vector<Recoverable> all_recoverable(const Path& folder) {
   return all;
 }
 
+namespace {
+
+// The journal's chunks, and behind them the project's.
+class Both final : public ChunkSource {
+ public:
+  Both(JournalReader& journal, ChunkSource* saved) : journal_(journal), saved_(saved) {}
+  std::optional<std::string> find(const ChunkHash& hash) override {
+    if (auto packed = journal_.find(hash)) return packed;
+    return saved_ ? saved_->find(hash) : std::nullopt;
+  }
+
+ private:
+  JournalReader& journal_;
+  ChunkSource* saved_;
+};
+
+// The last edit that can be read within the limits.
+bool read_latest(const JournalReader& reader, ChunkSource& source, const ReadLimits& limits, const Path& journal,
+                 Recovered& recovered, Progress& progress) {
+  const auto& edits = reader.edits();
+  for (auto edit = edits.rbegin(); edit != edits.rend(); ++edit) {
+    try {
+      std::vector<std::string> warnings;
+      Document document = read_document(edit->root, source, journal.string(), warnings, limits, progress);
+      if (limits.leave_out_damaged && document == Document{}) continue;
+      recovered.document = std::move(document);
+      recovered.project = reader.project();
+      recovered.label = edit->label;
+      recovered.warnings.insert(recovered.warnings.end(), warnings.begin(), warnings.end());
+      if (edit != edits.rbegin())
+        recovered.warnings.push_back("the last " + std::to_string(edit - edits.rbegin()) +
+                                     " edits could not be read: parts of the project are missing");
+      return true;
+    } catch (const Error&) {
+      continue;  // an earlier one may be whole
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 Recovered recover(const Path& journal, Progress& progress) {
   JournalReader reader(journal);
   std::unique_ptr<ProjectChunks> saved;
@@ -282,32 +325,20 @@ Recovered recover(const Path& journal, Progress& progress) {
   } catch (const Error& error) {
     recovered.warnings.push_back(error.what());
   }
-  struct Both final : ChunkSource {
-    JournalReader& journal;
-    ChunkSource* saved;
-    Both(JournalReader& the_journal, ChunkSource* the_saved) : journal(the_journal), saved(the_saved) {}
-    std::optional<std::string> find(const ChunkHash& hash) override {
-      if (auto packed = journal.find(hash)) return packed;
-      return saved ? saved->find(hash) : std::nullopt;
-    }
-  } both(reader, saved.get());
+  Both both(reader, saved.get());
+  if (read_latest(reader, both, {}, journal, recovered, progress)) return recovered;
 
-  const auto& edits = reader.edits();
-  for (auto edit = edits.rbegin(); edit != edits.rend(); ++edit) {
-    try {
-      std::vector<std::string> warnings;
-      recovered.document = read_document(edit->root, both, journal.string(), warnings, {}, progress);
-      recovered.project = reader.project();
-      recovered.label = edit->label;
-      recovered.warnings.insert(recovered.warnings.end(), warnings.begin(), warnings.end());
-      if (edit != edits.rbegin())
-        recovered.warnings.push_back("the last " + std::to_string(edit - edits.rbegin()) + " edits could not be read: parts of the project are missing");
-      return recovered;
-    } catch (const Error&) {
-      continue;  // an earlier one may be whole
-    }
+  // The project it builds on is damaged: what is whole of it, and of the last edit that still has a part.
+  std::error_code error;
+  if (fs::is_regular_file(reader.project(), error)) {
+    CarvedChunks carved(reader.project(), progress);
+    Both with_carved(reader, &carved);
+    ReadLimits limits;
+    limits.leave_out_damaged = true;
+    if (read_latest(reader, with_carved, limits, journal, recovered, progress)) return recovered;
   }
-  throw Error("no edit can be recovered", journal.string(), edits.empty() ? "the journal is empty" : "the project it builds on is missing or damaged");
+  throw Error("no edit can be recovered", journal.string(),
+              reader.edits().empty() ? "the journal is empty" : "the project it builds on is missing or damaged");
 }
 
 void discard(const Path& journal, const Path& folder) {

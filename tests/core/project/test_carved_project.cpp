@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/project/carved_project.h"
+#include "core/project/session.h"
 #include "tests/support/documents.h"
 #include "tests/support/program.h"
 
@@ -223,4 +224,77 @@ TEST_CASE(
   CHECK(run.exit_code == 1);
   CHECK(run.err.find("nothing of a project was found") != std::string::npos);
   CHECK_FALSE(fs::exists(folder / "out.limber"));
+}
+
+TEST_CASE("carved project: the volume it was made from, or an earlier copy, gives back what was lost") {
+  const TemporaryFolder folder;
+  const std::string whole = folder / "whole.limber", hit = folder / "hit.limber", volume = folder / "volume.nrrd";
+  REQUIRE(run_limber({"phantom", "arm", "--spacing", "4", "-o", folder.path()}).exit_code == 0);
+  const std::string rig = folder / "rig.json", weights = folder / "w.nrrd", tissues = folder / "tissues.json";
+  REQUIRE(run_limber({"weights", volume, "--rig", rig, "--tissues", tissues, "--method", "rigid", "-o", weights})
+              .exit_code == 0);
+  REQUIRE(run_limber({"project", whole, "create", volume, "--rig", rig, "--tissues", tissues, "--weights", weights})
+              .exit_code == 0);
+  const Document document = read_project(whole).document;
+  const std::size_t bytes_of_volume = document.volume->voxels.size() * sizeof(Label);
+  const ChunkHash first = hash_of(
+      {reinterpret_cast<const char*>(document.volume->voxels.data()), std::min<std::size_t>(bytes_of_volume, 1 << 20)});
+  std::string bytes = read_file(whole);
+  // The beginning of the packed volume is bent.
+  for (const auto& row : rows(whole, "SELECT hash, packed FROM chunk"))
+    if (std::equal(row[0].begin(), row[0].end(), reinterpret_cast<const char*>(first.bytes.data()))) {
+      const std::size_t at = bytes.find(row[1].substr(0, 200));
+      REQUIRE(at != std::string::npos);
+      for (std::size_t i = at + 20; i < at + 40; ++i) bytes[i] ^= 0x55;
+    }
+  put_bytes(hit, bytes);
+  const auto recovered = [&](const std::string& help) {
+    std::vector<std::string> words{"project", hit, "recover", "-o", folder / "out.limber", "--replace"};
+    if (!help.empty()) words.insert(words.begin() + 3, help);
+    const ProgramRun run = run_limber(words);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return read_project(folder / "out.limber").document;
+  };
+  CHECK_FALSE(recovered("").weights);
+  for (const std::string& help : {volume, whole}) {
+    const Document back = recovered(help);
+    REQUIRE(back.volume);
+    REQUIRE(back.weights);
+    CHECK(back.volume->voxels == document.volume->voxels);
+    CHECK(*back.weights == *document.weights);
+  }
+}
+
+TEST_CASE("carved project: edits that a crash left come back although pages of the project they build on are lost") {
+  const TemporaryFolder folder;
+  const Path project = folder / "a.limber";
+  DocumentWriter writer;
+  const Document document = rich_document(3, 1);
+  create_project({.document = document}, project, writer);
+  Project opened;
+  {
+    const auto session = Session::open(project, opened, no_progress(), {.edits_folder = folder / "state"});
+    Pose pose = *opened.document.pose;
+    pose.rotation[1] = {0.6, 0.8, 0, 0};
+    opened.document.pose = std::make_shared<const Pose>(pose);
+    session->keep(opened.document, "Turn");
+    REQUIRE(session->flush(30));
+  }
+  const auto pages = pages_of_chunks(project);
+  const ChunkHash second =
+      hash_of({reinterpret_cast<const char*>(document.volume->voxels.data()) + (1 << 20), 1 << 20});
+  std::string bytes = read_file(project);
+  const int lost = *std::next(pages.at(std::string(second.bytes.begin(), second.bytes.end())).rbegin());
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>((lost - 1) * kPage), kPage, '\0');
+  put_bytes(project, bytes);
+  const ProgramRun run = run_limber({"project", project, "recover", "-o", folder / "out.limber"});
+  INFO(run.out, run.err);
+  REQUIRE(run.exit_code == 0);
+  CHECK(run.out == "edits recovered up to: Turn\n");
+  CHECK(run.err.find("1 of 3 blocks of the volume are lost") != std::string::npos);
+  const Document back = read_project(folder / "out.limber").document;
+  REQUIRE(back.pose);
+  CHECK(back.pose->rotation[1] == opened.document.pose->rotation[1]);
+  CHECK(back.volume);
 }
