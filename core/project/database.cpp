@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/project/database.h"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <new>
@@ -37,15 +38,21 @@ constexpr std::array<std::pair<int, int>, 9> kSwitches = {{{SQLITE_DBCONFIG_DEFE
                                                            {SQLITE_DBCONFIG_DQS_DDL, 0},
                                                            {SQLITE_DBCONFIG_DQS_DML, 0}}};
 
-// Whether another program has set the database to write-ahead logging, which Limber never does. Asks SQLite's own file:
-// a descriptor of ours would take the locks of this process's other connections with it when it is closed.
-bool uses_wal(sqlite3* handle) {
+// Read by SQLite's own file: see Database::first_bytes.
+std::string first_bytes_of(sqlite3* handle, int size) {
   sqlite3_file* file = nullptr;
-  std::array<char, 20> header{};
-  if (sqlite3_file_control(handle, "main", SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK || !file->pMethods)
-    return false;
-  if (file->pMethods->xRead(file, header.data(), header.size(), 0) != SQLITE_OK) return false;
-  return header[18] == 2 || header[19] == 2;
+  sqlite3_int64 there = 0;
+  if (sqlite3_file_control(handle, "main", SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK || !file->pMethods) return "";
+  if (file->pMethods->xFileSize(file, &there) != SQLITE_OK) return "";
+  std::string bytes(static_cast<std::size_t>(std::min<sqlite3_int64>(there, size)), '\0');
+  const int code = file->pMethods->xRead(file, bytes.data(), static_cast<int>(bytes.size()), 0);
+  return code == SQLITE_OK ? bytes : "";
+}
+
+// Whether another program has set the database to write-ahead logging, which Limber never does.
+bool uses_wal(sqlite3* handle) {
+  const std::string header = first_bytes_of(handle, 20);
+  return header.size() == 20 && (header[18] == 2 || header[19] == 2);
 }
 
 // A journal or a write-ahead log of SQLite's, by its first bytes; one that has ended is empty or begins with zeros.
@@ -112,6 +119,19 @@ Database::Database(const Path& path, Mode mode) : where_(path.string()), vfs_(pa
     sqlite3_close(handle_);
     throw;
   }
+}
+
+std::string Database::first_bytes(const Path& path, int size) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return "";
+  const NamedFileVfs vfs(path);
+  sqlite3* handle = nullptr;
+  std::string bytes;
+  if (sqlite3_open_v2(vfs.database().c_str(), &handle, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX,
+                      vfs.name().c_str()) == SQLITE_OK)
+    bytes = first_bytes_of(handle, size);
+  sqlite3_close(handle);
+  return bytes;
 }
 
 void Database::distrust() {

@@ -37,6 +37,10 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
+  // The first bytes of the file, as many as there are; nothing where it cannot be read. Not with a descriptor of our
+  // own: when that is closed the system takes the locks of this process's connections, and a save would lose its own.
+  static std::string first_bytes(const Path& path, int size);
+
   // Rolls back what a save that was cut off has left beside `path`, and removes a journal that belongs to no database
   // any more, so that a new file may take the name. throws Error when the database is in use, or when what stands
   // beside it is no journal of Limber's.

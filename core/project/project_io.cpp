@@ -3,7 +3,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <random>
 
 #include <fcntl.h>
@@ -154,11 +153,14 @@ void sync(const Path& path, int flags) {
 }  // namespace
 
 bool is_project(const Path& path) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) return false;
-  std::ifstream in(path, std::ios::binary);
-  char header[72];
-  return in.read(header, sizeof header) && std::memcmp(header, "SQLite format 3", 16) == 0 && std::memcmp(header + 68, "Limb", 4) == 0;
+  constexpr int kHeader = 72;
+  try {
+    const std::string header = Database::first_bytes(path, kHeader);
+    return header.size() == kHeader && header.starts_with("SQLite format 3") &&
+           std::memcmp(header.data() + 68, "Limb", 4) == 0;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 Project read_project(const Path& path, Progress& progress, const ReadLimits& limits) {

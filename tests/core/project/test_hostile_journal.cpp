@@ -232,3 +232,21 @@ TEST_CASE(
   CHECK(same_contents(read_project(copy).document, large_document(1)));
   CHECK_FALSE(fs::exists(copy.string() + "-wal"));
 }
+
+TEST_CASE("project locks: looking at a project while it is saved takes no lock from the save") {
+  const TemporaryFolder folder;
+  const Path project = folder / "x.limber";
+  make_project(project);
+  Database saving(project, Database::Mode::Write);
+  saving.run("BEGIN EXCLUSIVE");
+  CHECK(is_project(project));
+  const ProgramRun other = run_limber({"info", project});
+  CHECK(other.exit_code == 1);
+  CHECK(other.err.find("another program is using the project") != std::string::npos);
+  saving.run("ROLLBACK");
+  CHECK(run_limber({"info", project}).exit_code == 0);
+  CHECK_FALSE(is_project(folder.path()));
+  CHECK_FALSE(is_project(folder / "none"));
+  put_bytes(folder / "short", "SQLite format 3");
+  CHECK_FALSE(is_project(folder / "short"));
+}
