@@ -40,9 +40,6 @@ int run(CLI::App& app, int argc, char** argv);
 struct PoseNotReached {};
 struct GateFailed {};
 
-// Throws Error when two of the outputs are the same file; "" is none.
-void check_distinct(const std::vector<std::string>& outputs);
-
 // The text without control characters, which could break a message into two.
 std::string one_line(std::string text);
 

@@ -4,12 +4,14 @@
 
 #include "core/base/error.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/cmd/convert_rig.h"
 #include "core/cmd/surface_options.h"
 #include "core/cmd/tissue_options.h"
 #include "core/deck/decks.h"
 #include "core/mesh/surface_files.h"
 #include "core/volume/tissue_table.h"
+#include "core/volume/volume_files.h"
 #include "core/volume/volume_io.h"
 
 namespace limber::cmd {
@@ -54,6 +56,12 @@ void convert_volume(const Options& options) {
   write_volume(file.volume, options.out, file.tissues, file.type);
 }
 
+OptionFiles files_of_output(const std::string& name) {
+  OptionFiles files{{}, files_written_as(name)};
+  for (const Path& beside : companions(deck_format(name), name)) files.written.push_back(beside);
+  return files;
+}
+
 void convert(const Options& options) {
   const Path in = options.in;
   if (is_volume_path(in)) return convert_volume(options);
@@ -66,7 +74,7 @@ void add_convert(CLI::App& app) {
   auto* command = app.add_subcommand("convert", "a volume, rig or label table in another format, or a volume as surfaces or as what a simulation takes, by file name");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "a volume, a folder with DICOM images, a rig or a label table")->required();
-  command->add_option("OUT", options->out, "its extension says the format: volumes .nrrd .mha .nii.gz .txt ..., surfaces .obj .glb .stl .ply, simulations .xml (openEMS) .csxcad.h5 .gprmax.h5 .dat (ICRP 110)")->required();
+  writes(command->add_option("OUT", options->out, "its extension says the format: volumes .nrrd .mha .nii.gz .txt ..., surfaces .obj .glb .stl .ply, simulations .xml (openEMS) .csxcad.h5 .gprmax.h5 .dat (ICRP 110)"), files_of_output)->required();
   add_material_options(*command, options->material);
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
   command->callback([options] { convert(*options); });

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/study/study_results.h"
 #include "core/study/text.h"
 
@@ -71,6 +72,12 @@ void run(const Options& options, const StartPictures& pictures) {
   }
   if (failed) throw Error(std::to_string(failed) + " of " + std::to_string(outcomes.size()) + " cells failed", options.out, "see the lines above, then run the same again: it computes only what is missing");
 }
+
+OptionFiles files_of_folder(const std::string& folder) {
+  OptionFiles files;
+  for (const char* name : {"cells.csv", "cells.json", "report.html"}) files.written.push_back(Path(folder) / name);
+  return files;
+}
 }  // namespace
 
 void add_experiment(CLI::App& app, const StartPictures& pictures) {
@@ -78,7 +85,7 @@ void add_experiment(CLI::App& app, const StartPictures& pictures) {
   auto options = std::make_shared<Options>();
   command->add_option("STUDY", options->study, "description (JSON), or arm: the elbow at 2, 3, 4 mm, by every technique")->required();
   command->add_option("DIR", options->folder, "for arm: a folder with man-arm-2mm.mha and its armature (default: the procedural arm)");
-  command->add_option("-o,--output", options->out, "folder for cells.csv, cells.json, report.html and all that was computed; made if absent")->required();
+  writes(command->add_option("-o,--output", options->out, "folder for cells.csv, cells.json, report.html and all that was computed; made if absent"), files_of_folder)->required();
   command->add_option("--methods", options->methods, "lbs, dqs, fem, fem-contact, mix, and each with -mass-exact behind it (default: as the description says; else the first four)")->delimiter(',')->type_name("M,M");
   command->add_option("--shard", options->shard, "computes every n-th cell only, from the i-th on")->type_name("i/n");
   add_run_options(*command, options->run);

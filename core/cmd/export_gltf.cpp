@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/cmd/pose_options.h"
 #include "core/pose/gltf_export.h"
 #include "core/skin/weights_io.h"
@@ -56,7 +57,7 @@ void add_export_gltf(CLI::App& app) {
   add_rest_options(*command, options->rests, motion, "");
   command->add_flag("--root-motion", options->root_motion, "let the body travel as the motion does")->needs(motion);
   command->add_option("--step", options->settings.step, "mm between the surface's points (default: 1/400 of the longest side)")->type_name("MM")->check(CLI::PositiveNumber);
-  command->add_option("-o,--output", options->output, "OUT.glb")->required();
+  writes(command->add_option("-o,--output", options->output, "OUT.glb"))->required();
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
   command->callback([options] { export_gltf(*options); });
 }

@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/rig/armature_io.h"
 
 namespace limber::cmd {
@@ -53,7 +54,7 @@ void add_fit_joint(CLI::App& app) {
   add_body_options(*command, options->body);
   command->add_option("--bone", options->bone, "the bone below the joint")->required();
   command->add_option("--range", options->range, "angles in degrees that must be free, e.g. 0,90")->delimiter(',')->expected(2);
-  command->add_option("-o,--output", options->output, "rig to write (.json keeps the hinge)")->required();
+  writes(command->add_option("-o,--output", options->output, "rig to write (.json keeps the hinge)"))->required();
   add_run_options(*command, options->run);
   command->callback([options] { run(*options); });
 }

@@ -12,6 +12,7 @@
 #include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/templates.h"
 #include "core/volume/volume_io.h"
@@ -70,7 +71,7 @@ void run(const Options& options) {
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
   check_armature_writable(options.output);
-  check_distinct({options.output, options.report});
+  if (!options.report.empty()) check_place(options.report);
   const VolumeFile file = read_volume(options.volume, progress);
   warn(file.warnings);
   std::optional<TissueTable> user;
@@ -95,8 +96,8 @@ void add_fit_rig(CLI::App& app) {
   command->add_option("--template", options->rig, "arm, hand, leg, adult, child, quadruped, auto, or a rig file (JSON, Bender .vtk or .arm, BVH)")->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
   command->add_option("--bones", options->bones, "labels that are bone, as in the file")->delimiter(',')->type_name("L,L");
-  command->add_option("-o,--output", options->output, "rig to write (.json keeps joint limits)")->required();
-  command->add_option("--report", options->report, "how each joint was found, as JSON");
+  writes(command->add_option("-o,--output", options->output, "rig to write (.json keeps joint limits)"))->required();
+  writes(command->add_option("--report", options->report, "how each joint was found, as JSON"));
   add_run_options(*command, options->run);
   command->callback([options] { run(*options); });
 }

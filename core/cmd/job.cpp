@@ -17,6 +17,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/project/worker.h"
 
 namespace limber::cmd {
@@ -95,6 +96,8 @@ void run(const Options& options) {
 
   CLI::App app;
   kCommands.at(words.front())(app);
+  CLI::App* command = app.get_subcommand(words.front());
+  command->parse_complete_callback([=] { check_files(*command, where); });
   std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
   try {
     app.parse(words);

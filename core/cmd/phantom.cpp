@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/rig/armature_io.h"
 #include "core/volume/phantom.h"
 #include "core/volume/volume_io.h"
@@ -36,6 +37,12 @@ void make_phantom(const Options& options) {
   write_bvh(phantom.motion, folder / "motion.bvh");
   progress.update("write", 1);
 }
+
+OptionFiles files_of_folder(const std::string& folder) {
+  OptionFiles files;
+  for (const char* name : {"volume.nrrd", "tissues.json", "rig.json", "motion.bvh"}) files.written.push_back(Path(folder) / name);
+  return files;
+}
 }  // namespace
 
 void add_phantom(CLI::App& app) {
@@ -43,7 +50,7 @@ void add_phantom(CLI::App& app) {
   auto options = std::make_shared<Options>();
   command->add_option("SUBJECT", options->subject, "arm or body")->required()->check(CLI::IsMember({"arm", "body"}));
   command->add_option("--spacing", options->spacing, "size of a voxel in mm, 0.5 to 10 (default: arm 2, body 4)");
-  command->add_option("-o,--output", options->folder, "folder for the four files; made if absent")->required();
+  writes(command->add_option("-o,--output", options->folder, "folder for the four files; made if absent"), files_of_folder)->required();
   add_run_options(*command, options->run);
   command->callback([options] { make_phantom(*options); });
 }

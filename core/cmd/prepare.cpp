@@ -15,6 +15,7 @@
 #include "core/base/parallel.h"
 #include "core/bones/bone_parts.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/rig/armature_io.h"
 #include "core/seams/find_seams.h"
 #include "core/seams/seams_io.h"
@@ -147,7 +148,6 @@ void prepare(const Options& options) {
   check_writable(options.out);
   if (!options.statistics.empty()) check_place(options.statistics);
   if (!options.seams.empty()) check_writable(options.seams);
-  check_distinct({options.out, options.statistics, options.seams});
   VolumeFile file = read_volume(options.in, progress);
   warn(file.warnings);
   TissueTable user;
@@ -180,7 +180,7 @@ void add_prepare(CLI::App& app) {
       "--drop-specks, --crop, --pad, --close-skin, --seams, --statistics");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "label volume")->required();
-  command->add_option("-o,--output", options->out, "label volume to write; its format by extension")->required();
+  writes(command->add_option("-o,--output", options->out, "label volume to write; its format by extension"))->required();
   command->add_option("--tissues", options->tissues, "label table with names and densities");
   command->add_option("--orient", options->orientation, "turn voxel axes to these directions exactly: LPS, RAS ...");
   command->add_option("--flip", options->flip, "mirror the body along a world axis")->check(CLI::IsMember({"x", "y", "z"}));
@@ -196,11 +196,11 @@ void add_prepare(CLI::App& app) {
                                     "bones and air inside the body stay, and where the volume's border cuts the body it stays open")
                     ->check(CLI::IsMember({"inward", "outward"}));
   command->add_option("--skin-label", options->skin_label, "the value or name that new skin gets (default: the nearest tissue that is skin)")->needs(close);
-  auto* seams = command->add_option("--seams", options->seams, "finds where limbs touch without being one (hand on hip, thigh on thigh) and writes the faces between them as a label volume: 1 towards x, 2 towards y, 4 towards z, summed");
+  auto* seams = writes(command->add_option("--seams", options->seams, "finds where limbs touch without being one (hand on hip, thigh on thigh) and writes the faces between them as a label volume: 1 towards x, 2 towards y, 4 towards z, summed"));
   auto* rig = command->add_option("--rig", options->rig, "seams: the rig that says what the limbs are");
   seams->needs(rig);
   rig->needs(seams);
-  command->add_option("--statistics", options->statistics, "CSV file: per label voxels, volume, mass, centre, box, pieces, surface");
+  writes(command->add_option("--statistics", options->statistics, "CSV file: per label voxels, volume, mass, centre, box, pieces, surface"));
   add_run_options(*command, options->run);
   command->callback([options] { prepare(*options); });
 }

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
-#include <set>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "core/base/file.h"
 #include "core/cmd/command.h"
 
 namespace limber::cmd {
@@ -23,13 +20,6 @@ void on_interrupt(int) {
   if (leaves_at_once) ::_exit(3);
 }
 }  // namespace
-
-void check_distinct(const std::vector<std::string>& outputs) {
-  std::set<Path> places;
-  for (const std::string& output : outputs)
-    if (!output.empty() && !places.insert(std::filesystem::weakly_canonical(output)).second)
-      throw Error("two outputs would be the same file", output, "give each a name of its own");
-}
 
 std::string one_line(std::string text) {
   for (char& c : text)

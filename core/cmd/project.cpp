@@ -17,6 +17,7 @@
 #include "core/base/error.h"
 #include "core/bones/bone_map.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/cmd/info_project.h"
 #include "core/cmd/pose_options.h"
 #include "core/pose/gltf_export.h"
@@ -254,7 +255,9 @@ void run(const Options& options) {
 void add_project(CLI::App& app) {
   auto* command = app.add_subcommand("project", "creates, inspects, verifies, recovers and takes parts out of a project file");
   auto options = std::make_shared<Options>();
-  command->add_option("NAME", options->file, "NAME.limber")->required();
+  writes(command->add_option("NAME", options->file, "NAME.limber"), [options](const std::string& name) {
+    return options->action == "create" ? OptionFiles{{}, {name}} : OptionFiles{{name}, {}};
+  })->required();
   command->add_option("ACTION", options->action, "inspect (as without), create, verify, recover or export")
       ->check(CLI::IsMember({"inspect", "info", "create", "verify", "recover", "export"}));
   command->add_option("PART", options->part,
@@ -269,7 +272,7 @@ void add_project(CLI::App& app) {
   add_up_option(*command, options->up, command->add_option("--motion", options->motion, "of create: BVH"));
   command->add_option("--seams", options->seams, "of create: where tissue touches without being one, as 'limber prepare --seams' writes it");
   command->add_option("--bone-map", options->bone_map, "of create: JSON that says which rig bone a label follows");
-  command->add_option("-o,--output", options->output, "of recover and export: the file to write");
+  writes(command->add_option("-o,--output", options->output, "of recover and export: the file to write"));
   command->add_flag("--replace", options->replace, "of create and recover: write over a file of that name");
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
   command->callback([options] { run(*options); });

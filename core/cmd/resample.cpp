@@ -14,6 +14,7 @@
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/cmd/glide_options.h"
 #include "core/cmd/pose_options.h"
 #include "core/cmd/seam_options.h"
@@ -31,6 +32,7 @@
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
 #include "core/volume/landmarks.h"
+#include "core/volume/volume_files.h"
 
 namespace limber::cmd {
 
@@ -61,12 +63,22 @@ Companion landmark_paths(const std::string& request) { return companion(request,
 
 constexpr const char* kFrame = "{frame}";
 
+struct FrameRange {
+  int first = 0, last = 0, step = 1;
+};
+
 // Of FIRST:LAST[:STEP].
-std::vector<int> frames_of(const std::string& request, int frame_count) {
-  int first = 0, last = 0, step = 1, read = 0;
-  const int fields = std::sscanf(request.c_str(), "%d:%d%n:%d%n", &first, &last, &read, &step, &read);
-  if (fields < 2 || std::size_t(read) != request.size() || first < 0 || last < first || step < 1)
+FrameRange frame_range_of(const std::string& request) {
+  FrameRange range;
+  int read = 0;
+  const int fields = std::sscanf(request.c_str(), "%d:%d%n:%d%n", &range.first, &range.last, &read, &range.step, &read);
+  if (fields < 2 || std::size_t(read) != request.size() || range.first < 0 || range.last < range.first || range.step < 1)
     throw Error("these are no frames", "--frames " + request, "write FIRST:LAST or FIRST:LAST:STEP, as in --frames 0:90:10");
+  return range;
+}
+
+std::vector<int> frames_of(const std::string& request, int frame_count) {
+  const auto [first, last, step] = frame_range_of(request);
   if (last >= frame_count)
     throw Error("the motion ends before that frame", "--frames " + request, "its last frame is " + std::to_string(frame_count - 1));
   std::vector<int> frames;
@@ -74,14 +86,20 @@ std::vector<int> frames_of(const std::string& request, int frame_count) {
   return frames;
 }
 
-// The same request for one frame of a sequence, each output with the frame's number in its name.
-Options of_frame(const Options& options, int frame) {
+// A name with the frame's number in it.
+std::string of_frame(std::string name, int frame) {
   char number[16];
   std::snprintf(number, sizeof number, "%04d", frame);
+  for (size_t at = 0; (at = name.find(kFrame, at)) != std::string::npos;) name.replace(at, std::string(kFrame).size(), number);
+  return name;
+}
+
+// The same request for one frame of a sequence, each output with the frame's number in its name.
+Options of_frame(const Options& options, int frame) {
   Options one = options;
   one.pose.frame = frame;
   for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.overlap, &one.mesh_out, &one.landmarks})
-    for (size_t at = 0; (at = output->find(kFrame, at)) != std::string::npos;) output->replace(at, std::string(kFrame).size(), number);
+    *output = of_frame(*output, frame);
   return one;
 }
 
@@ -89,6 +107,42 @@ std::string mesh_file(const std::string& name, const char* ending) {
   Path path(name);
   if (path.extension() == ".node" || path.extension() == ".ele") path.replace_extension();
   return path.string() + ending;
+}
+
+// A longer sequence is cut where its files are compared with the inputs: no motion is that long.
+constexpr int kMostFrames = 100000;
+
+// The names that `name` stands for: one a frame where it holds {frame}.
+std::vector<std::string> names_of(const Options& options, const std::string& name) {
+  if (options.frames.empty() || name.find(kFrame) == std::string::npos) return {name};
+  const auto [first, last, step] = frame_range_of(options.frames);
+  std::vector<std::string> names;
+  for (std::int64_t frame = first; frame <= last && names.size() < kMostFrames; frame += step) names.push_back(of_frame(name, int(frame)));
+  return names;
+}
+
+// Tells the files of an output option, whose value gets each of the endings; with none, what a volume of that name is.
+FilesOfValue files_written_to(const std::shared_ptr<Options>& options, const std::vector<const char*>& endings = {}) {
+  return [options, endings](const std::string& value) {
+    OptionFiles files;
+    for (const std::string& name : names_of(*options, value)) {
+      for (const char* ending : endings) files.written.emplace_back(mesh_file(name, ending));
+      if (endings.empty())
+        for (const Path& file : files_written_as(name)) files.written.push_back(file);
+    }
+    return files;
+  };
+}
+
+// Of IN=OUT.
+FilesOfValue files_of_pair(const std::shared_ptr<Options>& options) {
+  return [options](const std::string& value) {
+    const Companion pair = companion(value, "input", "IN=OUT");
+    OptionFiles files{{pair.from}, {}};
+    for (const std::string& name : names_of(*options, pair.to))
+      for (const Path& file : files_written_as(name)) files.written.push_back(file);
+    return files;
+  };
 }
 
 // Before anything is computed.
@@ -104,8 +158,6 @@ void check_outputs(const Options& options) {
   if (!options.steps.empty()) others.insert(others.end(), {options.steps + ".mesh", options.steps + ".step"});
   for (const std::string& other : others)
     if (!other.empty()) check_place(other);
-  outputs.insert(outputs.end(), others.begin(), others.end());
-  check_distinct(outputs);
 }
 
 // Kept for the report, and shown at once.
@@ -451,23 +503,23 @@ void add_resample(CLI::App& app) {
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));
   command->add_option("--mesher", options->mesher, "fem: who fills the body's surface with tets: lattice (default) or tetgen")->check(CLI::IsMember({"lattice", "tetgen"}));
-  command->add_option("--mesh-out", options->mesh_out, "fem: the posed mesh as NAME.node and NAME.ele, with the tissue of each tet, and NAME.material for particle codes")->type_name("NAME");
+  writes(command->add_option("--mesh-out", options->mesh_out, "fem: the posed mesh as NAME.node and NAME.ele, with the tissue of each tet, and NAME.material for particle codes"), files_written_to(options, {".node", ".ele", ".material"}))->type_name("NAME");
   command->add_option("--mesh-unit", options->mesh_unit, "fem: of the mesh: mm, or cm as in the phantoms of ICRP 145")->check(CLI::IsMember({"mm", "cm"}));
-  command->add_option("--steps", options->steps, "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step")->type_name("NAME");
+  writes(command->add_option("--steps", options->steps, "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step"), files_written_to(options, {".mesh", ".step"}))->type_name("NAME");
   add_glide_option(*command, options->glide);
   command->add_flag("--fit-joints", options->fit_joints, "first moves the axis of each bent joint, and with it the pose, so that its bones do not collide: as 'limber fit-joint'");
-  command->add_option("-o,--output", options->output, "the posed volume")->required();
-  command->add_option("--report", options->report, "what changed: JSON there, a table on stdout");
+  writes(command->add_option("-o,--output", options->output, "the posed volume"), files_written_to(options))->required();
+  writes(command->add_option("--report", options->report, "what changed: JSON there, a table on stdout"), files_written_to(options));
   command->add_flag("--strict", options->strict, "exit code 5 when a gate fails: measures the result as for --report, writes everything all the same");
   command->add_option("--spacing", options->spacing, "of the output, mm (default: as the input)")->check(CLI::Range(1e-9, 1e6));
   command->add_flag("--nearest", options->nearest, "labels of the nearest rest voxel");
   auto* mass_exact = command->add_flag("--mass-exact", options->mass_exact, "soft tissues get their rest volumes: borders between them move by the fewest and least sure voxels");
   command->add_option("--mass-limit", options->mass_limit, "percent of a tissue that mass-exact may make up; more is refused (default: 3)")->needs(mass_exact)->check(CLI::Range(0.0, 20.0));
-  command->add_option("--with", options->grey, "a grey volume moved by the same map")->type_name("GREY=OUT");
-  command->add_option("--landmarks", options->landmarks, "points (name,x,y,z; mm, LPS) that travel with the pose")->type_name("IN.csv=OUT.csv");
-  command->add_option("--field", options->field, "displacement at each posed voxel, mm");
-  command->add_option("--overlap", options->overlap, "a label volume: 1 where two places of tissue claimed a posed voxel, 2 where two bones did");
-  command->add_option("--jacobian", options->jacobian, "volume ratio at each posed voxel");
+  writes(command->add_option("--with", options->grey, "a grey volume moved by the same map"), files_of_pair(options))->type_name("GREY=OUT");
+  writes(command->add_option("--landmarks", options->landmarks, "points (name,x,y,z; mm, LPS) that travel with the pose"), files_of_pair(options))->type_name("IN.csv=OUT.csv");
+  writes(command->add_option("--field", options->field, "displacement at each posed voxel, mm"), files_written_to(options));
+  writes(command->add_option("--overlap", options->overlap, "a label volume: 1 where two places of tissue claimed a posed voxel, 2 where two bones did"), files_written_to(options));
+  writes(command->add_option("--jacobian", options->jacobian, "volume ratio at each posed voxel"), files_written_to(options));
   add_run_options(*command, options->run);
   command->callback([options] { run(*options); });
 }

@@ -7,6 +7,8 @@
 
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
+#include "core/base/named_files.h"
+#include "core/cmd/command_files.h"
 #include "core/cmd/surface_options.h"
 
 namespace limber::cmd {
@@ -41,6 +43,7 @@ void add_commands(CLI::App& app) {
 int run(CLI::App& app, int argc, char** argv) {
   remove_leftovers();
   try {
+    check_files_of_all(app);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& error) {
@@ -51,6 +54,9 @@ int run(CLI::App& app, int argc, char** argv) {
     return 4;
   } catch (const GateFailed&) {
     return 5;
+  } catch (const UsageError& error) {
+    std::fprintf(stderr, "limber: %s\n", one_line(error.what()).c_str());
+    return 2;
   } catch (const Error& error) {
     std::fprintf(stderr, "limber: %s\n", one_line(error.what()).c_str());
     return 1;

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/outputs.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/cmd/surface_options.h"
 #include "core/cmd/tissue_options.h"
 #include "core/mesh/surface_files.h"
@@ -44,6 +45,16 @@ void print_surfaces(const LabelSurfaces& all, const LabelVolume& volume, const T
                 100 * mm3 / by_voxels);
   }
 }
+// The file, or what stands there already as a file of a tissue.
+OptionFiles files_of_surfaces(const std::string& name) {
+  const Path path = name;
+  OptionFiles files{{}, {path}};
+  const std::string start = path.stem().string() + "-", end = path.extension().string();
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(path.has_parent_path() ? path.parent_path() : Path("."), error))
+    if (const std::string file = entry.path().filename().string(); file.starts_with(start) && file.ends_with(end)) files.written.push_back(entry.path());
+  return files;
+}
 }  // namespace
 
 void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, const SurfaceChoice& choice, const std::string& output, Progress& progress) {
@@ -65,7 +76,7 @@ void add_surfaces(CLI::App& app) {
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
   command->add_option("--only", options->choice.tissues, "tissues by name or label (default: all)")->delimiter(',')->type_name("A,B");
   command->add_option("--relax", options->choice.settings.relaxations, "steps of smoothing (default: 5; more is smoother, but what is thin loses volume; 0 keeps voxels and volumes as they are)")->check(CLI::Range(0, 1000));
-  command->add_option("-o,--output", options->output, "OUT.obj or OUT.glb (one file), OUT.stl or OUT.ply (a file a tissue: OUT-NAME.stl)")->required();
+  writes(command->add_option("-o,--output", options->output, "OUT.obj or OUT.glb (one file), OUT.stl or OUT.ply (a file a tissue: OUT-NAME.stl)"), files_of_surfaces)->required();
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
   command->callback([options] {
     check_place(options->output);

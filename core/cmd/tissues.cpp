@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/cmd/tissue_options.h"
 #include "core/volume/header_text.h"
 #include "core/volume/tissue_rows.h"
@@ -96,7 +97,7 @@ void add_tissues(CLI::App& app) {
   command->add_option("VOLUME", options->volume, "label volume (without one: every row of the table)");
   add_material_options(*command, options->material)->required();
   command->add_flag("--json", options->json, "for programs");
-  command->add_option("-o,--output", options->output, "the list as comma-separated values")->type_name("OUT.csv");
+  writes(command->add_option("-o,--output", options->output, "the list as comma-separated values"))->type_name("OUT.csv");
   command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
   command->callback([options] { list_tissues(*options); });
 }

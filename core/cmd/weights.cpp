@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/cmd/seam_options.h"
 #include "core/bones/bone_parts.h"
 #include "core/bones/unsure_bones.h"
@@ -62,6 +63,15 @@ std::vector<std::string> failed_gates_of(const Body& body, const TissueVoxels& t
   return failed_gates(report);
 }
 
+// What stands in the folder already under names that are written.
+OptionFiles files_of_bender_folder(const std::string& folder) {
+  OptionFiles files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().filename().string().starts_with("weight_")) files.written.push_back(entry.path());
+  return files;
+}
+
 void make_weights(const Options& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
@@ -102,8 +112,8 @@ void add_weights(CLI::App& app) {
   add_body_options(*command, options->body);
   command->add_option("--method", options->method, "heat, geodesic or rigid")->check(CLI::IsMember({"heat", "geodesic", "rigid"}));
   add_seam_option(*command, options->seams);
-  command->add_option("-o,--output", options->output, "W.nrrd")->required();
-  command->add_option("--bender-dir", options->bender_folder, "also write weight_NN.mha, one a bone, into this folder");
+  writes(command->add_option("-o,--output", options->output, "W.nrrd"))->required();
+  writes(command->add_option("--bender-dir", options->bender_folder, "also write weight_NN.mha, one a bone, into this folder"), files_of_bender_folder);
   command->add_flag("--strict", options->strict, "exit code 5 when the inputs do not belong together, or a named bone follows another's rig bone");
   add_run_options(*command, options->run);
   command->callback([options] { make_weights(*options); });

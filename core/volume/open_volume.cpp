@@ -10,6 +10,7 @@
 #include "core/volume/nifti_header.h"
 #include "core/volume/nrrd_header.h"
 #include "core/volume/virtual_family.h"
+#include "core/volume/volume_files.h"
 #include "core/volume/voxel_stream.h"
 
 namespace limber {
@@ -127,6 +128,20 @@ OpenedVolume open_volume(const Path& path, Holding holding) {
   OpenedVolume opened{std::move(found.header), nullptr};
   opened.voxels = std::make_unique<VoxelStream>(found.path, opened.header);
   return opened;
+}
+
+std::vector<Path> files_of_volume(const Path& path) {
+  std::vector<Path> files{path};
+  std::error_code error;
+  if (!fs::is_regular_file(path, error) || is_dicom_file(path)) return files;
+  try {
+    const Found found = read_header(path);
+    files.push_back(found.path);
+    for (const std::string& name : found.header.data_names) files.push_back(found.path.parent_path() / name);
+  } catch (const Error&) {
+    // Whoever reads the volume says what is wrong with it.
+  }
+  return files;
 }
 
 KeyValues read_nrrd_keys(const Path& path) {

@@ -19,6 +19,7 @@
 #include "core/volume/nifti_header.h"
 #include "core/volume/virtual_family.h"
 #include "core/volume/volume_header.h"
+#include "core/volume/volume_files.h"
 #include "core/volume/volume_io.h"
 
 namespace limber {
@@ -329,6 +330,17 @@ VoxelType type_that_holds(double lowest, double highest, std::optional<VoxelType
 void check_writable(const Path& path) {
   checked_writer(path);
   check_place(path);
+}
+
+std::vector<Path> files_written_as(const Path& path) {
+  const std::string ending = lower_case(path.extension().string());
+  std::vector<Path> files{path};
+  const auto beside = [&](const char* data) { files.push_back(Path(path).replace_extension(data)); };
+  if (ending == ".nhdr") beside(".raw"), beside(".raw.gz");
+  if (ending == ".mhd") beside(".raw"), beside(".zraw");
+  if (ending == ".hdr") beside(".img");
+  if (ending == ".txt") beside(".raw");
+  return files;
 }
 
 void write_volume(const LabelVolume& volume, const Path& path, const TissueTable& tissues, const FileType& type) {

@@ -18,6 +18,7 @@
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
 #include "core/cmd/pose_options.h"
 #include "core/deform/preview_map.h"
 #include "core/deform/skinning.h"
@@ -275,6 +276,13 @@ std::string numbered(const std::string& path, int number) {
   return (whole.parent_path() / (whole.stem().string() + suffix + whole.extension().string())).string();
 }
 
+cmd::OptionFiles files_of_pictures(const Options& options, const std::string& name) {
+  cmd::OptionFiles files;
+  if (!options.turntable) files.written.emplace_back(name);
+  for (int i = 0; i < options.turntable.value_or(0); ++i) files.written.emplace_back(numbered(name, i));
+  return files;
+}
+
 void run(const Options& options) {
   const glm::ivec2 size = size_of(options.size);
   std::optional<ThreadCount> threads;
@@ -321,7 +329,7 @@ void add_render(CLI::App& app) {
   auto* command = app.add_subcommand("render", "a picture of a volume or a project, no display needed");
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->body.volume, "label volume or project")->required();
-  command->add_option("-o,--output", options->output, "PNG")->required();
+  cmd::writes(command->add_option("-o,--output", options->output, "PNG"), [options](const std::string& name) { return files_of_pictures(*options, name); })->required();
   command->add_option("--tissues", options->body.tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
   command->add_option("--bones", options->body.bones, "labels that are bone, as in the file")->delimiter(',')->type_name("L,L");
   command->add_option("--size", options->size, "pixels")->type_name("WxH")->capture_default_str();

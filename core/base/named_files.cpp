@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/base/named_files.h"
+
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include <sys/stat.h>
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+constexpr int kMostLinks = 40;  // as the kernel follows
+
+// Where a name leads, also through a symbolic link to what does not exist yet.
+Path place_of(Path path) {
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) path = path.parent_path() / fs::read_symlink(path, error);
+  return fs::weakly_canonical(path, error);
+}
+
+// What is the same for two names of one file: device and inode where it exists, else the place. Nothing for a device or a pipe,
+// which nothing is lost by writing to.
+using Identity = std::tuple<dev_t, ino_t, std::string>;
+std::optional<Identity> identity_of(const Path& path) {
+  struct stat status;
+  if (::stat(path.c_str(), &status) != 0) return Identity{0, 0, place_of(path).string()};
+  if (!S_ISDIR(status.st_mode) && !S_ISREG(status.st_mode)) return std::nullopt;
+  return Identity{status.st_dev, status.st_ino, ""};
+}
+
+using Known = std::map<Identity, NamedFile>;
+
+// Inputs, and the files in folders that are inputs.
+Known identified(const std::vector<NamedFile>& inputs) {
+  Known known;
+  const auto add = [&](const NamedFile& file) {
+    if (const auto identity = identity_of(file.path)) known.emplace(*identity, file);
+  };
+  for (const NamedFile& input : inputs) {
+    add(input);
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(input.path, error)) add({input.named_by, entry.path()});
+  }
+  return known;
+}
+
+std::string told(const NamedFile& file) { return file.path.string() + " (" + file.named_by + ")"; }
+}  // namespace
+
+void check_apart(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs) {
+  const Known read = identified(inputs);
+  Known written;
+  for (const NamedFile& output : outputs) {
+    const auto identity = identity_of(output.path);
+    if (!identity) continue;
+    if (const auto input = read.find(*identity); input != read.end())
+      throw UsageError("the output is also an input", told(output) + " and " + told(input->second), "give the output a name of its own");
+    if (const auto [other, is_new] = written.emplace(*identity, output); !is_new)
+      throw UsageError("two outputs would be the same file", told(other->second) + " and " + told(output), "give each a name of its own");
+  }
+}
+
+}  // namespace limber

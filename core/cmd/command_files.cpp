@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/cmd/command_files.h"
+
+#include "core/base/named_files.h"
+#include "core/project/journal.h"
+#include "core/volume/volume_files.h"
+#include "core/volume/volume_io.h"
+
+namespace limber::cmd {
+
+namespace {
+// CLI11 keeps validators by name with an option. This one is asleep while options are parsed, and tells the files when it is
+// asked: each as 'r' or 'w' and its path, ended by a zero byte, which no path holds.
+constexpr const char* kFiles = "files";
+constexpr char kRead = 'r', kWritten = 'w';
+
+std::string encoded(const OptionFiles& files) {
+  std::string text;
+  const auto add = [&](char use, const Path& path) { text.append(1, use).append(path.string()).append(1, '\0'); };
+  for (const Path& path : files.read) add(kRead, path);
+  for (const Path& path : files.written) add(kWritten, path);
+  return text;
+}
+
+OptionFiles decoded(const std::string& text) {
+  OptionFiles files;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\0', at);
+    (text[at] == kRead ? files.read : files.written).emplace_back(text.substr(at + 1, end - at - 1));
+    at = end + 1;
+  }
+  return files;
+}
+
+OptionFiles files_of(CLI::Option& option, std::string value) {
+  try {
+    return decoded(option.get_validator(kFiles)->active()(value));
+  } catch (const CLI::OptionNotFound&) {
+    std::error_code error;
+    return std::filesystem::exists(value, error) ? OptionFiles{{value}, {}} : OptionFiles{};
+  }
+}
+
+// A file and what is read with it.
+std::vector<Path> with_companions(const Path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return {path};
+  if (path.extension() == ".limber") return {path, journal_path(std::filesystem::absolute(path))};
+  return is_volume_path(path) ? files_of_volume(path) : std::vector<Path>{path};
+}
+}  // namespace
+
+CLI::Option* writes(CLI::Option* option, FilesOfValue files) {
+  if (!files) files = [](const std::string& value) { return OptionFiles{{}, files_written_as(value)}; };
+  const auto tell = [files](std::string& value) { return encoded(files(value)); };
+  return option->check(CLI::Validator(tell, "", kFiles).active(false));
+}
+
+void check_files(CLI::App& command, const Path& job) {
+  std::vector<NamedFile> inputs, outputs;
+  if (!job.empty()) inputs.push_back({"the job", job});
+  for (CLI::Option* option : command.get_options()) {
+    if (option->get_expected_max() == 0) continue;  // a flag
+    for (const std::string& value : option->results()) {
+      const OptionFiles files = files_of(*option, value);
+      const std::string name = option->get_name();
+      for (const Path& path : files.read) inputs.push_back({name, path});
+      for (const Path& path : files.written) outputs.push_back({name, path});
+    }
+  }
+  if (outputs.empty()) return;
+  const std::size_t named = inputs.size();
+  for (std::size_t i = 0; i < named; ++i)
+    for (const Path& path : with_companions(inputs[i].path)) inputs.push_back({inputs[i].named_by, path});
+  check_apart(inputs, outputs);
+}
+
+void check_files_of_all(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands({})) command->parse_complete_callback([command] { check_files(*command); });
+}
+
+}  // namespace limber::cmd
