@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/module.h"
 
 namespace limber::editor {
 
@@ -188,11 +189,13 @@ void Window::set_callbacks() {
 
 // By a shell that leaves at once, so that nothing waits for the other program or ends with it.
 bool Window::open_file(const Path& path) {
-  std::string program = "sh", option = "-c", script = "command -v xdg-open >/dev/null || exit 1; xdg-open \"$0\" </dev/null >/dev/null 2>&1 &", name = path.string();
-  char* arguments[] = {program.data(), option.data(), script.data(), name.data(), nullptr};
+  const auto opener = find_program("xdg-open");
+  if (!opener) return false;
+  std::string program = "sh", option = "-c", script = "\"$0\" \"$1\" </dev/null >/dev/null 2>&1 &", runs = opener->string(), name = std::filesystem::absolute(path).string();
+  char* arguments[] = {program.data(), option.data(), script.data(), runs.data(), name.data(), nullptr};
   pid_t shell = 0;
   int status = 1;
-  return ::posix_spawnp(&shell, "sh", nullptr, nullptr, arguments, environ) == 0 && ::waitpid(shell, &status, 0) == shell && status == 0;
+  return ::posix_spawn(&shell, "/bin/sh", nullptr, nullptr, arguments, environ) == 0 && ::waitpid(shell, &status, 0) == shell && status == 0;
 }
 
 void Window::toggle_full_screen() {

@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 
 #include "core/base/error.h"
+#include "core/base/module.h"
 #include "core/deck/hdf5_codec.h"
 
 namespace limber {
@@ -24,10 +25,10 @@ constexpr int kTypeOf<double> = kLimberHdf5Double;
 template <>
 constexpr int kTypeOf<char> = kLimberHdf5Text;
 
-// The module with the library, found where the program's run path says: beside it, or in ../lib/limber.
+// The module with the library.
 decltype(&limber_hdf5_make) codec(const Path& path) {
   static const auto loaded = [] {
-    void* module = ::dlopen("limber_hdf5.so", RTLD_NOW | RTLD_LOCAL);
+    void* module = open_module("limber_hdf5");
     return module ? reinterpret_cast<decltype(&limber_hdf5_make)>(::dlsym(module, "limber_hdf5_make")) : nullptr;
   }();
   if (!loaded) throw Error("HDF5 cannot be written, limber_hdf5.so is missing or damaged", path.string(), "install Limber again, or choose another format");

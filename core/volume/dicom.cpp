@@ -10,6 +10,7 @@
 
 #include "core/base/child_process.h"
 #include "core/base/error.h"
+#include "core/base/module.h"
 #include "core/volume/dicom_codec.h"
 #include "core/volume/header_text.h"
 #include "core/volume/voxel_stream.h"
@@ -40,14 +41,14 @@ struct Slice {
   glm::dvec3 normal() const { return glm::cross(along_row, along_column); }
 };
 
-// The module with GDCM, found where the program's run path says: beside it, or in ../lib/limber.
+// The module with GDCM.
 struct Codec {
   decltype(&limber_dicom_elements) elements;
   decltype(&limber_dicom_pixels) pixels;
 };
 const Codec& codec(const Path& path) {
   static const Codec loaded = [] {
-    void* module = ::dlopen("limber_dicom.so", RTLD_NOW | RTLD_LOCAL);
+    void* module = open_module("limber_dicom");
     Codec functions{nullptr, nullptr};
     if (!module) return functions;
     functions.elements = reinterpret_cast<decltype(&limber_dicom_elements)>(::dlsym(module, "limber_dicom_elements"));
