@@ -12,6 +12,11 @@
 
 #include "core/base/parallel.h"
 #include "core/base/progress.h"
+#include "core/cmd/print.h"
+
+namespace limber {
+struct Report;
+}
 
 namespace limber::cmd {
 
@@ -40,11 +45,11 @@ int run(CLI::App& app, int argc, char** argv);
 struct PoseNotReached {};
 struct GateFailed {};
 
-// The text without control characters, which could break a message into two.
-std::string one_line(std::string text);
-
 // One line each on stderr: "limber: gate failed: ...".
 void tell_failed_gates(const std::vector<std::string>& sentences);
+
+// The report on stdout, as a table.
+void print_table(const Report& report);
 
 // A description of a file on stdout: as JSON, or as text.
 void print_description(const std::string& json, bool as_json);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a file is, as text: each kind is described once, as JSON, and shown from that.
 #include <algorithm>
-#include <cstdio>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "core/cmd/command.h"
+#include "core/report/report.h"
 
 namespace limber::cmd {
 
@@ -13,22 +14,22 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string in_words(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (!value.is_array()) return value.dump();
+  if (value.is_string()) return one_line(value.get<std::string>());
+  if (!value.is_array()) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string text;
-  for (const Json& part : value) text += (text.empty() ? "" : "  ") + part.dump();
+  for (const Json& part : value) text += (text.empty() ? "" : "  ") + part.dump(-1, ' ', false, Json::error_handler_t::replace);
   return text;
 }
 
 void show_list(const std::string& name, const Json& list) {
   constexpr std::size_t kShown = 200;
-  std::printf("%-11s %zu\n", name.c_str(), list.size());
+  print("%-11s %zu\n", name.c_str(), list.size());
   for (std::size_t i = 0; i < std::min(list.size(), kShown); ++i) {
     std::string line = "           ";
     for (const auto& [key, value] : list[i].items()) line += " " + (value.is_number() || value.is_string() ? in_words(value) + " " : key + " " + in_words(value) + " ");
-    std::printf("%s\n", line.c_str());
+    print("%s\n", line.c_str());
   }
-  if (list.size() > kShown) std::printf("            and %zu more (--json lists all)\n", list.size() - kShown);
+  if (list.size() > kShown) print("            and %zu more (--json lists all)\n", list.size() - kShown);
 }
 
 void show(const Json& json) {
@@ -36,14 +37,20 @@ void show(const Json& json) {
     if (value.is_array() && !value.empty() && value[0].is_object())
       show_list(key, value);
     else
-      std::printf("%-11s %s\n", key.c_str(), in_words(value).c_str());
+      print("%-11s %s\n", key.c_str(), in_words(value).c_str());
 }
 }  // namespace
+
+void print_table(const Report& report) {
+  std::ostringstream table;
+  print_report(table, report);
+  print_text(table.str());
+}
 
 void print_description(const std::string& json, bool as_json) {
   const Json description = Json::parse(json);
   if (as_json)
-    std::printf("%s\n", description.dump(1, ' ', false, Json::error_handler_t::replace).c_str());
+    print_json(description.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   else
     show(description);
 }

@@ -38,16 +38,11 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-// A line on stderr, in place of the bar where one stands.
-void say(const std::string& line) {
-  std::fprintf(stderr, "%s%s\n", ::isatty(STDERR_FILENO) ? "\r\033[K" : "", one_line(line).c_str());
-}
-
-void tell(const Study& study, const CellOutcome& outcome, int done, int of, bool was_there, double seconds_left) {
+void tell_cell(const Study& study, const CellOutcome& outcome, int done, int of, bool was_there, double seconds_left) {
   std::string line = std::to_string(done) + " of " + std::to_string(of) + "  " + text_of(study, outcome.cell) + ": ";
   line += outcome.failure.empty() ? was_there ? "there already" : "done" : "FAILED: " + outcome.failure;
   if (done < of && seconds_left > 0) line += ", " + minutes_text(seconds_left) + " left";
-  say(line);
+  tell(line);
 }
 
 void run(const Options& options, const StartPictures& pictures) {
@@ -58,7 +53,7 @@ void run(const Options& options, const StartPictures& pictures) {
   if (!options.methods.empty()) study.techniques = techniques_of(options.methods, "--methods");
   StudyRun run{.out = options.out, .threads = options.run.threads};
   if (!options.shard.empty()) read_shard(options.shard, run);
-  run.on_cell = [&](const CellOutcome& outcome, int done, int of, bool was_there, double left) { tell(study, outcome, done, of, was_there, left); };
+  run.on_cell = [&](const CellOutcome& outcome, int done, int of, bool was_there, double left) { tell_cell(study, outcome, done, of, was_there, left); };
   const std::vector<CellOutcome> outcomes = run_study(study, run, progress);
 
   std::size_t failed = 0;
@@ -66,9 +61,9 @@ void run(const Options& options, const StartPictures& pictures) {
   if (run.shards == 1) {
     const std::string command = "limber experiment " + options.study + (options.folder.empty() ? "" : " " + options.folder) + " -o " + options.out + (options.methods.empty() ? "" : " --methods " + joined(options.methods));
     write_results(study, outcomes, options.out, command, pictures, progress);
-    std::printf("%s\n%s\n%s\n", (Path(options.out) / "report.html").c_str(), (Path(options.out) / "cells.csv").c_str(), (Path(options.out) / "cells.json").c_str());
+    print("%s\n%s\n%s\n", (Path(options.out) / "report.html").c_str(), (Path(options.out) / "cells.csv").c_str(), (Path(options.out) / "cells.json").c_str());
   } else {
-    say("the cells of shard " + options.shard + " are done: run the same without --shard to collect");
+    tell("the cells of shard " + options.shard + " are done: run the same without --shard to collect");
   }
   if (failed) throw Error(std::to_string(failed) + " of " + std::to_string(outcomes.size()) + " cells failed", options.out, "see the lines above, then run the same again: it computes only what is missing");
 }

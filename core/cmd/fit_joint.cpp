@@ -39,9 +39,9 @@ void run(const Options& options) {
   const FittedJoint fitted = fit_joint(volume, tissue, parts, body.rig, bone, settings, progress);
   write_armature(fitted.armature, options.output);
 
-  std::printf("%s from %g to %g degrees: axis moved by %.1f mm, turned by %.1f degrees\n", options.bone.c_str(),
+  print("%s from %g to %g degrees: axis moved by %.1f mm, turned by %.1f degrees\n", options.bone.c_str(),
               settings.minimum_degrees, settings.maximum_degrees, fitted.moved_mm, fitted.turned_degrees);
-  std::printf("bone in bone at the worst angle: %lld voxels before, %lld after\n",
+  print("bone in bone at the worst angle: %lld voxels before, %lld after\n",
               static_cast<long long>(fitted.overlap_before), static_cast<long long>(fitted.overlap_after));
   if (fitted.overlap_after)
     warn("joint " + options.bone + ": " + std::to_string(fitted.overlap_after) + " bone voxels still collide after fitting its axis");

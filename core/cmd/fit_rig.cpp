@@ -30,7 +30,7 @@ struct Options {
 Armature wanted_rig(const std::string& name, const VolumeFile& file, Progress& progress) {
   if (name == "auto") {
     const std::string suggested = suggest_template(file.volume, progress);
-    std::printf("template: %s\n", suggested.c_str());
+    print("template: %s\n", suggested.c_str());
     return rig_template(suggested);
   }
   std::error_code failed;
@@ -57,13 +57,13 @@ nlohmann::ordered_json report_of(const AutoFit& fitted) {
   return report;
 }
 
-void print(const AutoFit& fitted) {
-  std::printf("%-24s %-14s %10s %10s %10s\n", "joint", "found by", "confidence", "may be off", "in tissue");
+void print_fit(const AutoFit& fitted) {
+  print("%-24s %-14s %10s %10s %10s\n", "joint", "found by", "confidence", "may be off", "in tissue");
   for (size_t b = 0; b < fitted.joints.size(); ++b)
-    std::printf("%-24s %-14s %9.0f%% %7.0f mm %9.0f%%\n", fitted.armature.bones[b].name.c_str(), std::string(to_string(fitted.joints[b].how)).c_str(),
+    print("%-24s %-14s %9.0f%% %7.0f mm %9.0f%%\n", one_line(fitted.armature.bones[b].name).c_str(), std::string(to_string(fitted.joints[b].how)).c_str(),
                 100 * fitted.joints[b].confidence, fitted.joints[b].error, 100 * fitted.check.share[b]);
-  if (fitted.misfit_mm > 0) std::printf("skin %.1f mm off the fitted body's, ", fitted.misfit_mm);
-  std::printf("%.1f %% of all bone length in tissue\n", 100 * fitted.check.whole);
+  if (fitted.misfit_mm > 0) print("skin %.1f mm off the fitted body's, ", fitted.misfit_mm);
+  print("%.1f %% of all bone length in tissue\n", 100 * fitted.check.whole);
 }
 
 void run(const Options& options) {
@@ -83,7 +83,7 @@ void run(const Options& options) {
   const AutoFit fitted = fitted_or_placed(file.volume, tissues, rig, progress);
   write_armature(fitted.armature, options.output);
   if (!options.report.empty()) write_file_atomically(options.report, report_of(fitted).dump(1) + "\n");
-  print(fitted);
+  print_fit(fitted);
   warn(fitted.warnings);
 }
 

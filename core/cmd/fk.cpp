@@ -62,24 +62,21 @@ Json fk_of_rig(const Armature& armature, const Pose& pose) {
 }
 
 void print_table(const Json& joints) {
-  std::printf("%-28s %30s   %s\n", "joint", "position", "rotation (w x y z)");
+  print("%-28s %30s   %s\n", "joint", "position", "rotation (w x y z)");
   for (const Json& joint : joints) {
     const std::string name = joint["name"];
     const std::vector<double> p = joint["position"], q = joint["rotation_wxyz"];
-    std::printf("%-28s %10.3f%10.3f%10.3f   %8.5f %8.5f %8.5f %8.5f\n", name.c_str(), p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
+    print("%-28s %10.3f%10.3f%10.3f   %8.5f %8.5f %8.5f %8.5f\n", one_line(name).c_str(), p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
   }
 }
 
-void print_json(const Json& json, const char* end) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace) + end;
-  std::fwrite(text.data(), 1, text.size(), stdout);
-}
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 // {"frames": [{"joints": [...]}, ...]}, a line for each frame.
 void print_frames(int count, const std::function<Json(int)>& joints_at) {
-  std::printf("{\"frames\":[");
-  for (int frame = 0; frame < count; ++frame) print_json({{"joints", joints_at(frame)}}, frame + 1 < count ? ",\n" : "");
-  std::printf("]}\n");
+  print("{\"frames\":[");
+  for (int frame = 0; frame < count; ++frame) print_json(text_of({{"joints", joints_at(frame)}}) + (frame + 1 < count ? ",\n" : ""));
+  print("]}\n");
 }
 
 void run_fk(const FkOptions& options) {
@@ -102,7 +99,7 @@ void run_fk(const FkOptions& options) {
     joints = fk_of_rig(rig.armature, read_pose_options(options.pose, rig.armature));
   }
   if (!options.json) return print_table(joints);
-  print_json({{"joints", joints}}, "\n");
+  print_json(text_of({{"joints", joints}}) + "\n");
 }
 }  // namespace
 

@@ -31,7 +31,11 @@ const std::map<std::string, void (*)(CLI::App&)> kCommands = {
 constexpr std::uint64_t kLargestJob = 1 << 20;
 
 std::string text_of(const Json& value, const std::string& key, const Path& job) {
-  if (value.is_string()) return value.get<std::string>();
+  if (value.is_string()) {
+    const std::string text = value.get<std::string>();
+    if (text.find('\0') != std::string::npos) throw Error("a setting holds a zero byte", job.string() + ", " + key, "take it out");
+    return text;
+  }
   if (value.is_number()) return value.dump();
   throw Error("a setting is neither text nor a number", job.string() + ", " + key, "write \"" + key + "\": \"value\"");
 }

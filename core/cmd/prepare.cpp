@@ -92,7 +92,7 @@ void print_by_tissue(const std::vector<std::int64_t>& voxels, const TissueTable&
   const char* between = "";
   for (const Tissue& tissue : tissues.tissues) {
     if (voxels[tissue.label] == 0) continue;
-    std::printf("%s%s %lld", between, tissue.name.c_str(), static_cast<long long>(voxels[tissue.label]));
+    print("%s%s %lld", between, one_line(tissue.name).c_str(), static_cast<long long>(voxels[tissue.label]));
     between = ", ";
   }
 }
@@ -110,16 +110,16 @@ LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, co
   const auto label = skin_label_of(tissues, options.skin_label);
   ClosedSkin closed = close_skin(volume, tissues, inward ? SkinGrowth::Inward : SkinGrowth::Outward, label);
   warn_of_cuts(closed);
-  std::printf(inward ? "skin: %lld voxels of flesh at the air became skin" : "skin: %lld voxels of air became skin", static_cast<long long>(closed.changed_voxels));
+  print(inward ? "skin: %lld voxels of flesh at the air became skin" : "skin: %lld voxels of air became skin", static_cast<long long>(closed.changed_voxels));
   if (closed.changed_voxels > 0) {
-    std::printf(inward ? " (" : ", over voxels of ");
+    print(inward ? " (" : ", over voxels of ");
     print_by_tissue(closed.covered, tissues);
-    std::printf(inward ? ")" : "");
+    print(inward ? ")" : "");
   }
-  std::printf("\n");
-  if (closed.bare_bone_voxels > 0) std::printf("skin: %lld voxels of bone lie at the air and stay bone; --close-skin outward covers them\n", static_cast<long long>(closed.bare_bone_voxels));
-  if (closed.is_padded) std::printf("skin: the volume was grown by one voxel on every side to hold it\n");
-  if (closed.enclosed_voxels > 0) std::printf("skin: %lld voxels of air are shut in by it\n", static_cast<long long>(closed.enclosed_voxels));
+  print("\n");
+  if (closed.bare_bone_voxels > 0) print("skin: %lld voxels of bone lie at the air and stay bone; --close-skin outward covers them\n", static_cast<long long>(closed.bare_bone_voxels));
+  if (closed.is_padded) print("skin: the volume was grown by one voxel on every side to hold it\n");
+  if (closed.enclosed_voxels > 0) print("skin: %lld voxels of air are shut in by it\n", static_cast<long long>(closed.enclosed_voxels));
   return std::move(closed.volume);
 }
 
@@ -138,7 +138,7 @@ void write_seams_found(const LabelVolume& volume, const TissueTable& tissues, co
   const BoneParts parts = split_bones(volume, tissue, tissues, rig.armature, progress);
   const Seams seams = find_seams(volume, tissue, tissues, rig.armature, parts, progress);
   write_seams(seams, volume.grid, options.seams);
-  std::printf("seams: %lld voxel faces between limbs that touch\n", static_cast<long long>(seams.size()));
+  print("seams: %lld voxel faces between limbs that touch\n", static_cast<long long>(seams.size()));
 }
 
 void prepare(const Options& options) {

@@ -21,23 +21,13 @@ void on_interrupt(int) {
 }
 }  // namespace
 
-std::string one_line(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
-  return text;
-}
-
-void warn(const std::string& line) {
-  if (::isatty(STDERR_FILENO)) std::fputs(kErase, stderr);  // a bar may stand there
-  std::fprintf(stderr, "limber: warning: %s\n", one_line(line).c_str());
-}
+void warn(const std::string& line) { tell("limber: warning: " + line); }
 void warn(const std::vector<std::string>& lines) {
   for (const auto& line : lines) warn(line);
 }
 
 void tell_failed_gates(const std::vector<std::string>& sentences) {
-  if (!sentences.empty() && ::isatty(STDERR_FILENO)) std::fputs(kErase, stderr);
-  for (const std::string& sentence : sentences) std::fprintf(stderr, "limber: gate failed: %s\n", one_line(sentence).c_str());
+  for (const std::string& sentence : sentences) tell("limber: gate failed: " + sentence);
 }
 
 CommandProgress::CommandProgress(const std::string& mode)
@@ -47,8 +37,7 @@ CommandProgress::CommandProgress(const std::string& mode)
 }
 
 CommandProgress::~CommandProgress() {
-  if (mode_ == Mode::Bar && !stage_.empty()) std::fputs(kErase, stderr);
-  std::fflush(stderr);
+  if (mode_ == Mode::Bar && !stage_.empty()) draw_bar(kErase);
 }
 
 CommandProgress::LeavesAtOnce::LeavesAtOnce() { leaves_at_once = 1; }
@@ -58,9 +47,9 @@ void CommandProgress::show(const Iteration& iteration) {
   if (mode_ != Mode::Json) return update("solving", iteration.fraction);
   stage_ = "solving";
   shown_ = iteration.fraction;
-  std::fprintf(stderr, "%s\n", nlohmann::json{{"stage", "solving"}, {"fraction", iteration.fraction}, {"angle_degrees", iteration.angle_degrees},
+  tell(nlohmann::json{{"stage", "solving"}, {"fraction", iteration.fraction}, {"angle_degrees", iteration.angle_degrees},
                                               {"iteration", iteration.iteration}, {"residual_mm", iteration.residual_mm},
-                                              {"seconds_left", iteration.seconds_left}}.dump().c_str());
+                                              {"seconds_left", iteration.seconds_left}}.dump());
 }
 
 bool CommandProgress::cancelled() const { return interrupted != 0 || Progress::cancelled(); }
@@ -71,14 +60,15 @@ void CommandProgress::on_update(std::string_view stage, double fraction) {
   stage_ = stage;
   shown_ = fraction;
   if (mode_ == Mode::Json) {
-    std::fprintf(stderr, "%s\n", nlohmann::json{{"stage", stage_}, {"fraction", fraction}}.dump().c_str());
+    tell(nlohmann::json{{"stage", stage_}, {"fraction", fraction}}.dump());
   } else if (mode_ == Mode::Bar) {
     constexpr int kWidth = 32;
     const int full = static_cast<int>(fraction * kWidth + 0.5);
-    std::fprintf(stderr, "\r\033[K%-12s [%s%s] %3.0f %%", stage_.c_str(), std::string(full, '#').c_str(),
-                 std::string(kWidth - full, ' ').c_str(), fraction * 100);
-    if (fraction >= 1) std::fputs(kErase, stderr);
-    std::fflush(stderr);
+    char percent[16];
+    std::snprintf(percent, sizeof percent, "] %3.0f %%", fraction * 100);
+    std::string bar = one_line(stage_);
+    bar.resize(std::max(bar.size(), std::size_t{12}), ' ');
+    draw_bar(kErase + bar + " [" + std::string(full, '#') + std::string(kWidth - full, ' ') + percent + (fraction >= 1 ? kErase : ""));
   }
 }
 

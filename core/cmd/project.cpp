@@ -117,7 +117,7 @@ void verify(const Options& options) {
   for (const std::string& line : wrong) warn(line);
   require(wrong.empty(), "the project is damaged", options.file,
           "open an earlier copy, or keep what is whole: limber project " + options.file + " recover -o OUT.limber");
-  std::printf("%s is whole\n", options.file.c_str());
+  print("%s is whole\n", options.file.c_str());
 }
 
 // The chunks of a document, kept in memory.
@@ -152,7 +152,7 @@ Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chu
   std::string failure;
   try {
     Project project = read_project(options.file, progress);
-    std::printf("no unsaved edits were found; what the project holds is kept\n");
+    print("no unsaved edits were found; what the project holds is kept\n");
     return project;
   } catch (const ProjectInUse&) {
     throw;
@@ -168,7 +168,7 @@ Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chu
   warn(failure);
   add_help(*chunks, options, progress);
   Project project = put_together(*chunks, options.file, progress);
-  std::printf("%zu chunks of the damaged project are whole; what they hold is kept\n", chunks->latest_first().size());
+  print("%zu chunks of the damaged project are whole; what they hold is kept\n", chunks->latest_first().size());
   return project;
 }
 
@@ -184,7 +184,7 @@ void recover(const Options& options) {
     Recovered recovered = limber::recover(left->journal, progress);
     warn(recovered.warnings);
     project.document = std::move(recovered.document);
-    std::printf("edits recovered up to: %s\n", recovered.label.c_str());
+    print("edits recovered up to: %s\n", one_line(recovered.label).c_str());
   } else {
     project = read_or_carve(options, chunks, progress);
     warn(project.warnings);

@@ -2,7 +2,6 @@
 // limber report BEFORE AFTER [--tissues T] [--field F.nrrd [--rig RIG [--bone-map FILE] POSE-OPTIONS]] [--strict] [--json]
 #include "core/report/report.h"
 
-#include <iostream>
 #include <memory>
 
 #include "core/bones/input_doubts.h"
@@ -105,9 +104,9 @@ void run(const Options& options) {
   report.seconds.total = total.seconds();
   judge(report);
   if (options.json)
-    std::cout << to_json(report);
+    print_json(to_json(report));
   else
-    print_report(std::cout, report);
+    print_table(report);
   if (!options.strict) return;
   tell_failed_gates(failed_gates(report));
   if (!failed_gates(report).empty()) throw GateFailed();

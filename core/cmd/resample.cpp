@@ -6,7 +6,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 
@@ -401,7 +400,7 @@ bool finish(const Options& options, const Body& body, const Pose& pose, const st
     report.seconds.total = total.seconds();
     judge(report);
     outputs.write(options.report, [&] { write_report(report, options.report); });
-    if (!options.report.empty()) print_report(std::cout, report);
+    if (!options.report.empty()) print_table(report);
     tell_failed_gates(failed_gates(report));
   }
   outputs.complete();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/cmd/command.h"
 
-#include <cstdio>
 #include <exception>
 #include <new>
+#include <sstream>
 
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
@@ -40,14 +40,28 @@ void add_commands(CLI::App& app) {
   add_weights(app);
 }
 
-int run(CLI::App& app, int argc, char** argv) {
-  remove_leftovers();
+namespace {
+int told(const std::string& line, int exit_code) {
+  tell("limber: " + line);
+  return exit_code;
+}
+
+// What CLI11 has to say: of help and the version on stdout, of usage on stderr.
+int told_by_parser(const CLI::App& app, const CLI::ParseError& error) {
+  std::ostringstream out, err;
+  const int code = app.exit(error, out, err);
+  print_text(out.str());
+  std::istringstream lines(err.str());
+  for (std::string line; std::getline(lines, line);) tell(line);
+  return code == 0 ? 0 : 2;
+}
+
+int run_command(CLI::App& app, int argc, char** argv) {
   try {
-    check_files_of_all(app);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return told_by_parser(app, error);
   } catch (const Cancelled&) {
     return 3;
   } catch (const PoseNotReached&) {
@@ -55,19 +69,24 @@ int run(CLI::App& app, int argc, char** argv) {
   } catch (const GateFailed&) {
     return 5;
   } catch (const UsageError& error) {
-    std::fprintf(stderr, "limber: %s\n", one_line(error.what()).c_str());
-    return 2;
+    return told(error.what(), 2);
   } catch (const Error& error) {
-    std::fprintf(stderr, "limber: %s\n", one_line(error.what()).c_str());
-    return 1;
+    return told(error.what(), 1);
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "limber: there is not enough memory: this request: use a coarser spacing or a smaller volume\n");
-    return 1;
+    return told("there is not enough memory: this request: use a coarser spacing or a smaller volume", 1);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "limber: a mistake of the program itself: %s: please report it with the command that shows it\n",
-                 one_line(error.what()).c_str());
-    return 1;
+    return told(std::string("a mistake of the program itself: ") + error.what() + ": please report it with the command that shows it", 1);
   }
+}
+}  // namespace
+
+int run(CLI::App& app, int argc, char** argv) {
+  keep_standard_streams();
+  remove_leftovers();
+  check_files_of_all(app);
+  const int code = run_command(app, argc, argv);
+  if (all_is_printed()) return code;
+  return told("what was printed could not be written: standard output: check that its disk has room and that it is open", code == 0 ? 1 : code);
 }
 
 }  // namespace limber::cmd

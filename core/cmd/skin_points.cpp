@@ -102,15 +102,15 @@ class CaseReader {
   nlohmann::json json_;
 };
 
-void print(const std::vector<glm::dvec3>& points, bool as_json) {
+void print_points(const std::vector<glm::dvec3>& points, bool as_json) {
   if (!as_json) {
-    for (const auto& p : points) std::printf("%.9g %.9g %.9g\n", p.x, p.y, p.z);
+    for (const auto& p : points) print("%.9g %.9g %.9g\n", p.x, p.y, p.z);
     return;
   }
   nlohmann::json flat = nlohmann::json::array();
   for (const auto& p : points)
     for (int axis = 0; axis < 3; ++axis) flat.push_back(p[axis]);
-  std::printf("%s\n", nlohmann::json{{"points", std::move(flat)}}.dump().c_str());
+  print_json(nlohmann::json{{"points", std::move(flat)}}.dump() + "\n");
 }
 
 }  // namespace
@@ -131,7 +131,7 @@ void add_skin_points(CLI::App& app) {
     SkinCase skin = CaseReader(options->file).read();
     const Blend blend = blend_named(options->method);
     blend_points(blend, skin.bones, skin.influences, skin.offsets, skin.points, skin.points);
-    print(skin.points, options->json);
+    print_points(skin.points, options->json);
   });
 }
 

@@ -37,11 +37,11 @@ void keep_chosen(LabelSurfaces& all, const TissueTable& tissues, const std::vect
 void print_surfaces(const LabelSurfaces& all, const LabelVolume& volume, const TissueTable& tissues) {
   std::vector<std::int64_t> voxels(65536);
   for (const Label label : volume.voxels) ++voxels[label];
-  std::printf("%-28s %10s %10s %7s %14s %9s\n", "tissue", "triangles", "vertices", "Euler", "mm3", "of voxels");
+  print("%-28s %10s %10s %7s %14s %9s\n", "tissue", "triangles", "vertices", "Euler", "mm3", "of voxels");
   for (const LabelSurface& surface : all.surfaces) {
     const Tissue* tissue = tissues.find(surface.label);
     const double mm3 = enclosed_volume(all, surface), by_voxels = static_cast<double>(voxels[surface.label]) * volume.grid.voxel_volume();
-    std::printf("%-28s %10zu %10zu %7d %14.6g %8.2f%%\n", one_line(tissue ? tissue->name : "").c_str(), surface.F.size(), surface.vertex.size(), surface.euler_number(), mm3,
+    print("%-28s %10zu %10zu %7d %14.6g %8.2f%%\n", one_line(tissue ? tissue->name : "").c_str(), surface.F.size(), surface.vertex.size(), surface.euler_number(), mm3,
                 100 * mm3 / by_voxels);
   }
 }

@@ -2,7 +2,6 @@
 // limber tissues [VOLUME] --frequency HZ [--tissues T] [--properties P.csv] [--json] [-o OUT.csv]: permittivity, conductivity and
 // density of each tissue of a volume, or of every row of the table, each with the row that it was matched to, and how.
 #include <cstdio>
-#include <iostream>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -47,10 +46,10 @@ nlohmann::ordered_json json_of(const TissueMaterials& tissues, double frequency)
 }
 
 void print_table(const TissueMaterials& tissues) {
-  std::printf("%8s  %-28s %-22s %-28s %10s %12s %12s  %s\n", "label", "tissue", "taken for", "found by", "kg/m3", "eps_r",
+  print("%8s  %-28s %-22s %-28s %10s %12s %12s  %s\n", "label", "tissue", "taken for", "found by", "kg/m3", "eps_r",
               "S/m", "properties of");
   for (const TissueMaterial& m : tissues.materials)
-    std::printf("%8s  %-28s %-22s %-28s %10.4g %12.5g %12.5g  %s\n", text_of(m.file_value).c_str(),
+    print("%8s  %-28s %-22s %-28s %10.4g %12.5g %12.5g  %s\n", text_of(m.file_value).c_str(),
                 one_line(m.name).c_str(), one_line(m.row).c_str(), one_line(m.found).c_str(), m.density,
                 m.dielectric.permittivity, m.dielectric.conductivity,
                 one_line(m.properties + (m.stand_in.empty() ? "" : " (stand-in: " + m.stand_in + ")")).c_str());
@@ -85,7 +84,7 @@ void list_tissues(const Options& options) {
   }
   const TissueMaterials found = tissue_materials(tissues, table, *options.material.frequency);
   if (!options.output.empty()) write_file_atomically(options.output, csv_of(found));
-  if (options.json) std::cout << json_of(found, *options.material.frequency).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+  if (options.json) print_json(json_of(found, *options.material.frequency).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   else if (options.output.empty()) print_table(found);
   if (!found.unmatched.empty()) warn("no dielectric properties are known of: " + joined(found.unmatched) + ": add rows with --properties");
 }

@@ -29,23 +29,23 @@ struct Options {
 };
 
 void print_table(const BoneParts& parts, const Armature& armature) {
-  std::printf("%-28s %10s   %s\n", "rig bone", "voxels", "centre of the bone part, mm");
+  print("%-28s %10s   %s\n", "rig bone", "voxels", "centre of the bone part, mm");
   for (const auto& part : parts.parts)
-    std::printf("%-28s %10lld   %.0f %.0f %.0f\n", armature.bones[part.bone].name.c_str(), static_cast<long long>(part.voxel_count),
+    print("%-28s %10lld   %.0f %.0f %.0f\n", one_line(armature.bones[part.bone].name).c_str(), static_cast<long long>(part.voxel_count),
                 part.centre.x, part.centre.y, part.centre.z);
   std::vector<bool> has_part(armature.bones.size(), false);
   for (const auto& part : parts.parts) has_part[part.bone] = true;
   for (size_t b = 0; b < armature.bones.size(); ++b)
-    if (!has_part[b]) std::printf("%-28s %10s   holds the tissue around its axis\n", armature.bones[b].name.c_str(), "none");
+    if (!has_part[b]) print("%-28s %10s   holds the tissue around its axis\n", one_line(armature.bones[b].name).c_str(), "none");
 }
 
 // Which rig bone each label of bone follows, and how that was found.
 void print_identities(const BoneParts& parts, const TissueTable& tissues, const Armature& armature) {
-  std::printf("\n%-44s %-20s %10s   %s\n", "bone tissue", "follows", "voxels", "found by");
+  print("\n%-44s %-20s %10s   %s\n", "bone tissue", "follows", "voxels", "found by");
   for (const auto& identity : parts.identities) {
     const Tissue* tissue = tissues.find(identity.label);
     const std::string name = tissue && !tissue->name.empty() ? tissue->name : "label " + std::to_string(identity.label);
-    std::printf("%-44.44s %-20s %10lld   %s%s\n", name.c_str(), armature.bones[identity.bone].name.c_str(), static_cast<long long>(identity.voxel_count),
+    print("%-44.44s %-20s %10lld   %s%s\n", one_line(name).c_str(), one_line(armature.bones[identity.bone].name).c_str(), static_cast<long long>(identity.voxel_count),
                 std::string(to_string(identity.found_by)).c_str(), identity.is_substitute ? ", not sure" : "");
   }
 }
@@ -59,7 +59,7 @@ std::vector<std::string> failed_gates_of(const Body& body, const TissueVoxels& t
   report.posed_bones.whole = whole_bones(body.file.volume, tissue, body.tissues, body.rig, weights, at_rest, body.bone_map);
   judge(report);
   std::erase_if(report.gates, [](const QualityGate& gate) { return gate.id != "inputs" && gate.id != "follows"; });
-  for (const QualityGate& gate : report.gates) std::printf("%-11s %s\n", gate.state == GateState::Failed ? "FAILED" : std::string(to_string(gate.state)).c_str(), gate.sentence.c_str());
+  for (const QualityGate& gate : report.gates) print("%-11s %s\n", gate.state == GateState::Failed ? "FAILED" : std::string(to_string(gate.state)).c_str(), one_line(gate.sentence).c_str());
   return failed_gates(report);
 }
 
@@ -95,10 +95,10 @@ void make_weights(const Options& options) {
   if (!options.bender_folder.empty()) write_bender_weights(weights, volume, tissue, options.bender_folder);
   write_weights(weights, volume, tissue, options.output, SeamsOfWeights::OfTissue);
 
-  std::printf("tissue: %lld voxels, table: %s\n", static_cast<long long>(tissue.size()), body.tissues.source.c_str());
+  print("tissue: %lld voxels, table: %s\n", static_cast<long long>(tissue.size()), one_line(body.tissues.source).c_str());
   print_table(parts, rig);
   print_identities(parts, body.tissues, rig);
-  if (options.method == "heat") std::printf("heat: residual %.1e in %d iterations\n", report.residual, report.iterations);
+  if (options.method == "heat") print("heat: residual %.1e in %d iterations\n", report.residual, report.iterations);
   if (!options.strict) return;
   const std::vector<std::string> failed = failed_gates_of(body, tissue, weights);
   tell_failed_gates(failed);

@@ -112,6 +112,36 @@ TEST_CASE("layers: core's own folders are used from the command line downward, n
       }
 }
 
+namespace {
+// The sources of the program that hold `pattern`, with the line.
+std::vector<std::string> lines_with(const std::regex& pattern) {
+  std::vector<std::string> found;
+  for (const auto& file : sources()) {
+    if (file.generic_string().starts_with("tests/")) continue;
+    std::ifstream in(kRoot / file);
+    for (std::string line; std::getline(in, line);)
+      if (std::regex_search(line, pattern)) found.push_back(file.generic_string() + ": " + line);
+  }
+  return found;
+}
+}  // namespace
+
+TEST_CASE("layers: the terminal is written to at one place, which lets no control character out") {
+  const auto lines = lines_with(std::regex(R"(\b(printf|fprintf|vprintf|vfprintf|puts|fputs|putchar|perror)\(|\bfwrite\(.*\bstd(out|err)\b|\bstd::(cout|cerr|clog)\b)"));
+  CHECK_FALSE(lines.empty());
+  for (const std::string& line : lines) {
+    INFO(line);
+    CHECK(line.starts_with("core/cmd/print.cpp: "));
+  }
+}
+
+TEST_CASE("layers: modules and programs are opened by their whole path, at one place") {
+  for (const std::string& line : lines_with(std::regex(R"(\b(dlopen|dlmopen|execvp|execlp|execvpe|posix_spawnp|popen|system)\()"))) {
+    INFO(line);
+    CHECK(line.starts_with("core/base/module.cpp"));
+  }
+}
+
 TEST_CASE("layers: every source names its licence in its first line") {
   for (const auto& file : sources()) {
     std::ifstream in(kRoot / file);

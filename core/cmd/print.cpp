@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/cmd/print.h"
+
+#include <cstdarg>
+#include <cstdio>
+#include <functional>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace limber::cmd {
+
+namespace {
+constexpr const char* kEraseLine = "\r\033[K";
+
+// Bytes of the UTF-8 character that `text` starts with; 0 where it starts with none.
+std::size_t character_size(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  const std::size_t size = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+  if (size > text.size()) return 0;
+  for (std::size_t i = 1; i < size; ++i)
+    if (byte(i) >> 6 != 2) return 0;
+  // Longer than need be, half of a pair, beyond the last character.
+  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) || (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f)) return 0;
+  return size;
+}
+
+// The control character that these bytes are; -1 for another character.
+int control_of(std::string_view character) {
+  const auto first = static_cast<unsigned char>(character[0]);
+  if (character.size() == 1 && (first < 0x20 || first == 0x7f)) return first;
+  if (character.size() == 2 && first == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0) return static_cast<unsigned char>(character[1]);
+  return -1;
+}
+
+// The text with `instead` of each control character (its code) and each byte that is no UTF-8 (-1).
+std::string cleaned(std::string_view text, const std::function<std::string(int control)>& instead) {
+  std::string clean;
+  clean.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t size = character_size(text);
+    const int control = size == 0 ? -1 : control_of(text.substr(0, size));
+    if (size == 0 || control >= 0) clean += instead(control);
+    else clean += text.substr(0, size);
+    text.remove_prefix(size == 0 ? 1 : size);
+  }
+  return clean;
+}
+}  // namespace
+
+std::string printable(std::string_view text) {
+  return cleaned(text, [](int control) -> std::string { return control == '\n' ? "\n" : control == '\t' ? "\t" : "?"; });
+}
+
+std::string one_line(std::string_view text) {
+  return cleaned(text, [](int control) -> std::string { return control == '\n' || control == '\t' || control == '\r' ? " " : "?"; });
+}
+
+void print_text(std::string_view text) {
+  const std::string clean = printable(text);
+  std::fwrite(clean.data(), 1, clean.size(), stdout);
+}
+
+void print(const char* format, ...) {
+  va_list arguments, again;
+  va_start(arguments, format);
+  va_copy(again, arguments);
+  std::string text(static_cast<std::size_t>(std::vsnprintf(nullptr, 0, format, arguments)), '\0');
+  std::vsnprintf(text.data(), text.size() + 1, format, again);
+  va_end(again);
+  va_end(arguments);
+  print_text(text);
+}
+
+void print_json(std::string_view json) {
+  const std::string clean = cleaned(json, [](int control) -> std::string {
+    if (control == '\n') return "\n";
+    char code[16];
+    std::snprintf(code, sizeof code, "\\u%04x", control < 0 ? 0xfffd : control);
+    return code;
+  });
+  std::fwrite(clean.data(), 1, clean.size(), stdout);
+}
+
+void tell(std::string_view line) {
+  if (::isatty(STDERR_FILENO)) std::fputs(kEraseLine, stderr);
+  std::fprintf(stderr, "%s\n", one_line(line).c_str());
+}
+
+void draw_bar(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+bool all_is_printed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+
+void keep_standard_streams() {
+  // The lowest free number is taken, so each call fills the first gap. Read-only: writing there fails, and is told.
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+    if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);
+}
+
+}  // namespace limber::cmd
