@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 namespace limber::editor {
 
 namespace {
@@ -64,7 +65,7 @@ std::string json_text(const Arrangements& arrangements) {
 }
 
 void restore(const std::string& text, Arrangements& arrangements) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = Json::parse(sound_json(text), nullptr, false);
   if (!json.is_array()) return;
   for (std::size_t i = 0; i < std::min(json.size(), arrangements.size()); ++i) restore(json[i], arrangements[i]);
 }

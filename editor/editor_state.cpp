@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 #include "editor/arrangement_json.h"
 #include "editor/skin_display.h"
 
@@ -92,7 +93,7 @@ std::string editor_state(const Editor& editor) {
 }
 
 void restore_editor_state(Editor& editor, const std::string& text) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = Json::parse(checked_json(text, "the state of the editor in the project"), nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != kSchema) return;
   Views& views = *editor.views;
   take_choice(json, "workspace", 4, editor.workspace);

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 namespace limber::editor {
 
 std::vector<Chord> chords_of(const Keymap& keymap, const std::string& context, const std::string& operator_id) {
@@ -48,7 +49,7 @@ KeyChanges differences(const Keymap& original, const Keymap& wanted) {
 
 KeyChanges key_changes_from_json(const std::string& text) {
   KeyChanges changes;
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto json = nlohmann::json::parse(sound_json(text), nullptr, false);
   if (!json.is_array()) return changes;
   const auto text_of = [](const nlohmann::json& entry, const char* key) { return entry.contains(key) && entry[key].is_string() ? entry[key].get<std::string>() : std::string(); };
   for (const auto& entry : json) {

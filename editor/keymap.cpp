@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 
 namespace limber::editor {
 
@@ -50,7 +51,7 @@ std::optional<Chord> Keymap::chord_of(std::string_view operator_id, const std::v
 }
 
 Keymap read_keymap(const Path& path, TwoMeanings two_meanings) {
-  const auto json = nlohmann::json::parse(read_file(path, kLargestFile), nullptr, false);
+  const auto json = nlohmann::json::parse(checked_json(read_file(path, kLargestFile), path.string()), nullptr, false);
   if (!json.is_object() || json.value("schema", nlohmann::json()) != "limber-keymap/1" || !json.contains("contexts") || !json["contexts"].is_object())
     throw Error("this is not a key map", path.string(), "choose another file");
   Keymap keymap;

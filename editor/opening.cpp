@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/pose/pose_io.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bvh.h"
@@ -40,7 +41,7 @@ std::string extension_of(const Path& path) {
 
 FileKind kind_of_json(const Path& path) {
   if (is_tissue_table(path)) return FileKind::Tissues;
-  const auto json = nlohmann::json::parse(read_file(path, kLargestJson), nullptr, false);
+  const auto json = nlohmann::json::parse(checked_json(read_file(path, kLargestJson), path.string()), nullptr, false);
   if (json.is_object() && json.contains("bones")) return json["bones"].is_array() ? FileKind::Rig : FileKind::Pose;
   throw Error("this JSON file is neither a rig, a pose nor a tissue table", path.string(), "choose another file");
 }

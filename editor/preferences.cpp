@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "editor/assets.h"
 #include "editor/arrangement_json.h"
 #include "editor/editor.h"
@@ -94,9 +95,9 @@ Path preferences_path() {
 
 Preferences preferences_from_json(const std::string& text, std::string& problem) {
   Preferences preferences;
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = Json::parse(sound_json(text), nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != "limber-preferences/1") {
-    problem = "the file is damaged; the program's own are used, and take its place at the next change";
+    problem = "the file is damaged";
     return preferences;
   }
   visit(preferences, Reader{json});
@@ -113,12 +114,19 @@ Preferences preferences_from_json(const std::string& text, std::string& problem)
 Preferences read_preferences(const Path& path, std::string& problem) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return {};
+  Preferences preferences;
   try {
-    return preferences_from_json(read_file(path, kLargestFile), problem);
+    preferences = preferences_from_json(read_file(path, kLargestFile), problem);
   } catch (const Error& error) {
     problem = error.what();
     return {};
   }
+  if (problem.empty()) return preferences;
+  // Out of the way of the next start, and not lost.
+  const Path aside = path.string() + ".damaged";
+  std::filesystem::rename(path, aside, ignored);
+  problem = Error(problem, path.string(), "the program's own are used; the old file is kept as " + aside.filename().string()).what();
+  return preferences;
 }
 
 std::string to_json(const Preferences& preferences) {

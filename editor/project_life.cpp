@@ -147,7 +147,11 @@ void replace_project(Editor& editor, std::shared_ptr<Opened> opened) {
   editor.start_screen = false;
   if (opened->extents) editor.views->extents = opened->extents;
   frame_all(editor, false);
-  if (!opened->editor.empty()) restore_editor_state(editor, opened->editor);
+  try {
+    if (!opened->editor.empty()) restore_editor_state(editor, opened->editor);
+  } catch (const Error& error) {
+    editor.messages.warn("Views and tools begin anew", error.what());
+  }
   editor.touch();
   if (opened->session) offer_leftover(editor, opened->recover);
   if (opened->then) opened->then(editor);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 
 namespace limber::editor {
 
@@ -59,7 +60,7 @@ std::string read_settings_text(const Path& file, const std::string& schema, std:
     warning = failure.what();
     return "";
   }
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = Json::parse(sound_json(text), nullptr, false);
   if (json.is_object() && json.value("schema", Json()) == schema) return text;
   fs::rename(file, file.string() + ".damaged", error);
   warning = Error("settings were damaged and begin anew", file.string(), "the old file is kept as " + file.filename().string() + ".damaged").what();
@@ -70,7 +71,7 @@ Remembered read_remembered(const Path& file, std::string& warning) {
   Remembered remembered;
   const std::string text = read_settings_text(file, kSchema, warning);
   if (text.empty()) return remembered;
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = Json::parse(sound_json(text), nullptr, false);
   if (const auto list = json.find("recent"); list != json.end() && list->is_array())
     for (const Json& entry : *list) {
       if (!entry.is_object() || !entry.contains("path") || !entry["path"].is_string()) continue;

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 #include "core/report/report.h"
 #include "core/resample/pose_path.h"
 #include "editor/editor.h"
@@ -102,7 +103,7 @@ std::array<glm::dvec3, 2> in_grid(const std::array<glm::dvec3, 2>& box, const Gr
 ResultFacts facts_of_report(const std::string& text) {
   ResultFacts facts;
   facts.gates = all_gates(text);
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = Json::parse(sound_json(text), nullptr, false);
   if (!json.is_object()) return facts;
   facts.seconds = method_seconds(text);
   if (json.contains("total")) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 
 namespace limber::editor {
 
@@ -69,7 +70,7 @@ double relative_luminance(Colour colour) {
 }  // namespace
 
 Theme read_theme(const Path& path) {
-  const auto json = nlohmann::json::parse(read_file(path), nullptr, false);
+  const auto json = nlohmann::json::parse(checked_json(read_file(path), path.string()), nullptr, false);
   if (!json.is_object() || json.value("schema", nlohmann::json()) != "limber-theme/1" || !json.contains("colours"))
     throw Error("this is not a theme", path.string(), "choose another theme");
   Theme theme;

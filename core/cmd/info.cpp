@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/cmd/command.h"
 #include "core/cmd/info_project.h"
 #include "core/cmd/info_rig.h"
@@ -64,7 +65,9 @@ Json describe_tissues(const Path& path) {
 
 Json describe_weights(const Path& path) {
   const WeightsSummary weights = summarize_weights(path);
-  return {{"kind", "weights"}, {"bones", Json::parse(weights.bones, nullptr, false)}, {"voxels", weights.voxels}};
+  const Json bones = Json::parse(checked_json(weights.bones, path.string()), nullptr, false);
+  if (!bones.is_array()) throw Error("the weights name no bones", path.string(), "make them anew with `limber weights`");
+  return {{"kind", "weights"}, {"bones", bones}, {"voxels", weights.voxels}};
 }
 
 Json describe(const Path& path) {

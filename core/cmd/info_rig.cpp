@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/cmd/command.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/bvh.h"
@@ -90,7 +91,7 @@ enum class JsonFile { Rig, Pose, Other };
 bool is_rotation(const nlohmann::json& json) { return json.is_object() && (json.contains("rotation_wxyz") || json.contains("axis")); }
 
 JsonFile kind_of_json(const Path& file) {
-  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  const auto json = nlohmann::json::parse(checked_json(read_file(file), file.string()), nullptr, false);
   if (!json.is_object() || !json.contains("bones")) return JsonFile::Other;
   const auto& bones = json["bones"];
   if (bones.is_object()) return std::all_of(bones.begin(), bones.end(), is_rotation) ? JsonFile::Pose : JsonFile::Other;
@@ -98,7 +99,7 @@ JsonFile kind_of_json(const Path& file) {
 }
 
 Json describe_pose(const Path& file) {
-  const auto json = nlohmann::json::parse(read_file(file), nullptr, false);
+  const auto json = nlohmann::json::parse(checked_json(read_file(file), file.string()), nullptr, false);
   Json names = Json::array();
   for (const auto& [name, value] : json["bones"].items()) names.push_back(name);
   return {{"kind", "pose"}, {"bones", names}};

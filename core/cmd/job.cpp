@@ -16,6 +16,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
 #include "core/project/worker.h"
@@ -67,7 +68,7 @@ std::vector<std::string> words_of(const Json& job, const Path& path) {
 }
 
 Json read_job(const Path& path) {
-  const Json job = Json::parse(read_file(path, kLargestJob), nullptr, false);
+  const Json job = Json::parse(checked_json(read_file(path, kLargestJob), path.string()), nullptr, false);
   if (!job.is_object()) throw Error("this is not a job", path.string(), "write a JSON object with \"command\" and its options");
   const auto require = [&](const char* key) {
     if (!job.contains(key) || !job[key].is_string())

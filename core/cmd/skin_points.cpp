@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/cmd/command.h"
 #include "core/deform/skinning.h"
 
@@ -27,7 +28,7 @@ struct SkinCase {
 class CaseReader {
  public:
   explicit CaseReader(const Path& path) : where_(path.string()) {
-    json_ = nlohmann::json::parse(read_file(path), nullptr, false);
+    json_ = nlohmann::json::parse(checked_json(read_file(path), where_), nullptr, false);
     if (!json_.is_object()) fail("not a JSON object", "give a file of schema skin-ref/1");
     if (json_.value("schema", nlohmann::json()) != "skin-ref/1")
       fail("\"schema\" is not \"skin-ref/1\"", "give a file of that schema");

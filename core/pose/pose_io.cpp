@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 
 namespace limber {
 
@@ -54,7 +55,7 @@ glm::dquat rotation_of(const Json& value, const std::string& where) {
 
 Pose parse_pose(const std::string& text, const std::string& where, const Armature& armature) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = Json::parse(checked_json(text, where));
     if (!json.is_object() || !json.contains("bones") || !json["bones"].is_object())
       throw Error("there is no table of bones", where, "give {\"bones\": {name: {\"axis\": [3], \"degrees\": d}}}");
     Pose pose = rest_pose(armature);

@@ -27,6 +27,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 
 extern char** environ;
 
@@ -177,7 +178,7 @@ class Listener {
   void on_line() {
     constexpr std::string_view kWarning = "limber: warning: ", kName = "limber: ";
     if (line_.starts_with('{')) {
-      const auto json = nlohmann::json::parse(line_, nullptr, false);
+      const auto json = nlohmann::json::parse(sound_json(line_), nullptr, false);
       if (json.is_object() && json.contains("processor_seconds"))
         return on_beat(number(json, "processor_seconds").value_or(0));
       if (!json.is_object() || !json.contains("stage") || !json["stage"].is_string()) return;

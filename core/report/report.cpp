@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "core/base/json_text.h"
 #include "core/rig/joint_limits.h"
 #include "core/rig/joint_names.h"
 
@@ -357,7 +358,7 @@ std::string to_json(const Report& report) {
 }
 
 double method_seconds(const std::string& report) {
-  const Json json = Json::parse(report, nullptr, false);
+  const Json json = Json::parse(sound_json(report), nullptr, false);
   double sum = 0;
   if (const auto seconds = json.find("seconds"); seconds != json.end() && seconds->is_object())
     for (const char* stage : {"deform", "mesh", "solve", "rasterize"})

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/json_text.h"
 namespace limber {
 
 namespace {
@@ -55,7 +56,7 @@ QualityGate judge_gap(const Json& report) {
 }  // namespace
 
 std::vector<QualityGate> solve_gates(const std::string& report) {
-  const Json json = Json::parse(report, nullptr, false);
+  const Json json = Json::parse(sound_json(report), nullptr, false);
   return {judge_reached(json), judge_gap(json)};
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/rig/bender_armature.h"
 #include "core/rig/bvh.h"
 #include "core/rig/gltf.h"
@@ -173,7 +174,7 @@ std::string armature_json_text(const Armature& armature) {
 
 Armature parse_armature_json(const std::string& text, const std::string& where) {
   try {
-    const Json rig = Json::parse(text);
+    const Json rig = Json::parse(checked_json(text, where));
     if (!rig.is_object() || !rig.contains("bones") || !rig["bones"].is_array())
       throw Error("there is no list of bones", where, "give {\"space\": \"LPS\", \"unit\": \"mm\", \"bones\": [...]}");
     const glm::dvec3 scale = lps_mm_from_file(rig, where);

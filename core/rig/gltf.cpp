@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/base/rigid_transform.h"
 
 namespace limber {
@@ -318,7 +319,7 @@ void count_meshes(const Json& gltf, GltfSummary& summary, const std::string& whe
 GltfSummary parse_gltf(const std::string& bytes, bool is_binary, const std::string& where) {
   try {
     const Chunks chunks = is_binary ? chunks_of_glb(bytes, where) : Chunks{bytes};
-    const Json gltf = Json::parse(chunks.json);
+    const Json gltf = Json::parse(checked_json(std::string(chunks.json), where));
     if (!gltf.is_object()) throw Error("this is no glTF", where, "export the file again");
     check_types(gltf, "gltf", "", where);
     const std::string version = gltf["asset"]["version"];

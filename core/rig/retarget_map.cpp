@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/rig/retarget.h"
 
 namespace limber {
@@ -38,7 +39,7 @@ RestStances stances_of(const Json& value, const std::string& where) {
 
 RetargetMap parse_retarget_map(const std::string& text, const std::string& where, const Motion& motion, const Armature& armature) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = Json::parse(checked_json(text, where));
     if (!json.is_object()) throw Error("this is no map", where, "write {\"source joint\": \"rig bone\", ...}");
     std::set<std::string> joints;
     for (const BvhJoint& joint : motion.joints) joints.insert(joint.name);

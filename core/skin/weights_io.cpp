@@ -14,6 +14,7 @@
 
 #include "core/base/deflate.h"
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/skin/best_four.h"
 #include "core/volume/volume_io.h"
 #include "core/volume/seam_text.h"
@@ -70,7 +71,7 @@ Header read_header(std::istream& in, const std::string& where) {
 
 // Place in the rig of each of the file's bones.
 std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::string& where, const Armature& armature) {
-  const auto list = nlohmann::json::parse(names, nullptr, false);
+  const auto list = nlohmann::json::parse(checked_json(names, where), nullptr, false);
   if (!list.is_array() || list.empty()) throw Error("the weights name no bones", where, kMakeAnew);
   std::map<std::string, int> place;
   for (std::size_t b = 0; b < armature.bones.size(); ++b) place[armature.bones[b].name] = static_cast<int>(b);

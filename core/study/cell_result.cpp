@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 
 namespace limber {
 
@@ -63,7 +64,7 @@ CellResult read_result(const Study& study, const CellOutcome& outcome) {
   result.report = read_file(outcome.folder / "report.json");
   result.cell_json = read_file(outcome.folder / "cell.json");
   try {
-    const Json report = Json::parse(result.report), cell = Json::parse(result.cell_json);
+    const Json report = Json::parse(checked_json(result.report, outcome.folder.string())), cell = Json::parse(checked_json(result.cell_json, outcome.folder.string()));
     result.cpu_seconds = cell.at("cpu_seconds");
     result.wall_seconds = cell.at("wall_seconds");
     result.machine = cell.at("machine");
@@ -88,7 +89,7 @@ std::optional<double> weights_seconds(const Path& out, const CellResult& cell) {
     if (!path.ends_with("weights.nrrd")) continue;
     const Path file = out / "bodies" / Path(path).parent_path().filename() / "body.json";
     if (!std::filesystem::exists(file)) return {};
-    const Json json = Json::parse(read_file(file), nullptr, false);
+    const Json json = Json::parse(sound_json(read_file(file)), nullptr, false);
     if (json.is_object() && json.contains("cpu_seconds")) return json["cpu_seconds"].value("weights", 0.0);
   }
   return {};

@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/project/worker.h"
 #include "core/report/report.h"
 #include "core/study/computing_sources.h"
@@ -260,14 +261,14 @@ class Runner {
   // Whole, and of this very cell.
   static bool is_done(const Path& folder, const std::string& key) {
     if (!fs::exists(folder / "cell.json")) return false;
-    const Json json = Json::parse(read_file(folder / "cell.json"), nullptr, false);
+    const Json json = Json::parse(sound_json(read_file(folder / "cell.json")), nullptr, false);
     return json.is_object() && json.value("key", "") == key && fs::exists(folder / "report.json") && fs::exists(folder / "posed.nrrd");
   }
   static bool is_rest(const StudyPose& pose) { return pose.flex.empty() && pose.body.empty() && pose.pose.empty() && pose.motion.empty(); }
   // At rest every technique takes as long as a blend.
   int kind_of(const StudyCell& cell) const { return is_rest(study_.poses[cell.pose]) ? 0 : static_cast<int>(study_.techniques[cell.technique]); }
   static double wall_seconds_of(const Path& folder) {
-    return Json::parse(read_file(folder / "cell.json"), nullptr, false).value("wall_seconds", 0.0);
+    return Json::parse(sound_json(read_file(folder / "cell.json")), nullptr, false).value("wall_seconds", 0.0);
   }
 
   CellOutcome compute(const StudyCell& cell) {

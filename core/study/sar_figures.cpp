@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 
 namespace limber {
 
@@ -42,7 +43,7 @@ SarFigures figures_of(const Json& json, const Study& study, const std::vector<Ce
 std::optional<SarFigures> read_sar(const Path& out, const Study& study, const std::vector<CellResult>& cells) {
   const Path path = out / "sar.json";
   if (!std::filesystem::exists(path)) return {};
-  const Json json = Json::parse(read_file(path, kLargest), nullptr, false);
+  const Json json = Json::parse(checked_json(read_file(path, kLargest), path.string()), nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != "limber-sar/2") throw Error("this is no SAR of a study, or that of an older version", path.string(), "delete it, or let sar_openems.py study write it again");
   try {
     return figures_of(json, study, cells);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/report/fem_measures.h"
 #include "core/report/report.h"
 #include "core/study/html_report.h"
@@ -81,7 +82,7 @@ std::string session_page(const SessionPage& session, const Path& scratch, const 
   std::set<std::pair<int, int>> taken;
   for (const SessionResult& one : session.results) {
     progress.update("results", double(outcomes.size()) / double(session.results.size()));
-    const Json report = Json::parse(one.result->report, nullptr, false);
+    const Json report = Json::parse(sound_json(one.result->report), nullptr, false);
     const int technique = index_of(study.techniques, technique_of(*one.result, report));
     // Two of a pose by one technique: by other settings, or of another rig.
     int pose = index_of(poses, one.pose);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 
 namespace limber {
 
@@ -224,7 +225,7 @@ std::string spacing_text(const std::optional<double>& spacing) {
 
 Study read_study(const Path& path) {
   const Reader read(path);
-  const Json json = Json::parse(read_file(path, kLargestDescription), nullptr, false);
+  const Json json = Json::parse(checked_json(read_file(path, kLargestDescription), path.string()), nullptr, false);
   if (!json.is_object()) read.refuse("this is no description of a study", "", R"(write a JSON object: {"volume": FILE, "rig": FILE, "poses": [...]})");
   read.check_keys(json, "", {"name", "volume", "phantom", "rig", "tissues", "bones", "weights", "spacings_mm", "poses", "methods", "quality", "fit_joints", "nearest", "gates"});
   Study study{.name = read.text(json, "name", path.stem().string()), .description = path};

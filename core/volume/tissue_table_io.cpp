@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 #include "core/volume/header_text.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/tissue_table_io.h"
@@ -103,7 +104,7 @@ Tissue tissue_from_json(double value, const Json& entry, const std::string& wher
 std::vector<Tissue> tissues_from_json(const std::string& bytes, const std::string& where) {
   Json json;
   try {
-    json = Json::parse(bytes);
+    json = Json::parse(checked_json(bytes, where));
   } catch (const Json::exception& error) {
     throw Error("the JSON is damaged", where, std::string(error.what()).substr(0, 120));
   }
@@ -223,7 +224,7 @@ bool is_tissue_table(const Path& path) {
   if (extension == ".ctbl" || extension == ".label") return true;
   if (extension == ".txt") return !is_virtual_family(path);
   if (extension != ".json") return false;
-  const Json json = Json::parse(read_file(path, kMostBytes), nullptr, false);
+  const Json json = Json::parse(checked_json(read_file(path, kMostBytes), path.string()), nullptr, false);
   if (!json.is_object() || json.empty()) return false;
   for (const auto& [key, entry] : json.items())
     if (key.empty() || key.find_first_not_of("-0123456789") != std::string::npos) return false;

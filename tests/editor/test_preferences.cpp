@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "editor/key_changes.h"
 #include "tests/editor/small_editor.h"
 
@@ -62,6 +63,23 @@ TEST_CASE("preferences: a damaged file gives the program's own and says so, wron
   CHECK(odd.keys.at({"global", "x"}) == std::vector<std::string>{"F5"});
   CHECK(odd.recent_commands == std::vector<std::string>{"a"});
   CHECK(odd.command_counts == std::map<std::string, int>{{"a", 0}});
+}
+
+TEST_CASE("preferences: a file that is nested a million deep, wherever, is set aside and said, and the program's own are used") {
+  std::string deep;
+  for (int i = 0; i < 1'000'000; ++i) deep += '[';
+  for (int i = 0; i < 1'000'000; ++i) deep += ']';
+  const TemporaryFolder folder;
+  for (const char* key : {"schema", "keys", "arrangements", "recent_commands", "interface"}) {
+    CAPTURE(key);
+    const std::string schema = key == std::string("schema") ? "" : R"("schema": "limber-preferences/1", )";
+    write_file_atomically(folder / "preferences.json", "{" + schema + "\"" + key + "\": " + deep + "}");
+    std::string problem;
+    CHECK(read_preferences(folder / "preferences.json", problem) == Preferences{});
+    CHECK(problem.find("preferences.json.damaged") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(folder / "preferences.json"));
+    CHECK(std::filesystem::file_size(folder / "preferences.json.damaged") > 2'000'000);
+  }
 }
 
 TEST_CASE("preferences: a changed key takes the place of the old one, and a clash is told of both") {
