@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/cmd/command_files.h"
 
+#include <cmath>
+#include <cstdlib>
+
 #include "core/base/named_files.h"
 #include "core/project/journal.h"
 #include "core/volume/volume_files.h"
@@ -48,6 +51,22 @@ std::vector<Path> with_companions(const Path& path) {
   if (path.extension() == ".limber") return {path, journal_path(std::filesystem::absolute(path))};
   return is_volume_path(path) ? files_of_volume(path) : std::vector<Path>{path};
 }
+
+// Whether the word is "nan", "inf" or beyond what a number can be. CLI11 takes those, and no range that it checks holds for "nan".
+bool is_no_finite_number(const std::string& word) {
+  char* end = nullptr;
+  const double number = std::strtod(word.c_str(), &end);
+  return end != word.c_str() && *end == '\0' && !std::isfinite(number);
+}
+
+// A word of that kind is a number where it is no file.
+void check_numbers(CLI::App& command) {
+  std::error_code error;
+  for (CLI::Option* option : command.get_options())
+    for (const std::string& word : option->results())
+      if (is_no_finite_number(word) && option->get_type_name() != "TEXT" && !std::filesystem::exists(word, error))
+        throw UsageError("this is no finite number", option->get_name() + " " + word, "write a number that can be reckoned with");
+}
 }  // namespace
 
 CLI::Option* writes(CLI::Option* option, FilesOfValue files) {
@@ -57,6 +76,7 @@ CLI::Option* writes(CLI::Option* option, FilesOfValue files) {
 }
 
 void check_files(CLI::App& command, const Path& job) {
+  check_numbers(command);
   std::vector<NamedFile> inputs, outputs;
   if (!job.empty()) inputs.push_back({"the job", job});
   for (CLI::Option* option : command.get_options()) {

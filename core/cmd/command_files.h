@@ -25,7 +25,7 @@ using FilesOfValue = std::function<OptionFiles(const std::string& value)>;
 // it, or the `files` that it tells of.
 CLI::Option* writes(CLI::Option* option, FilesOfValue files = {});
 
-// Throws UsageError for a command whose options are parsed. `job`: a file that is read besides, "" for none.
+// Throws UsageError for a command whose options are parsed, also where an option is given "nan" or "inf" as a number. `job`: a file that is read besides, "" for none.
 void check_files(CLI::App& command, const Path& job = {});
 
 // Every command of the program has its files checked before it runs.

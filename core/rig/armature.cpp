@@ -13,7 +13,10 @@ namespace limber {
 namespace {
 constexpr int kMostBones = 4096;
 
-bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+// Farther from the origin, a millimetre is lost in rounding.
+constexpr double kFarthestMm = 1e9;
+// False also for what is no number.
+bool near_enough(const glm::dvec3& v) { return std::abs(v.x) <= kFarthestMm && std::abs(v.y) <= kFarthestMm && std::abs(v.z) <= kFarthestMm; }
 
 std::string names_of(const Armature& armature) {
   std::string names;
@@ -47,8 +50,8 @@ void check_armature(const Armature& armature, const std::string& where) {
     if (!names.insert(bone.name).second) throw Error("two bones share a name", here, "give every bone a name of its own");
     if (bone.parent < -1 || bone.parent >= static_cast<int>(i))
       throw Error("a bone's parent does not come before it", here, "list parents before their children");
-    if (!finite(bone.head) || !finite(bone.tail) || !std::isfinite(bone.roll))
-      throw Error("a bone's position is not a finite number", here, "give head, tail and roll as finite numbers");
+    if (!near_enough(bone.head) || !near_enough(bone.tail) || !std::isfinite(bone.roll))
+      throw Error("a bone's position is not a finite number of millimetres within 1000 km", here, "give head, tail and roll as finite numbers");
   }
 }
 

@@ -25,6 +25,9 @@ constexpr std::size_t kMostFiles = 100000;
 constexpr double kEvenGaps = 0.02;
 // The most one byte of a compressed slice may unpack to.
 constexpr std::int64_t kCodecMost = 4000;
+// What the library may take besides the file and the pixels, each of which it holds up to four times. An element's length stands
+// in 32 bits, and the library allocates it before it reads it: a file of 300 bytes asks for 4 GB.
+constexpr std::size_t kCodecMemory = 64 << 20;
 
 struct Slice {
   Path path;
@@ -60,6 +63,12 @@ const Codec& codec(const Path& path) {
   return loaded;
 }
 
+ChildLimits limits_of(const Path& path, std::size_t pixel_bytes) {
+  ChildLimits limits;
+  limits.memory_bytes = kCodecMemory + 4 * (static_cast<std::size_t>(PlainFile(path).size()) + pixel_bytes);
+  return limits;
+}
+
 // The elements that describe an image, as text or as a 16-bit number.
 class Elements {
   // An element as it comes from the child, its bytes behind it.
@@ -84,7 +93,7 @@ class Elements {
           };
           return library.elements(path.c_str(), pass_on, const_cast<Send*>(&send)) == 0;
         },
-        kMostElements);
+        kMostElements, limits_of(path, 0)).sent;
     if (!sent) throw Error("the DICOM header is damaged", path.string(), "export the series again");
     for (std::size_t at = 0; at + sizeof(Head) <= sent->size();) {
       Head head;
@@ -156,8 +165,9 @@ Slice read_slice_header(const Path& path) {
     if (!spacing.empty()) slice.spacing = {spacing[1], spacing[0]};
   for (const auto& thickness : {elements.numbers(0x0018, 0x0050, 1), elements.numbers(0x0018, 0x0088, 1)})
     if (!thickness.empty() && thickness[0] != 0) slice.thickness = thickness[0];
-  if (const auto slope = elements.numbers(0x0028, 0x1053, 1); !slope.empty() && std::isfinite(slope[0]) && slope[0] != 0) slice.slope = slope[0];
-  if (const auto intercept = elements.numbers(0x0028, 0x1052, 1); !intercept.empty() && std::isfinite(intercept[0])) slice.intercept = intercept[0];
+  if (const auto slope = elements.numbers(0x0028, 0x1053, 1); !slope.empty() && slope[0] != 0) slice.slope = slope[0];
+  if (const auto intercept = elements.numbers(0x0028, 0x1052, 1); !intercept.empty()) slice.intercept = intercept[0];
+  check_scale(slice.slope, slice.intercept, path.string());
   return slice;
 }
 
@@ -251,7 +261,7 @@ class DicomSource final : public VoxelSource {
           send(buffer_.data(), buffer_.size());
           return true;
         },
-        buffer_.size());
+        buffer_.size(), limits_of(slice.path, buffer_.size())).sent;
     if (!sent || sent->size() != buffer_.size()) throw damaged();
     std::memcpy(buffer_.data(), sent->data(), sent->size());
     if (scale_) to_float(slice);

@@ -186,9 +186,10 @@ class NiftiReader {
 
   void read_scale() {
     const double slope = fields_.real(at_.slope), intercept = fields_.real(at_.intercept);
-    if (slope == 0 || !std::isfinite(slope)) return;  // means: not scaled
+    if (slope == 0 || std::isnan(slope)) return;  // means: not scaled
     header_.volume.slope = slope;
-    header_.volume.intercept = std::isfinite(intercept) ? intercept : 0;
+    header_.volume.intercept = std::isnan(intercept) ? 0 : intercept;
+    check_scale(header_.volume.slope, header_.volume.intercept, where_);
   }
 
   void read_offset() {

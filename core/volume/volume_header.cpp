@@ -86,6 +86,13 @@ Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std:
   return grid;
 }
 
+void check_scale(double slope, double intercept, const std::string& where) {
+  constexpr double kMost = 1e15;
+  const bool can_be = std::abs(slope) <= kMost && std::abs(slope) >= 1 / kMost && std::abs(intercept) <= kMost;  // false for no number
+  if (!can_be)
+    throw Error("the values are scaled by " + text_of(slope) + " and shifted by " + text_of(intercept), where, "no image has such values; correct the header");
+}
+
 std::optional<std::vector<std::string>> names_of_pattern(std::string_view pattern, std::int64_t first, std::int64_t last,
                                                          std::int64_t step) {
   // %d, %5d or %05d, once: what a slice number needs, and nothing that printf could be tricked with.

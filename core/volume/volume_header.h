@@ -77,6 +77,10 @@ struct RawGrid {
 //   where  the file, for messages            throws Error naming the field
 Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std::string>& warnings);
 
+// Throws Error unless value = slope * stored + intercept can be reckoned with: both finite, the slope not 0, neither beyond 1e15,
+// and the slope no smaller than 1e-15.
+void check_scale(double slope, double intercept, const std::string& where);
+
 // A Grid whose world_from_voxel has these columns (mm), split into lengths and unit axes.
 RawGrid grid_from_columns(const std::vector<std::int64_t>& sizes, const glm::dmat3& columns, const glm::dvec3& origin);
 

@@ -280,12 +280,19 @@ TEST_CASE("command line: Ctrl-C ends with 3, a kill with nothing left, whenever 
   }
 }
 
-TEST_CASE("weights: a rig so far away that whole numbers do not reach it still gives every voxel its weights") {
+TEST_CASE("weights: a rig 900 km away still gives every voxel its weights, one beyond any number of millimetres is refused") {
   const Arm arm;
-  auto rig = nlohmann::json::parse(bytes_of(arm.rig));
-  for (auto& bone : rig["bones"])
-    for (const char* end : {"head", "tail"}) bone[end][0] = bone[end][0].get<double>() + 1e300;
-  std::ofstream(arm.rig) << rig;
-  for (const char* method : {"heat", "geodesic", "rigid"})
+  const auto rig = nlohmann::json::parse(bytes_of(arm.rig));
+  const auto move_away = [&](double mm) {
+    auto moved = rig;
+    for (auto& bone : moved["bones"])
+      for (const char* end : {"head", "tail"}) bone[end][0] = bone[end][0].get<double>() + mm;
+    std::ofstream(arm.rig) << moved;
+  };
+  for (const char* method : {"heat", "geodesic", "rigid"}) {
+    move_away(9e8);
     CHECK_MESSAGE(run_limber({"weights", arm.volume, "--rig", arm.rig, "--method", method, "-o", arm.folder / "w.nrrd"}).exit_code == 0, method);
+    move_away(1e300);
+    CHECK_MESSAGE(run_limber({"weights", arm.volume, "--rig", arm.rig, "--method", method, "-o", arm.folder / "w.nrrd"}).exit_code == 1, method);
+  }
 }
