@@ -119,7 +119,7 @@ void add_report(CLI::App& app) {
   command->add_option("BEFORE", options->before, "label volume")->required();
   command->add_option("AFTER", options->after, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table: names, kinds, densities");
-  auto* field = command->add_option("--field", options->field, "the displacement at each voxel of AFTER, as `limber resample --field` writes it: also judges what was exposed")->type_name("F.nrrd");
+  auto* field = command->add_option("--field", options->field, "the displacement at each voxel of AFTER, as `limber resample --field` writes it, in either direction: also judges what was exposed")->type_name("F.nrrd");
   auto* rig = command->add_option("--rig", options->rig, "with --field: also judges bones, limbs and bands; say the pose as for resample")->needs(field);
   command->add_option("--bone-map", options->bone_map, "as for resample")->type_name("FILE")->needs(rig);
   add_pose_options(*command, options->pose);

@@ -32,6 +32,7 @@
 #include "core/skin/weights_io.h"
 #include "core/volume/landmarks.h"
 #include "core/volume/volume_files.h"
+#include "core/volume/vector_volume_io.h"
 
 namespace limber::cmd {
 
@@ -283,6 +284,7 @@ void describe(Report& report, const Options& options, const Armature& rig, const
     if (!options.mesher.empty()) settings["mesher"] = options.mesher;
   }
   if (options.spacing) settings["spacing_mm"] = *options.spacing;
+  if (!options.field.empty()) settings["field_direction"] = options.field_direction;
   if (!options.pose.body.name.empty()) settings["pose_name"] = std::string(require_body_pose(options.pose.body.name, "--pose-name").name);
   if (!options.pose.body.joints.empty()) settings["joints"] = options.pose.body.joints;
   if (!options.pose.flex.empty()) settings["flex"] = options.pose.flex;
@@ -316,7 +318,7 @@ void write_mesh(const Options& options, const TissueTable& tissues, const FemSha
 
 void write_outputs(const Options& options, const Body& body, Posed& posed, Outputs& outputs) {
   outputs.write(options.output, [&] { write_volume(posed.volume, options.output, body.tissues, body.file.type); });
-  outputs.write(options.field, [&] { write_vector_volume(posed.volume.grid, posed.displacement, options.field); });
+  outputs.write(options.field, [&] { write_displacement_field(posed.volume.grid, {posed.displacement.data(), posed.displacement.size()}, direction, options.field); });
   outputs.write(options.jacobian, [&] { write_scalar_volume(posed.volume.grid, posed.jacobian, options.jacobian); });
   outputs.write(options.overlap, [&] { write_volume({posed.volume.grid, std::move(posed.overlap)}, options.overlap, {}, {"NRRD", "uint8", true}); });
   if (!options.mesh_out.empty()) write_mesh(options, body.tissues, *posed.shape, outputs);
@@ -330,6 +332,7 @@ void note_masses(Report& report, const MassExactReport& exact, const TissueTable
   for (const auto& [label, tissue] : exact.tissues) {
     if (tissue.wanted < 5000 || std::abs(tissue.after - tissue.wanted) * 1000 <= tissue.wanted) continue;
     const Tissue* known = tissues.find(label);
+  const FieldDirection direction = options.field_direction == kToRest ? FieldDirection::ToRest : FieldDirection::ToPosed;
     note(report, {(known ? known->name : "label " + std::to_string(label)) + " is " + std::to_string(std::abs(tissue.after - tissue.wanted)) + " voxels " +
                   (tissue.after < tissue.wanted ? "short of" : "above") + " its mass at rest: no border could move further"});
   }
@@ -516,7 +519,8 @@ void add_resample(CLI::App& app) {
   command->add_option("--mass-limit", options->mass_limit, "percent of a tissue that mass-exact may make up; more is refused (default: 3)")->needs(mass_exact)->check(CLI::Range(0.0, 20.0));
   writes(command->add_option("--with", options->grey, "a grey volume moved by the same map"), files_of_pair(options))->type_name("GREY=OUT");
   writes(command->add_option("--landmarks", options->landmarks, "points (name,x,y,z; mm, LPS) that travel with the pose"), files_of_pair(options))->type_name("IN.csv=OUT.csv");
-  writes(command->add_option("--field", options->field, "displacement at each posed voxel, mm"), files_written_to(options));
+  auto* field = writes(command->add_option("--field", options->field, "displacement at each posed voxel, mm, world axes (LPS), zero in air: posed minus rest, from the rest place of what lies there to the voxel"), files_written_to(options));
+  command->add_option("--field-direction", options->field_direction, "of --field: to-posed (posed minus rest), or to-rest, its negative: from each posed voxel to its rest place, with which ITK and SimpleITK warp the rest volume into the pose")->capture_default_str()->check(CLI::IsMember({kToPosed, kToRest}))->needs(field);
   writes(command->add_option("--overlap", options->overlap, "a label volume: 1 where two places of tissue claimed a posed voxel, 2 where two bones did"), files_written_to(options));
   writes(command->add_option("--jacobian", options->jacobian, "volume ratio at each posed voxel"), files_written_to(options));
   add_run_options(*command, options->run);

@@ -56,6 +56,10 @@ VectorVolume read_vector_volume(const Path& path) {
   header.grid.size.x *= 3;  // of the numbers in the file
   VoxelStream stream(path, header);
   field.voxels.resize(count);
+  const auto said = header.keys.find(kFieldDirectionKey);
+  const bool to_rest = said != header.keys.end() && said->second == kToRest;
+  if (said != header.keys.end() && !to_rest && said->second != kToPosed)
+    throw Error("the field points " + said->second.substr(0, 40), path.string(), std::string("its key ") + kFieldDirectionKey + " says " + kToPosed + " or " + kToRest);
   std::vector<glm::vec3> chunk(kChunk);
   for (std::size_t first = 0; first < count; first += kChunk) {
     const std::size_t some = std::min(kChunk, count - first);
@@ -63,6 +67,8 @@ VectorVolume read_vector_volume(const Path& path) {
     for (std::size_t i = 0; i < some; ++i)
       if (!std::isfinite(chunk[i].x) || !std::isfinite(chunk[i].y) || !std::isfinite(chunk[i].z))
         throw Error("the field has a displacement that is no number", path.string(), kWhatToDo);
+    if (to_rest)
+      for (std::size_t i = 0; i < some; ++i) chunk[i] = glm::vec3(0) - chunk[i];
     // Air is never written, and takes no memory.
     if (std::any_of(chunk.begin(), chunk.begin() + std::ptrdiff_t(some),
                     [](const glm::vec3& v) { return v != glm::vec3(0); }))

@@ -17,6 +17,7 @@
 #include "core/base/error.h"
 #include "core/volume/header_text.h"
 #include "core/volume/nifti_header.h"
+#include "core/volume/vector_volume_io.h"
 #include "core/volume/virtual_family.h"
 #include "core/volume/volume_header.h"
 #include "core/volume/volume_files.h"
@@ -89,6 +90,8 @@ struct Voxels {
   std::function<void(std::int64_t first, std::size_t count, void* to)> fill;
   TissueTable tissues;             // for formats that hold names
   int nifti_version = 1;
+  std::string description = {};  // one line of ASCII, at most 79 letters, which is what NIfTI has room for
+  std::vector<std::pair<std::string, std::string>> keys = {};  // of NRRD
 };
 
 void write_voxels(OutputFile& out, const Voxels& voxels) {
@@ -165,6 +168,8 @@ std::string nrrd_header(const Voxels& voxels, const std::string& data_name) {
   if (size_of(voxels.type) > 1) text += "endian: little\n";
   text += std::string("encoding: ") + (voxels.compress ? "gzip" : "raw") + "\nspace origin: (" + joined(grid.origin, ",") + ")\n";
   if (!data_name.empty()) text += "data file: " + data_name + "\n";
+  if (!voxels.description.empty()) text += "content: " + voxels.description + "\n";
+  for (const auto& [key, value] : voxels.keys) text += key + ":=" + escaped(value) + "\n";
   for (const auto& [key, value] : segment_keys(voxels.tissues, grid)) text += key + ":=" + escaped(value) + "\n";
   return text + "\n";
 }
@@ -204,8 +209,10 @@ constexpr std::string_view kCompressedSize = "CompressedDataSize = ";
 
 std::string meta_header(const Voxels& voxels, const std::string& data_name, const std::string& compressed_size) {
   const Grid& grid = voxels.grid;
-  std::string text = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = " +
-                     std::string(voxels.compress ? "True" : "False") + "\n";
+  std::string text = "ObjectType = Image\nNDims = 3\n";
+  if (!voxels.description.empty()) text += "Comment = " + voxels.description + "\n";
+  text += "BinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = " +
+          std::string(voxels.compress ? "True" : "False") + "\n";
   if (voxels.compress) text += std::string(kCompressedSize) + compressed_size + "\n";
   text += "TransformMatrix =";
   for (int axis = 0; axis < 3; ++axis) text += " " + joined(grid.direction[axis]);
@@ -237,12 +244,20 @@ int nifti_version(const Voxels& voxels) {
   return std::max({size.x, size.y, size.z}) > 32767 ? 2 : voxels.nifti_version;
 }
 
+std::string nifti_header(const Voxels& voxels, bool is_pair) {
+  const int version = nifti_version(voxels);
+  std::string bytes = make_nifti_header(voxels.grid, voxels.type, voxels.channels, version, is_pair);
+  constexpr std::size_t kDescription[] = {148, 240};  // `descrip` of versions 1 and 2
+  bytes.replace(kDescription[version - 1], voxels.description.size(), voxels.description);
+  return bytes;
+}
+
 void write_nifti(const Voxels& voxels, const Path& path) {
   const bool compress = lower_case(path.extension().string()) == ".gz";
   write_atomically(path, [&](const Path& temporary) {
     OutputFile out(temporary);
     if (compress) out.begin_deflate(Deflater::Wrap::Gzip);
-    write_text(out, make_nifti_header(voxels.grid, voxels.type, voxels.channels, nifti_version(voxels), false));
+    write_text(out, nifti_header(voxels, false));
     write_voxels(out, voxels);
     if (compress) out.end_deflate();
     out.close();
@@ -274,7 +289,7 @@ Writer writer_of(const Path& path) {
       Voxels plain = voxels;
       plain.compress = false;
       write_detached(plain, to, ".img", Deflater::Wrap::Gzip, [&](const std::string&, std::int64_t) {
-        return make_nifti_header(voxels.grid, voxels.type, voxels.channels, nifti_version(voxels), true);
+        return nifti_header(plain, true);
       });
     };
   if (ends(".txt"))
@@ -398,6 +413,18 @@ void write_vector_volume(const Grid& grid, std::span<const glm::vec3> vectors, c
   Voxels voxels{grid, VoxelType::Float32, 3, true, {}, {}, 1};
   voxels.fill = [&vectors](std::int64_t first, std::size_t count, void* to) {
     std::memcpy(to, &vectors[static_cast<std::size_t>(first)], count * sizeof(glm::vec3));
+  };
+  checked_writer(path)(voxels, path);
+}
+
+void write_displacement_field(const Grid& grid, std::span<const glm::vec3> to_posed, FieldDirection direction, const Path& path) {
+  const bool to_rest = direction == FieldDirection::ToRest;
+  Voxels voxels{grid, VoxelType::Float32, 3, true, {}, {}, 1};
+  voxels.description = to_rest ? "displacement, mm, LPS: rest minus posed, at posed voxels (as ITK warps rest)" : "displacement, mm, LPS: posed minus rest, at posed voxels";
+  voxels.keys = {{kFieldDirectionKey, to_rest ? kToRest : kToPosed}};
+  voxels.fill = [&to_posed, to_rest](std::int64_t first, std::size_t count, void* to) {
+    auto* out = static_cast<glm::vec3*>(to);
+    for (std::size_t i = 0; i < count; ++i) out[i] = to_rest ? glm::vec3(0) - to_posed[static_cast<std::size_t>(first) + i] : to_posed[static_cast<std::size_t>(first) + i];
   };
   checked_writer(path)(voxels, path);
 }
