@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "core/base/outputs.h"
 #include "core/base/parallel.h"
@@ -31,8 +32,8 @@
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
 #include "core/volume/landmarks.h"
-#include "core/volume/volume_files.h"
 #include "core/volume/vector_volume_io.h"
+#include "core/volume/volume_files.h"
 
 namespace limber::cmd {
 
@@ -42,7 +43,7 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method = "mix", output, report, grey, field, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps, seams, glide;
+  std::string weights, method = "mix", output, report, grey, field, field_direction = kToPosed, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps, seams, glide;
   std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
@@ -283,8 +284,8 @@ void describe(Report& report, const Options& options, const Armature& rig, const
     settings["quality"] = options.quality.empty() ? std::string("normal") : options.quality;
     if (!options.mesher.empty()) settings["mesher"] = options.mesher;
   }
-  if (options.spacing) settings["spacing_mm"] = *options.spacing;
   if (!options.field.empty()) settings["field_direction"] = options.field_direction;
+  if (options.spacing) settings["spacing_mm"] = *options.spacing;
   if (!options.pose.body.name.empty()) settings["pose_name"] = std::string(require_body_pose(options.pose.body.name, "--pose-name").name);
   if (!options.pose.body.joints.empty()) settings["joints"] = options.pose.body.joints;
   if (!options.pose.flex.empty()) settings["flex"] = options.pose.flex;
@@ -298,6 +299,20 @@ void describe(Report& report, const Options& options, const Armature& rig, const
   for (const std::string& path : {options.body.volume, options.body.rig, options.body.tissues, options.weights, options.pose.pose,
                                   options.pose.motion, options.pose.map})
     if (!path.empty()) report.inputs.push_back(describe_input(path));
+}
+
+// What the tets of the solve hold of the body at rest.
+std::string mesh_share(const TissueModel& model, const Body& body) {
+  std::set<Label> in_mesh, in_body;
+  double mm3 = 0, all_mm3 = 0;
+  for (const auto& part : model.parts)
+    if (part.label != 0) mm3 += part.mm3, in_mesh.insert(part.label);
+  for (const Label label : body.file.volume.voxels)
+    if (label != 0) all_mm3 += body.file.volume.grid.voxel_volume(), in_body.insert(label);
+  char text[240];
+  std::snprintf(text, sizeof text, "the mesh holds %.1f %% of the body's volume and %zu of its %zu tissues: it is what bends, not a whole phantom; what is rigid or does not bend is not in it, and each tet has one tissue",
+                100 * mm3 / all_mm3, in_mesh.size(), in_body.size());
+  return text;
 }
 
 // The mesh as NAME.node and NAME.ele with organ numbers, and NAME.material, where what all of them are made of is known.
@@ -317,6 +332,7 @@ void write_mesh(const Options& options, const TissueTable& tissues, const FemSha
 }
 
 void write_outputs(const Options& options, const Body& body, Posed& posed, Outputs& outputs) {
+  const FieldDirection direction = options.field_direction == kToRest ? FieldDirection::ToRest : FieldDirection::ToPosed;
   outputs.write(options.output, [&] { write_volume(posed.volume, options.output, body.tissues, body.file.type); });
   outputs.write(options.field, [&] { write_displacement_field(posed.volume.grid, {posed.displacement.data(), posed.displacement.size()}, direction, options.field); });
   outputs.write(options.jacobian, [&] { write_scalar_volume(posed.volume.grid, posed.jacobian, options.jacobian); });
@@ -332,7 +348,6 @@ void note_masses(Report& report, const MassExactReport& exact, const TissueTable
   for (const auto& [label, tissue] : exact.tissues) {
     if (tissue.wanted < 5000 || std::abs(tissue.after - tissue.wanted) * 1000 <= tissue.wanted) continue;
     const Tissue* known = tissues.find(label);
-  const FieldDirection direction = options.field_direction == kToRest ? FieldDirection::ToRest : FieldDirection::ToPosed;
     note(report, {(known ? known->name : "label " + std::to_string(label)) + " is " + std::to_string(std::abs(tissue.after - tissue.wanted)) + " voxels " +
                   (tissue.after < tissue.wanted ? "short of" : "above") + " its mass at rest: no border could move further"});
   }
@@ -386,6 +401,7 @@ bool finish(const Options& options, const Body& body, const Pose& pose, const st
   if (posed.report.mass_exact) note_masses(report, *posed.report.mass_exact, body.tissues);
 
   if (!options.weights.empty()) note_foreign_weights(body, pose, landmarks, posed, report);
+  if (!options.mesh_out.empty()) note(report, {mesh_share(posed.shape->model, body)});
 
   Outputs outputs;
   const Stopwatch writing;
@@ -505,7 +521,7 @@ void add_resample(CLI::App& app) {
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));
   command->add_option("--mesher", options->mesher, "fem: who fills the body's surface with tets: lattice (default) or tetgen")->check(CLI::IsMember({"lattice", "tetgen"}));
-  writes(command->add_option("--mesh-out", options->mesh_out, "fem: the posed mesh as NAME.node and NAME.ele, with the tissue of each tet, and NAME.material for particle codes"), files_written_to(options, {".node", ".ele", ".material"}))->type_name("NAME");
+  writes(command->add_option("--mesh-out", options->mesh_out, "fem: the posed tets of the solve as NAME.node and NAME.ele, with the tissue that fills most of each, and NAME.material in the form of particle codes. It holds the soft tissue that bends, not the whole body: how much is told"), files_written_to(options, {".node", ".ele", ".material"}))->type_name("NAME");
   command->add_option("--mesh-unit", options->mesh_unit, "fem: of the mesh: mm, or cm as in the phantoms of ICRP 145")->check(CLI::IsMember({"mm", "cm"}));
   writes(command->add_option("--steps", options->steps, "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step"), files_written_to(options, {".mesh", ".step"}))->type_name("NAME");
   add_glide_option(*command, options->glide);

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <thread>
 
+#include <Eigen/Geometry>
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
@@ -14,6 +15,7 @@
 
 #include "core/base/file.h"
 #include "core/resample/fem_steps.h"
+#include "core/volume/volume_io.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -93,6 +95,22 @@ TEST_CASE("fem command: the steps that it leaves for a watcher end where the mes
   CHECK(nodes);
   CHECK(worst < 1e-3);
   CHECK((step->V - mesh->tets.V).rowwise().norm().maxCoeff() > 10);  // the forearm has moved
+
+  // The share of the body that the command tells, by the tets' own volumes at rest: they reach a little beyond the tissue.
+  double mesh_mm3 = 0;
+  for (int t = 0; t < mesh->tets.T.rows(); ++t) {
+    const auto corner = [&](int i) -> Eigen::RowVector3d { return mesh->tets.V.row(mesh->tets.T(t, i)); };
+    mesh_mm3 += std::abs((corner(1) - corner(0)).dot((corner(2) - corner(0)).cross(corner(3) - corner(0)))) / 6;
+  }
+  const LabelVolume rest = read_volume(arm.folder / "volume.nrrd").volume;
+  const double body_mm3 = rest.grid.voxel_volume() * double(rest.voxels.size() - std::size_t(std::count(rest.voxels.begin(), rest.voxels.end(), Label{0})));
+  const std::size_t told = run.err.find("the mesh holds ");
+  REQUIRE(told != std::string::npos);
+  const double share = std::stod(run.err.substr(told + 15));
+  CHECK(share > 5);
+  CHECK(share < 100 * mesh_mm3 / body_mm3);
+  CHECK(share > 80 * mesh_mm3 / body_mm3);
+  CHECK(run.err.find("not a whole phantom") != std::string::npos);
   CHECK(arm.resample({"--method", "dqs", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--steps", arm.folder / "solve"}).err.starts_with("limber: --steps"));
 }
 
