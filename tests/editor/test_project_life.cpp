@@ -72,6 +72,21 @@ TEST_CASE("project: saved, closed and opened again it is the same document with 
   CHECK(sitting.editor().remembered.recents[0].path == home / "ball.limber");
 }
 
+TEST_CASE("project: state of the editor that is nested a million deep is left out with a message, and the project opens") {
+  const Home home;
+  {
+    Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"});
+    Project project{.document = sitting.editor().document()};
+    for (const char bracket : {'[', ']'}) project.editor += std::string(1'000'000, bracket);
+    project.editor = R"({"schema": "limber-editor/1", "method": )" + project.editor + ", \"arrangements\": " + project.editor + "}";
+    DocumentWriter writer;
+    create_project(project, home / "deep.limber", writer);
+  }
+  Sitting sitting(home.folder.path(), {home / "deep.limber"});
+  sitting.play("expect name deep.limber\n expect toast \"Views and tools begin anew\"");
+  CHECK(sitting.editor().document().volume != nullptr);
+}
+
 TEST_CASE("project: unsaved edits are asked about before New, Open and Quit, and Cancel changes nothing") {
   const Home home;
   Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"});
