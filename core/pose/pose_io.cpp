@@ -16,6 +16,8 @@ using Json = nlohmann::json;
 
 // A rotation for each of 4096 bones is far smaller.
 constexpr std::uint64_t kMostBytes = 64 << 20;
+// Of millimetres and degrees: no body goes 1000 km.
+constexpr double kLargest = 1e9;
 
 std::vector<double> numbers(const Json& value, size_t count, const char* key, const std::string& where) {
   const std::string what = "\"" + std::string(key) + "\" is not " + std::to_string(count) + " finite number" + (count > 1 ? "s" : "");
@@ -23,7 +25,7 @@ std::vector<double> numbers(const Json& value, size_t count, const char* key, co
   if (!list.is_array() || list.size() != count) throw Error(what, where, "write them as a list");
   std::vector<double> read;
   for (const Json& one : list) {
-    if (!one.is_number()) throw Error(what, where, "write numbers");
+    if (!one.is_number() || !(std::abs(one.get<double>()) <= kLargest)) throw Error(what, where, "write numbers up to 1e9");
     read.push_back(one.get<double>());
   }
   return read;

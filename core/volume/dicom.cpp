@@ -25,7 +25,7 @@ constexpr std::size_t kMostFiles = 100000;
 constexpr double kEvenGaps = 0.02;
 // The most one byte of a compressed slice may unpack to.
 constexpr std::int64_t kCodecMost = 4000;
-// What the library may take besides the file and the pixels, each of which it holds up to four times. An element's length stands
+// What the library may take besides the file, which it holds up to four times, and the pixels, which JPEG 2000 spreads widely. An element's length stands
 // in 32 bits, and the library allocates it before it reads it: a file of 300 bytes asks for 4 GB.
 constexpr std::size_t kCodecMemory = 64 << 20;
 
@@ -63,9 +63,29 @@ const Codec& codec(const Path& path) {
   return loaded;
 }
 
+// Whether the file says that its pixels are stored as they are (implicit or explicit lengths, either byte order).
+bool is_plain(const PlainFile& file) {
+  std::string start(2048, '\0');
+  start.resize(file.read_at(0, start.data(), start.size()));
+  constexpr std::string_view kSyntax("\x02\0\x10\0UI", 6);
+  const std::size_t at = start.find(kSyntax);
+  if (at == std::string::npos || at + 8 > start.size()) return false;
+  const std::size_t size = static_cast<unsigned char>(start[at + 6]) + 256u * static_cast<unsigned char>(start[at + 7]);
+  std::string syntax = start.substr(at + 8, size);
+  while (!syntax.empty() && (syntax.back() == '\0' || is_blank(syntax.back()))) syntax.pop_back();
+  return syntax == "1.2.840.10008.1.2" || syntax == "1.2.840.10008.1.2.1" || syntax == "1.2.840.10008.1.2.2";
+}
+
+// Before anything is allocated for them.
+void check_pixels_fit(const Path& path, std::int64_t bytes) {
+  const PlainFile file(path);
+  if (bytes > file.size() * (is_plain(file) ? 1 : kCodecMost))
+    throw Error("the pixels of the DICOM image are missing or damaged", path.string(), "export the series again");
+}
+
 ChildLimits limits_of(const Path& path, std::size_t pixel_bytes) {
   ChildLimits limits;
-  limits.memory_bytes = kCodecMemory + 4 * (static_cast<std::size_t>(PlainFile(path).size()) + pixel_bytes);
+  limits.memory_bytes = kCodecMemory + 4 * static_cast<std::size_t>(PlainFile(path).size()) + 16 * pixel_bytes;
   return limits;
 }
 
@@ -151,6 +171,7 @@ Slice read_slice_header(const Path& path) {
   const auto type = type_of(elements.word(0x0028, 0x0100).value_or(0), elements.word(0x0028, 0x0103).value_or(0) == 1);
   if (!type) throw Error("the DICOM image has voxels that are not of 8, 16 or 32 bits", path.string(), "export it with 16 bits");
   slice.type = *type;
+  check_pixels_fit(path, slice.bytes());
 
   if (const auto p = elements.numbers(0x0020, 0x0032, 3); !p.empty()) {
     slice.position = {p[0], p[1], p[2]};
@@ -252,18 +273,18 @@ class DicomSource final : public VoxelSource {
   void decode_next() {
     const Slice& slice = slices_.at(next_++);
     const auto damaged = [&] { return Error("the pixels of the DICOM image are missing or damaged", slice.path.string(), "export the series again"); };
-    if (slice.bytes() > PlainFile(slice.path).size() * kCodecMost) throw damaged();
-    buffer_.resize(static_cast<std::size_t>(slice.bytes()));
+    const auto bytes = static_cast<std::size_t>(slice.bytes());
     const Codec& library = codec(slice.path);
     const auto sent = run_in_child(
         [&](const Send& send) {
-          if (library.pixels(slice.path.c_str(), buffer_.data(), buffer_.size()) != 0) return false;
-          send(buffer_.data(), buffer_.size());
+          const auto pixels = std::make_unique_for_overwrite<char[]>(bytes);  // touched only by what there is
+          if (library.pixels(slice.path.c_str(), pixels.get(), bytes) != 0) return false;
+          send(pixels.get(), bytes);
           return true;
         },
-        buffer_.size(), limits_of(slice.path, buffer_.size())).sent;
-    if (!sent || sent->size() != buffer_.size()) throw damaged();
-    std::memcpy(buffer_.data(), sent->data(), sent->size());
+        bytes, limits_of(slice.path, bytes)).sent;
+    if (!sent || sent->size() != bytes) throw damaged();
+    buffer_.assign(sent->begin(), sent->end());
     if (scale_) to_float(slice);
     place_ = 0;
   }

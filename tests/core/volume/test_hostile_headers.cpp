@@ -83,6 +83,13 @@ TEST_CASE("hostile headers: a DICOM element that claims four gigabytes gets no m
   const TemporaryFolder folder;
   const std::string claim = little_endian(9, 2) + little_endian(0x1001, 2) + "UN" + little_endian(0, 2);
   for (const std::uint32_t length : {0xfffffff0u, 0x7ffffff0u, 0x20000000u}) check_refused(info(folder, "image.dcm", dicom_start() + claim + little_endian(length, 4) + "a few bytes"));
+  // An image of 65535 by 65535 pixels that are not there, in a file of a megabyte.
+  std::string large = dicom_image("1");
+  for (const std::uint16_t side : {0x10, 0x11}) {
+    const std::string name = little_endian(0x28, 2) + little_endian(side, 2) + "US" + little_endian(2, 2);
+    large.replace(large.find(name) + name.size(), 2, little_endian(65535, 2));
+  }
+  check_refused(info(folder, "image.dcm", large + std::string(1 << 20, '\0')));
   const ProgramRun whole = info(folder, "image.dcm", dicom_image("1"));
   CHECK_MESSAGE(whole.exit_code == 0, whole.err);
 }
@@ -122,6 +129,11 @@ TEST_CASE("hostile headers: a bone beyond any body, and numbers on the command l
   for (const char* far : {"1e308", "-1e12", "1e999"}) {
     const ProgramRun run = info(folder, "rig.json", R"({"space":"LPS","unit":"mm","bones":[{"name":"a","parent":null,"head":[0,0,0],"tail":[0,0,)" + std::string(far) + "]}]}");
     check_refused(run);
+  }
+  write_file_atomically(folder / "rig.json", R"({"space":"LPS","unit":"mm","bones":[{"name":"a","parent":null,"head":[0,0,0],"tail":[0,0,9]}]})");
+  for (const char* pose : {R"({"bones":{},"root_translation":[1e308,0,0]})", R"({"bones":{"a":{"axis":[0,0,1],"degrees":1e308}}})", R"({"bones":{"a":{"rotation_wxyz":[1e308,1,0,0]}}})"}) {
+    write_file_atomically(folder / "pose.json", std::string(pose));
+    check_refused(run_limber({"fk", folder / "rig.json", "--pose", folder / "pose.json"}));
   }
   for (const char* number : {"nan", "-nan", "inf", "1e999"})
     for (const auto& words : {std::vector<std::string>{"prepare", "in.nrrd", "-o", "out.nrrd", "--spacing", number}, {"phantom", "arm", "-o", "arm", "--spacing", number},
