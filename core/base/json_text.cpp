@@ -30,7 +30,8 @@ class Inspector final : public nlohmann::json_sax<Json> {
   bool start_object(std::size_t) override { return open(); }
   bool end_object() override { return close(); }
   bool key(string_t& name) override {
-    if (!keys_.back().insert(name).second) problem = "the key \"" + name.substr(0, 80) + "\" is there twice in one object";
+    if (!keys_.back().insert(name).second)
+      problem = "the key \"" + name.substr(0, 80) + "\" is there twice in one object";
     return problem.empty();
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
@@ -38,7 +39,8 @@ class Inspector final : public nlohmann::json_sax<Json> {
  private:
   bool open() {
     keys_.emplace_back();
-    if (std::ssize(keys_) > kDeepestJson) problem = "the JSON is nested more than " + std::to_string(kDeepestJson) + " levels deep";
+    if (std::ssize(keys_) > kDeepestJson)
+      problem = "the JSON is nested more than " + std::to_string(kDeepestJson) + " levels deep";
     return problem.empty();
   }
   bool close() {

@@ -26,7 +26,8 @@ std::optional<Path> find_program(const std::string& name) {
   for (std::string folder; std::getline(folders, folder, ':');) {
     const Path program = Path(folder) / name;
     std::error_code error;
-    if (program.is_absolute() && fs::is_regular_file(program, error) && ::access(program.c_str(), X_OK) == 0) return program;
+    if (program.is_absolute() && fs::is_regular_file(program, error) && ::access(program.c_str(), X_OK) == 0)
+      return program;
   }
   return std::nullopt;
 }

@@ -17,12 +17,13 @@ constexpr int kMostLinks = 40;  // as the kernel follows
 // Where a name leads, also through a symbolic link to what does not exist yet.
 Path place_of(Path path) {
   std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) path = path.parent_path() / fs::read_symlink(path, error);
+  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i)
+    path = path.parent_path() / fs::read_symlink(path, error);
   return fs::weakly_canonical(path, error);
 }
 
-// What is the same for two names of one file: device and inode where it exists, else the place. Nothing for a device or a pipe,
-// which nothing is lost by writing to.
+// What is the same for two names of one file: device and inode where it exists, else the place. Nothing for a device or
+// a pipe, which nothing is lost by writing to.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 std::optional<Identity> identity_of(const Path& path) {
   struct stat status;
@@ -57,9 +58,11 @@ void check_apart(const std::vector<NamedFile>& inputs, const std::vector<NamedFi
     const auto identity = identity_of(output.path);
     if (!identity) continue;
     if (const auto input = read.find(*identity); input != read.end())
-      throw UsageError("the output is also an input", told(output) + " and " + told(input->second), "give the output a name of its own");
+      throw UsageError("the output is also an input", told(output) + " and " + told(input->second),
+                       "give the output a name of its own");
     if (const auto [other, is_new] = written.emplace(*identity, output); !is_new)
-      throw UsageError("two outputs would be the same file", told(other->second) + " and " + told(output), "give each a name of its own");
+      throw UsageError("two outputs would be the same file", told(other->second) + " and " + told(output),
+                       "give each a name of its own");
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files that a command names, and whether two names stand for one file: by device and inode where the file exists, so that
-// symbolic and hard links are seen through, else by the place that the name leads to.
+// Files that a command names, and whether two names stand for one file: by device and inode where the file exists, so
+// that symbolic and hard links are seen through, else by the place that the name leads to.
 #pragma once
 
 #include <string>
@@ -22,8 +22,8 @@ struct NamedFile {
   Path path;
 };
 
-// Throws UsageError when an output is also an input, lies as a file in a folder that is an input, or is another output. What is
-// no regular file (a device, a pipe) may be named twice: nothing is lost by writing to it.
+// Throws UsageError when an output is also an input, lies as a file in a folder that is an input, or is another output.
+// What is no regular file (a device, a pipe) may be named twice: nothing is lost by writing to it.
 void check_apart(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
 }  // namespace limber

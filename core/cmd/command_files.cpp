@@ -12,8 +12,8 @@
 namespace limber::cmd {
 
 namespace {
-// CLI11 keeps validators by name with an option. This one is asleep while options are parsed, and tells the files when it is
-// asked: each as 'r' or 'w' and its path, ended by a zero byte, which no path holds.
+// CLI11 keeps validators by name with an option. This one is asleep while options are parsed, and tells the files when
+// it is asked: each as 'r' or 'w' and its path, ended by a zero byte, which no path holds.
 constexpr const char* kFiles = "files";
 constexpr char kRead = 'r', kWritten = 'w';
 
@@ -52,7 +52,8 @@ std::vector<Path> with_companions(const Path& path) {
   return is_volume_path(path) ? files_of_volume(path) : std::vector<Path>{path};
 }
 
-// Whether the word is "nan", "inf" or beyond what a number can be. CLI11 takes those, and no range that it checks holds for "nan".
+// Whether the word is "nan", "inf" or beyond what a number can be. CLI11 takes those, and no range that it checks holds
+// for "nan".
 bool is_no_finite_number(const std::string& word) {
   char* end = nullptr;
   const double number = std::strtod(word.c_str(), &end);
@@ -65,7 +66,8 @@ void check_numbers(CLI::App& command) {
   for (CLI::Option* option : command.get_options())
     for (const std::string& word : option->results())
       if (is_no_finite_number(word) && option->get_type_name() != "TEXT" && !std::filesystem::exists(word, error))
-        throw UsageError("this is no finite number", option->get_name() + " " + word, "write a number that can be reckoned with");
+        throw UsageError("this is no finite number", option->get_name() + " " + word,
+                         "write a number that can be reckoned with");
 }
 }  // namespace
 
@@ -96,7 +98,8 @@ void check_files(CLI::App& command, const Path& job) {
 }
 
 void check_files_of_all(CLI::App& app) {
-  for (CLI::App* command : app.get_subcommands({})) command->parse_complete_callback([command] { check_files(*command); });
+  for (CLI::App* command : app.get_subcommands({}))
+    command->parse_complete_callback([command] { check_files(*command); });
 }
 
 }  // namespace limber::cmd

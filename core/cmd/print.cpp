@@ -17,12 +17,19 @@ constexpr const char* kEraseLine = "\r\033[K";
 std::size_t character_size(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
-  const std::size_t size = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+  const std::size_t size = first < 0x80   ? 1
+                           : first < 0xc2 ? 0
+                           : first < 0xe0 ? 2
+                           : first < 0xf0 ? 3
+                           : first < 0xf5 ? 4
+                                          : 0;
   if (size > text.size()) return 0;
   for (std::size_t i = 1; i < size; ++i)
     if (byte(i) >> 6 != 2) return 0;
   // Longer than need be, half of a pair, beyond the last character.
-  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) || (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f)) return 0;
+  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) || (first == 0xf0 && byte(1) < 0x90) ||
+      (first == 0xf4 && byte(1) > 0x8f))
+    return 0;
   return size;
 }
 
@@ -30,7 +37,8 @@ std::size_t character_size(std::string_view text) {
 int control_of(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   if (character.size() == 1 && (first < 0x20 || first == 0x7f)) return first;
-  if (character.size() == 2 && first == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0) return static_cast<unsigned char>(character[1]);
+  if (character.size() == 2 && first == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0)
+    return static_cast<unsigned char>(character[1]);
   return -1;
 }
 
@@ -41,8 +49,10 @@ std::string cleaned(std::string_view text, const std::function<std::string(int c
   while (!text.empty()) {
     const std::size_t size = character_size(text);
     const int control = size == 0 ? -1 : control_of(text.substr(0, size));
-    if (size == 0 || control >= 0) clean += instead(control);
-    else clean += text.substr(0, size);
+    if (size == 0 || control >= 0)
+      clean += instead(control);
+    else
+      clean += text.substr(0, size);
     text.remove_prefix(size == 0 ? 1 : size);
   }
   return clean;
@@ -50,11 +60,15 @@ std::string cleaned(std::string_view text, const std::function<std::string(int c
 }  // namespace
 
 std::string printable(std::string_view text) {
-  return cleaned(text, [](int control) -> std::string { return control == '\n' ? "\n" : control == '\t' ? "\t" : "?"; });
+  return cleaned(text, [](int control) -> std::string {
+    return control == '\n' ? "\n" : control == '\t' ? "\t" : "?";
+  });
 }
 
 std::string one_line(std::string_view text) {
-  return cleaned(text, [](int control) -> std::string { return control == '\n' || control == '\t' || control == '\r' ? " " : "?"; });
+  return cleaned(text, [](int control) -> std::string {
+    return control == '\n' || control == '\t' || control == '\r' ? " " : "?";
+  });
 }
 
 void print_text(std::string_view text) {

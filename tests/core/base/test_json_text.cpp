@@ -32,7 +32,8 @@ TEST_CASE("JSON text: what is nested too deeply or names a key twice has a probl
   CHECK(json_problem("{\"a\": ").empty());  // the parser's to tell
   CHECK(json_problem("").empty());
   CHECK(sound_json(nested(1000)) == "");
-  CHECK_THROWS_WITH(checked_json(nested(1000), "rig.json"), "the JSON is nested more than 64 levels deep: rig.json: correct the file");
+  CHECK_THROWS_WITH(checked_json(nested(1000), "rig.json"),
+                    "the JSON is nested more than 64 levels deep: rig.json: correct the file");
 }
 
 TEST_CASE("JSON text: every command refuses a file that is nested a million deep, and a key that is there twice") {
@@ -41,16 +42,28 @@ TEST_CASE("JSON text: every command refuses a file that is nested a million deep
   write_volume(phantom.volume, folder / "volume.nrrd", phantom.tissues);
   write_armature(phantom.armature, folder / "rig.json");
   write_bvh(phantom.motion, folder / "motion.bvh");
-  const std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", motion = folder / "motion.bvh", bad = folder / "bad.json";
+  const std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", motion = folder / "motion.bvh",
+                    bad = folder / "bad.json";
   const std::string deep = nested(1'000'000), out = folder / "out.nrrd";
   const std::vector<std::vector<std::string>> commands = {
-      {"info", bad}, {"fk", bad}, {"job", bad}, {"skin-points", bad, "--method", "lbs"}, {"experiment", bad, "-o", folder / "study"},
-      {"convert", bad, folder / "rig2.json"}, {"weights", volume, "--rig", bad, "-o", out},
-      {"weights", volume, "--rig", rig, "--tissues", bad, "-o", out}, {"weights", volume, "--rig", rig, "--bone-map", bad, "-o", out},
-      {"fk", rig, "--pose", bad}, {"fk", rig, "--motion", motion, "--map", bad}, {"fit-rig", volume, "--template", bad, "-o", folder / "rig3.json"},
+      {"info", bad},
+      {"fk", bad},
+      {"job", bad},
+      {"skin-points", bad, "--method", "lbs"},
+      {"experiment", bad, "-o", folder / "study"},
+      {"convert", bad, folder / "rig2.json"},
+      {"weights", volume, "--rig", bad, "-o", out},
+      {"weights", volume, "--rig", rig, "--tissues", bad, "-o", out},
+      {"weights", volume, "--rig", rig, "--bone-map", bad, "-o", out},
+      {"fk", rig, "--pose", bad},
+      {"fk", rig, "--motion", motion, "--map", bad},
+      {"fit-rig", volume, "--template", bad, "-o", folder / "rig3.json"},
   };
-  for (const std::string& text : {deep, "{\"bones\": " + deep + ", \"schema\": " + deep + ", \"command\": " + deep + ", \"1\": " + deep + "}",
-                                  std::string(R"({"bones": [], "bones": {}, "command": "x", "command": "y", "schema": "a", "schema": "b", "1": "Skin", "1": "Fat", "name": "a", "name": "b"})")}) {
+  for (
+      const std::string& text :
+      {deep, "{\"bones\": " + deep + ", \"schema\": " + deep + ", \"command\": " + deep + ", \"1\": " + deep + "}",
+       std::string(
+           R"({"bones": [], "bones": {}, "command": "x", "command": "y", "schema": "a", "schema": "b", "1": "Skin", "1": "Fat", "name": "a", "name": "b"})")}) {
     write_file_atomically(bad, text);
     for (const auto& words : commands) {
       const ProgramRun run = run_limber(words);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The displacement field of a pose that is known by a formula: a body that turns as one. In one direction it is posed minus rest,
-// in the other what warping programs take: posed(x) = rest(x + field(x)).
+// The displacement field of a pose that is known by a formula: a body that turns as one. In one direction it is posed
+// minus rest, in the other what warping programs take: posed(x) = rest(x + field(x)).
 #include <cmath>
 #include <numbers>
 
@@ -28,10 +28,21 @@ struct TurnedArm {
     write_armature(phantom.armature, folder / "rig.json");
     const Bone& root = phantom.armature.bones.front();
     centre = root.head;
-    write_file_atomically(folder / "pose.json", R"({"bones": {")" + root.name + R"(": {"axis": [0, 0, 1], "degrees": 35}}})");
+    write_file_atomically(folder / "pose.json",
+                          R"({"bones": {")" + root.name + R"(": {"axis": [0, 0, 1], "degrees": 35}}})");
   }
   ProgramRun resample(const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"resample", folder / "volume.nrrd", "--rig", folder / "rig.json", "--pose", folder / "pose.json", "--method", "lbs", "--nearest", "-o", folder / "posed.nrrd"};
+    std::vector<std::string> words{"resample",
+                                   folder / "volume.nrrd",
+                                   "--rig",
+                                   folder / "rig.json",
+                                   "--pose",
+                                   folder / "pose.json",
+                                   "--method",
+                                   "lbs",
+                                   "--nearest",
+                                   "-o",
+                                   folder / "posed.nrrd"};
     words.insert(words.end(), more.begin(), more.end());
     return run_limber(words);
   }
@@ -52,7 +63,8 @@ Label nearest(const LabelVolume& volume, const glm::dvec3& place) {
 
 }  // namespace
 
-TEST_CASE("field direction: a body that turns as one has the field of the formula, in the direction that the header says") {
+TEST_CASE(
+    "field direction: a body that turns as one has the field of the formula, in the direction that the header says") {
   const TurnedArm arm;
   for (const bool to_rest : {false, true}) {
     const std::string word = to_rest ? "to-rest" : "to-posed";
@@ -74,7 +86,8 @@ TEST_CASE("field direction: a body that turns as one has the field of the formul
         for (int x = 0; x < posed.grid.size.x; ++x, ++i) {
           if (posed.voxels[static_cast<std::size_t>(i)] == 0) continue;
           const glm::dvec3 place = world_from_voxel(posed.grid) * glm::dvec3(x, y, z);
-          worst = std::max(worst, glm::length(glm::dvec3(field.voxels[static_cast<std::size_t>(i)]) - (place - arm.rest_of(place))));
+          worst = std::max(
+              worst, glm::length(glm::dvec3(field.voxels[static_cast<std::size_t>(i)]) - (place - arm.rest_of(place))));
           ++tissue;
         }
     CHECK(tissue > 1000);
@@ -82,7 +95,8 @@ TEST_CASE("field direction: a body that turns as one has the field of the formul
   }
 }
 
-TEST_CASE("field direction: what warping programs do with a field to rest makes the posed volume from the rest volume") {
+TEST_CASE(
+    "field direction: what warping programs do with a field to rest makes the posed volume from the rest volume") {
   const TurnedArm arm;
   const Path file = arm.folder / "to-rest.mha", plain = arm.folder / "plain.nrrd";
   REQUIRE(arm.resample({"--field", file, "--field-direction", "to-rest"}).exit_code == 0);
@@ -105,7 +119,8 @@ TEST_CASE("field direction: what warping programs do with a field to rest makes 
   CHECK(double(same) >= 0.999 * double(tissue));
 }
 
-TEST_CASE("field direction: the two directions are each other's negative in the file, and a direction that is none is refused") {
+TEST_CASE(
+    "field direction: the two directions are each other's negative in the file, and a direction that is none is refused") {
   const TemporaryFolder folder;
   const Grid grid{glm::ivec3(2, 1, 1), glm::dvec3(1), glm::dvec3(0), glm::dmat3(1)};
   const std::vector<glm::vec3> field{{1, -2, 3}, {0, 0, 0}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// No command writes over what it reads, by whatever name, nor two outputs over each other. It says so with exit code 2 before it
-// reads anything.
+// No command writes over what it reads, by whatever name, nor two outputs over each other. It says so with exit code 2
+// before it reads anything.
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
@@ -34,7 +34,8 @@ struct Files {
     write_file_atomically(folder / "weights.nrrd", "hours of painting");
     write_file_atomically(folder / "points.csv", "name,x,y,z\n");
     write_file_atomically(folder / "body.limber", "a project");
-    write_file_atomically(folder / "job.json", R"({"command": "prepare", "volume": "volume.nrrd", "output": "job.json"})");
+    write_file_atomically(folder / "job.json",
+                          R"({"command": "prepare", "volume": "volume.nrrd", "output": "job.json"})");
     std::filesystem::create_symlink("volume.nrrd", folder / "link.nrrd");
     std::filesystem::create_symlink("nowhere.nrrd", folder / "dangling.nrrd");
     std::filesystem::create_hard_link(folder / "volume.nrrd", folder / "twin.nrrd");
@@ -84,17 +85,20 @@ TEST_CASE("command files: an output that is also an input is refused by every co
            with(resample, {"-o", "@out.nrrd", "--weights", "@weights.nrrd", "--field", "@weights.nrrd"}),
            with(resample, {"-o", "@out.nrrd", "--with", "@twin.nrrd=@link.nrrd"}),
            with(resample, {"-o", "@out.nrrd", "--landmarks", "@points.csv=@points.csv"}),
-           Words{"resample", "@volume.nrrd", "--rig", "@rig.json", "--pose", "@pose.json", "-o", "@out.nrrd", "--report", "@pose.json"},
+           Words{"resample", "@volume.nrrd", "--rig", "@rig.json", "--pose", "@pose.json", "-o", "@out.nrrd",
+                 "--report", "@pose.json"},
            Words{"weights", "@volume.nrrd", "--rig", "@rig.json", "-o", "@volume.nrrd"},
            Words{"prepare", "@volume.nrrd", "-o", "@volume.nrrd"},
            Words{"prepare", "@detached.mhd", "-o", "@out.nrrd", "--statistics", "@detached.zraw"},
-           Words{"prepare", "@volume.nrrd", "-o", "@out.nrrd", "--tissues", "@tissues.json", "--statistics", "@tissues.json"},
+           Words{"prepare", "@volume.nrrd", "-o", "@out.nrrd", "--tissues", "@tissues.json", "--statistics",
+                 "@tissues.json"},
            Words{"convert", "@volume.nrrd", "@twin.nrrd"},
            Words{"convert", "@tissues.json", "@tissues.json"},
            Words{"convert", "@rig.json", "@rig.json"},
            Words{"fit-joint", "@volume.nrrd", "--rig", "@rig.json", "--bone", "Forearm", "-o", "@rig.json"},
            Words{"fit-rig", "@volume.nrrd", "--template", "@rig.json", "-o", "@rig.json"},
-           Words{"export-gltf", "@volume.nrrd", "--rig", "@rig.json", "--weights", "@weights.nrrd", "-o", "@weights.nrrd"},
+           Words{"export-gltf", "@volume.nrrd", "--rig", "@rig.json", "--weights", "@weights.nrrd", "-o",
+                 "@weights.nrrd"},
            Words{"surfaces", "@volume.nrrd", "--tissues", "@tissues.json", "-o", "@tissues.json"},
            Words{"tissues", "@volume.nrrd", "--frequency", "1e9", "--tissues", "@tissues.json", "-o", "@tissues.json"},
            Words{"project", "@body.limber", "export", "volume", "-o", "@body.limber"},
@@ -110,8 +114,9 @@ TEST_CASE("command files: an output that is also an input is refused by every co
 TEST_CASE("command files: two outputs that are one file are refused, also through a link to what is not there yet") {
   const Files files;
   const Words resample{"resample", "@volume.nrrd", "--rig", "@rig.json", "--flex", "Forearm=20", "--method", "lbs"};
-  for (const Words& more : {Words{"-o", "@out.nrrd", "--field", "@out.nrrd"}, Words{"-o", "@nowhere.nrrd", "--jacobian", "@dangling.nrrd"},
-                            Words{"-o", "@out.mhd", "--report", "@out.zraw"}, Words{"-o", "@out.nrrd", "--overlap", "@./out.nrrd"}}) {
+  for (const Words& more :
+       {Words{"-o", "@out.nrrd", "--field", "@out.nrrd"}, Words{"-o", "@nowhere.nrrd", "--jacobian", "@dangling.nrrd"},
+        Words{"-o", "@out.mhd", "--report", "@out.zraw"}, Words{"-o", "@out.nrrd", "--overlap", "@./out.nrrd"}}) {
     Words words = resample;
     words.insert(words.end(), more.begin(), more.end());
     check_refused(files, words, "two outputs would be the same file: ");
@@ -121,7 +126,8 @@ TEST_CASE("command files: two outputs that are one file are refused, also throug
 TEST_CASE("command files: a frame of a sequence is not written over an input") {
   const Files files;
   std::filesystem::rename(files.folder / "volume.nrrd", files.folder / "posed-0003.nrrd");
-  const Words words{"resample", "@posed-0003.nrrd", "--rig", "@rig.json", "--motion", "@motion.bvh", "--method", "lbs", "-o", "@posed-{frame}.nrrd"};
+  const Words words{"resample",    "@posed-0003.nrrd", "--rig", "@rig.json", "--motion",
+                    "@motion.bvh", "--method",         "lbs",   "-o",        "@posed-{frame}.nrrd"};
   const auto frames = [&](const char* range) {
     Words all = words;
     all.insert(all.end(), {"--frames", range});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the command line prints: names from files give no orders to the terminal, and what cannot be written is no success.
+// What the command line prints: names from files give no orders to the terminal, and what cannot be written is no
+// success.
 #include <algorithm>
 #include <cstdlib>
 
@@ -20,7 +21,9 @@ using namespace limber::test;
 namespace {
 
 // Clears the screen, renames the window by C1, and hides what follows by a carriage return.
-const std::string kHostile = "Fore\x1b[2J\xc2\x9d" "0;x\x07\x7f\rarm";
+const std::string kHostile =
+    "Fore\x1b[2J\xc2\x9d"
+    "0;x\x07\x7f\rarm";
 
 bool is_clean(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -52,24 +55,37 @@ ProgramRun run_shell(const std::string& command) { return run_program("/bin/sh",
 TEST_CASE("printed text: control characters and broken UTF-8 are made visible, letters of any script are kept") {
   CHECK(cmd::printable("Schädel 頭 \xf0\x9f\xa6\xb4\n\tA") == "Schädel 頭 \xf0\x9f\xa6\xb4\n\tA");
   CHECK(cmd::printable("a\x1b[31mb\x7f") == "a?[31mb?");
-  CHECK(cmd::printable("a\xc2\x9b" "31m") == "a?31m");     // CSI as C1
-  CHECK(cmd::printable("a\x9b" "31m\xe9") == "a?31m?");    // the same as a bare byte, and Latin-1
+  CHECK(cmd::printable("a\xc2\x9b"
+                       "31m") == "a?31m");  // CSI as C1
+  CHECK(cmd::printable("a\x9b"
+                       "31m\xe9") == "a?31m?");  // the same as a bare byte, and Latin-1
   CHECK(cmd::printable("\xed\xa0\x80\xc0\x80\xf4\x90\x80\x80\xe2\x82").find_first_not_of('?') == std::string::npos);
   CHECK(cmd::one_line("a\nb\tc\rd\x1b") == "a b c d?");
 }
 
 TEST_CASE("printed text: names from files give no orders to the terminal, and JSON keeps them whole") {
   const HostileArm arm;
-  const std::string volume = arm.folder / "volume.nrrd", rig = arm.folder / "rig.json", tissues = arm.folder / "tissues.json";
+  const std::string volume = arm.folder / "volume.nrrd", rig = arm.folder / "rig.json",
+                    tissues = arm.folder / "tissues.json";
   const std::vector<std::vector<std::string>> commands = {
-      {"info", volume}, {"info", rig}, {"info", arm.folder / "motion.bvh"}, {"info", tissues},
-      {"info", rig, "--json"}, {"fk", rig}, {"fk", rig, "--json"}, {"fk", arm.folder / "motion.bvh"},
+      {"info", volume},
+      {"info", rig},
+      {"info", arm.folder / "motion.bvh"},
+      {"info", tissues},
+      {"info", rig, "--json"},
+      {"fk", rig},
+      {"fk", rig, "--json"},
+      {"fk", arm.folder / "motion.bvh"},
       {"weights", volume, "--rig", rig, "--tissues", tissues, "-o", arm.folder / "w.nrrd"},
-      {"tissues", volume, "--frequency", "1e9"}, {"tissues", volume, "--frequency", "1e9", "--json"},
-      {"report", volume, volume}, {"report", volume, volume, "--json"},
+      {"tissues", volume, "--frequency", "1e9"},
+      {"tissues", volume, "--frequency", "1e9", "--json"},
+      {"report", volume, volume},
+      {"report", volume, volume, "--json"},
       {"surfaces", volume, "-o", arm.folder / "s.obj"},
       {"prepare", volume, "-o", arm.folder / "p.nrrd", "--close-skin", "outward", "--merge", "1=2"},
-      {"info", arm.folder / kHostile}, {"resample", kHostile, "--" + kHostile}, {"fk", rig, "--flex", kHostile + "=4"},
+      {"info", arm.folder / kHostile},
+      {"resample", kHostile, "--" + kHostile},
+      {"fk", rig, "--flex", kHostile + "=4"},
   };
   for (const auto& words : commands) {
     const ProgramRun run = run_limber(words);
@@ -87,10 +103,12 @@ TEST_CASE("printed text: names from files give no orders to the terminal, and JS
 TEST_CASE("printed text: a full disk or a closed stdout is told, and no command says that it is done") {
   const HostileArm arm;
   const std::string program = LIMBER_PROGRAM, folder = arm.folder.path().string() + "/";
-  for (const std::string& words : std::vector<std::string>{"info " + folder + "rig.json", "info --json " + folder + "rig.json", "fk " + folder + "rig.json", "fk --json " + folder + "rig.json",
-                                   "fk --json --all-frames " + folder + "rig.json --motion " + folder + "motion.bvh",
-                                   "tissues --frequency 1e9", "tissues --frequency 1e9 --json", "report " + folder + "volume.nrrd " + folder + "volume.nrrd",
-                                   "surfaces " + folder + "volume.nrrd -o " + folder + "s.obj", "--help", "--version"})
+  for (const std::string& words : std::vector<std::string>{
+           "info " + folder + "rig.json", "info --json " + folder + "rig.json", "fk " + folder + "rig.json",
+           "fk --json " + folder + "rig.json",
+           "fk --json --all-frames " + folder + "rig.json --motion " + folder + "motion.bvh", "tissues --frequency 1e9",
+           "tissues --frequency 1e9 --json", "report " + folder + "volume.nrrd " + folder + "volume.nrrd",
+           "surfaces " + folder + "volume.nrrd -o " + folder + "s.obj", "--help", "--version"})
     for (const char* to : {" > /dev/full", " >&-"}) {
       const ProgramRun run = run_shell(program + " " + words + to);
       CAPTURE(words);
@@ -105,8 +123,10 @@ TEST_CASE("printed text: a full disk or a closed stdout is told, and no command 
 TEST_CASE("printed text: without stdout and stderr the files that are written hold no messages") {
   const HostileArm arm;
   const std::string folder = arm.folder.path().string() + "/";
-  run_shell(std::string(LIMBER_PROGRAM) + " prepare " + folder + "volume.nrrd --close-skin outward -o " + folder + "closed.nrrd <&- >&- 2>&-");
-  const auto run = run_limber({"prepare", folder + "volume.nrrd", "--close-skin", "outward", "-o", folder + "again.nrrd"});
+  run_shell(std::string(LIMBER_PROGRAM) + " prepare " + folder + "volume.nrrd --close-skin outward -o " + folder +
+            "closed.nrrd <&- >&- 2>&-");
+  const auto run =
+      run_limber({"prepare", folder + "volume.nrrd", "--close-skin", "outward", "-o", folder + "again.nrrd"});
   CHECK_MESSAGE(run.exit_code == 0, run.err);
   CHECK(read_file(folder + "closed.nrrd") == read_file(folder + "again.nrrd"));
 }
@@ -115,14 +135,16 @@ TEST_CASE("modules: a planted one in the working folder is not loaded, whatever 
   const TemporaryFolder folder;
   // Any library does: loaded by its bare name it would be taken for the module and found damaged.
   const std::string planted = folder / "limber_dicom.so";
-  write_file_atomically(folder / "planted.c",
-                        "#include <stdio.h>\n__attribute__((constructor)) static void run(void) { fclose(fopen(\"ran\", \"w\")); }\n");
+  write_file_atomically(
+      folder / "planted.c",
+      "#include <stdio.h>\n__attribute__((constructor)) static void run(void) { fclose(fopen(\"ran\", \"w\")); }\n");
   const auto built = run_program("cc", {"-shared", "-fPIC", "-o", planted, folder / "planted.c"});
   REQUIRE_MESSAGE(built.exit_code == 0, built.err);
   std::string dicom(128, '\0');
   dicom += "DICM";
   write_file_atomically(folder / "image.dcm", dicom);
-  const auto run = run_shell("cd " + folder.path().string() + " && LD_LIBRARY_PATH=: " + LIMBER_PROGRAM + " info image.dcm");
+  const auto run =
+      run_shell("cd " + folder.path().string() + " && LD_LIBRARY_PATH=: " + LIMBER_PROGRAM + " info image.dcm");
   CHECK(run.exit_code == 1);
   CHECK(run.err.find("missing or damaged") == std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder / "ran"));
@@ -133,7 +155,8 @@ TEST_CASE("modules: a planted one in the working folder is not loaded, whatever 
 TEST_CASE("printed text: a zero byte in a name is refused, where the system would cut the name") {
   const HostileArm arm;
   CHECK_THROWS_WITH(check_place(std::string("a\0b", 3)), doctest::Contains("zero byte"));
-  write_file_atomically(arm.folder / "job.json", R"({"command": "prepare", "volume": "volume.nrrd", "output": "cut\u0000.nrrd"})");
+  write_file_atomically(arm.folder / "job.json",
+                        R"({"command": "prepare", "volume": "volume.nrrd", "output": "cut\u0000.nrrd"})");
   const auto run = run_limber({"job", arm.folder / "job.json"});
   CHECK(run.exit_code == 1);
   CHECK(run.err.find("a setting holds a zero byte") != std::string::npos);

@@ -25,25 +25,30 @@ std::string little_endian(std::uint32_t value, int bytes) {
 
 std::string element(std::uint16_t group, std::uint16_t number, const std::string& representation, std::string value) {
   if (value.size() % 2) value += representation == "UI" ? '\0' : ' ';
-  return little_endian(group, 2) + little_endian(number, 2) + representation + little_endian(static_cast<std::uint32_t>(value.size()), 2) + value;
+  return little_endian(group, 2) + little_endian(number, 2) + representation +
+         little_endian(static_cast<std::uint32_t>(value.size()), 2) + value;
 }
 
 // The start of a DICOM file with explicit lengths, little endian.
 std::string dicom_start() {
   const std::string syntax = element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
-  return std::string(128, '\0') + "DICM" + element(2, 0, "UL", little_endian(static_cast<std::uint32_t>(syntax.size()), 4)) + syntax +
+  return std::string(128, '\0') + "DICM" +
+         element(2, 0, "UL", little_endian(static_cast<std::uint32_t>(syntax.size()), 4)) + syntax +
          element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2");
 }
 
 // An image of 2 by 2 voxels whose values are scaled by `slope`.
 std::string dicom_image(const std::string& slope, const std::string& spacing = "1\\1") {
   const auto number = [](std::uint32_t value) { return little_endian(value, 2); };
-  std::string bytes = dicom_start() + element(0x18, 0x50, "DS", "1") + element(0x20, 0x32, "DS", "0\\0\\0") + element(0x28, 2, "US", number(1)) +
-                      element(0x28, 4, "CS", "MONOCHROME2") + element(0x28, 0x10, "US", number(2)) + element(0x28, 0x11, "US", number(2)) +
-                      element(0x28, 0x30, "DS", spacing) + element(0x28, 0x100, "US", number(16)) + element(0x28, 0x101, "US", number(16)) +
-                      element(0x28, 0x102, "US", number(15)) + element(0x28, 0x103, "US", number(0)) + element(0x28, 0x1052, "DS", "0") +
+  std::string bytes = dicom_start() + element(0x18, 0x50, "DS", "1") + element(0x20, 0x32, "DS", "0\\0\\0") +
+                      element(0x28, 2, "US", number(1)) + element(0x28, 4, "CS", "MONOCHROME2") +
+                      element(0x28, 0x10, "US", number(2)) + element(0x28, 0x11, "US", number(2)) +
+                      element(0x28, 0x30, "DS", spacing) + element(0x28, 0x100, "US", number(16)) +
+                      element(0x28, 0x101, "US", number(16)) + element(0x28, 0x102, "US", number(15)) +
+                      element(0x28, 0x103, "US", number(0)) + element(0x28, 0x1052, "DS", "0") +
                       element(0x28, 0x1053, "DS", slope);
-  return bytes + little_endian(0x7fe0, 2) + little_endian(0x10, 2) + "OW" + little_endian(0, 2) + little_endian(8, 4) + std::string("\1\0\2\0\3\0\4\0", 8);
+  return bytes + little_endian(0x7fe0, 2) + little_endian(0x10, 2) + "OW" + little_endian(0, 2) + little_endian(8, 4) +
+         std::string("\1\0\2\0\3\0\4\0", 8);
 }
 
 // A gzip stream of `megabytes` zeros.
@@ -82,7 +87,8 @@ void check_refused(const ProgramRun& run) {
 TEST_CASE("hostile headers: a DICOM element that claims four gigabytes gets no memory") {
   const TemporaryFolder folder;
   const std::string claim = little_endian(9, 2) + little_endian(0x1001, 2) + "UN" + little_endian(0, 2);
-  for (const std::uint32_t length : {0xfffffff0u, 0x7ffffff0u, 0x20000000u}) check_refused(info(folder, "image.dcm", dicom_start() + claim + little_endian(length, 4) + "a few bytes"));
+  for (const std::uint32_t length : {0xfffffff0u, 0x7ffffff0u, 0x20000000u})
+    check_refused(info(folder, "image.dcm", dicom_start() + claim + little_endian(length, 4) + "a few bytes"));
   // An image of 65535 by 65535 pixels that are not there, in a file of a megabyte.
   std::string large = dicom_image("1");
   for (const std::uint16_t side : {0x10, 0x11}) {
@@ -94,7 +100,8 @@ TEST_CASE("hostile headers: a DICOM element that claims four gigabytes gets no m
   CHECK_MESSAGE(whole.exit_code == 0, whole.err);
 }
 
-TEST_CASE("hostile headers: packed zeros are unpacked as far as the header promises, and a promise beyond the file is refused at once") {
+TEST_CASE(
+    "hostile headers: packed zeros are unpacked as far as the header promises, and a promise beyond the file is refused at once") {
   const TemporaryFolder folder;
   const std::string bomb = packed_zeros(600);
   const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nencoding: gzip\nsizes: ";
@@ -104,8 +111,10 @@ TEST_CASE("hostile headers: packed zeros are unpacked as far as the header promi
   CHECK(small.err.find("more data than the header promises") != std::string::npos);
   CHECK(small.peak_mb < 150);
   check_refused(info(folder, "large.nrrd", nrrd + "40000 40000 1000\n\n" + packed_zeros(1)));
-  const std::string meta = "ObjectType = Image\nNDims = 3\nCompressedData = True\nElementType = MET_UCHAR\nElementSpacing = 1 1 1\n";
-  check_refused(info(folder, "large.mha", meta + "DimSize = 40000 40000 1000\nElementDataFile = LOCAL\n" + packed_zeros(1)));
+  const std::string meta =
+      "ObjectType = Image\nNDims = 3\nCompressedData = True\nElementType = MET_UCHAR\nElementSpacing = 1 1 1\n";
+  check_refused(
+      info(folder, "large.mha", meta + "DimSize = 40000 40000 1000\nElementDataFile = LOCAL\n" + packed_zeros(1)));
 }
 
 TEST_CASE("hostile headers: scales that are no finite number, or beyond what an image has, are refused") {
@@ -119,7 +128,8 @@ TEST_CASE("hostile headers: scales that are no finite number, or beyond what an 
   check_refused(info(folder, "image.dcm", dicom_image("1", "1e300\\1e300")));
   check_refused(info(folder, "image.dcm", dicom_image("1", "nan\\1")));
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
-  for (const auto& [slope, intercept] : {std::pair{nan, 0.0}, {infinite, 0.0}, {1.0, nan}, {1.0, -infinite}, {1e300, 0.0}, {1.0, 1e300}, {0.0, 0.0}})
+  for (const auto& [slope, intercept] :
+       {std::pair{nan, 0.0}, {infinite, 0.0}, {1.0, nan}, {1.0, -infinite}, {1e300, 0.0}, {1.0, 1e300}, {0.0, 0.0}})
     CHECK_THROWS_AS(check_scale(slope, intercept, "image"), Error);
   CHECK_NOTHROW(check_scale(-2.5e-6, -1024, "image"));
 }
@@ -127,16 +137,24 @@ TEST_CASE("hostile headers: scales that are no finite number, or beyond what an 
 TEST_CASE("hostile headers: a bone beyond any body, and numbers on the command line that are none, are refused") {
   const TemporaryFolder folder;
   for (const char* far : {"1e308", "-1e12", "1e999"}) {
-    const ProgramRun run = info(folder, "rig.json", R"({"space":"LPS","unit":"mm","bones":[{"name":"a","parent":null,"head":[0,0,0],"tail":[0,0,)" + std::string(far) + "]}]}");
+    const ProgramRun run =
+        info(folder, "rig.json",
+             R"({"space":"LPS","unit":"mm","bones":[{"name":"a","parent":null,"head":[0,0,0],"tail":[0,0,)" +
+                 std::string(far) + "]}]}");
     check_refused(run);
   }
-  write_file_atomically(folder / "rig.json", R"({"space":"LPS","unit":"mm","bones":[{"name":"a","parent":null,"head":[0,0,0],"tail":[0,0,9]}]})");
-  for (const char* pose : {R"({"bones":{},"root_translation":[1e308,0,0]})", R"({"bones":{"a":{"axis":[0,0,1],"degrees":1e308}}})", R"({"bones":{"a":{"rotation_wxyz":[1e308,1,0,0]}}})"}) {
+  write_file_atomically(
+      folder / "rig.json",
+      R"({"space":"LPS","unit":"mm","bones":[{"name":"a","parent":null,"head":[0,0,0],"tail":[0,0,9]}]})");
+  for (const char* pose :
+       {R"({"bones":{},"root_translation":[1e308,0,0]})", R"({"bones":{"a":{"axis":[0,0,1],"degrees":1e308}}})",
+        R"({"bones":{"a":{"rotation_wxyz":[1e308,1,0,0]}}})"}) {
     write_file_atomically(folder / "pose.json", std::string(pose));
     check_refused(run_limber({"fk", folder / "rig.json", "--pose", folder / "pose.json"}));
   }
   for (const char* number : {"nan", "-nan", "inf", "1e999"})
-    for (const auto& words : {std::vector<std::string>{"prepare", "in.nrrd", "-o", "out.nrrd", "--spacing", number}, {"phantom", "arm", "-o", "arm", "--spacing", number},
+    for (const auto& words : {std::vector<std::string>{"prepare", "in.nrrd", "-o", "out.nrrd", "--spacing", number},
+                              {"phantom", "arm", "-o", "arm", "--spacing", number},
                               {"tissues", "--frequency", number}}) {
       CAPTURE(words[0]);
       const ProgramRun run = run_limber(words);
