@@ -8,14 +8,15 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "core/base/outputs.h"
 #include "core/base/parallel.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
+#include "core/cmd/frame_names.h"
 #include "core/cmd/glide_options.h"
+#include "core/cmd/mesh_share.h"
 #include "core/cmd/pose_options.h"
 #include "core/cmd/seam_options.h"
 #include "core/deck/tet_phantom.h"
@@ -62,45 +63,12 @@ Companion companion(const std::string& request, const char* what, const char* ex
 Companion grey_paths(const std::string& request) { return companion(request, "grey volume", "--with ct.nii.gz=posed-ct.nii.gz"); }
 Companion landmark_paths(const std::string& request) { return companion(request, "list of landmarks", "--landmarks points.csv=posed-points.csv"); }
 
-constexpr const char* kFrame = "{frame}";
-
-struct FrameRange {
-  int first = 0, last = 0, step = 1;
-};
-
-// Of FIRST:LAST[:STEP].
-FrameRange frame_range_of(const std::string& request) {
-  FrameRange range;
-  int read = 0;
-  const int fields = std::sscanf(request.c_str(), "%d:%d%n:%d%n", &range.first, &range.last, &read, &range.step, &read);
-  if (fields < 2 || std::size_t(read) != request.size() || range.first < 0 || range.last < range.first || range.step < 1)
-    throw Error("these are no frames", "--frames " + request, "write FIRST:LAST or FIRST:LAST:STEP, as in --frames 0:90:10");
-  return range;
-}
-
-std::vector<int> frames_of(const std::string& request, int frame_count) {
-  const auto [first, last, step] = frame_range_of(request);
-  if (last >= frame_count)
-    throw Error("the motion ends before that frame", "--frames " + request, "its last frame is " + std::to_string(frame_count - 1));
-  std::vector<int> frames;
-  for (std::int64_t frame = first; frame <= last; frame += step) frames.push_back(int(frame));
-  return frames;
-}
-
-// A name with the frame's number in it.
-std::string of_frame(std::string name, int frame) {
-  char number[16];
-  std::snprintf(number, sizeof number, "%04d", frame);
-  for (size_t at = 0; (at = name.find(kFrame, at)) != std::string::npos;) name.replace(at, std::string(kFrame).size(), number);
-  return name;
-}
-
 // The same request for one frame of a sequence, each output with the frame's number in its name.
 Options of_frame(const Options& options, int frame) {
   Options one = options;
   one.pose.frame = frame;
   for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.overlap, &one.mesh_out, &one.landmarks})
-    *output = of_frame(*output, frame);
+    *output = cmd::of_frame(*output, frame);
   return one;
 }
 
@@ -110,23 +78,11 @@ std::string mesh_file(const std::string& name, const char* ending) {
   return path.string() + ending;
 }
 
-// A longer sequence is cut where its files are compared with the inputs: no motion is that long.
-constexpr int kMostFrames = 100000;
-
-// The names that `name` stands for: one a frame where it holds {frame}.
-std::vector<std::string> names_of(const Options& options, const std::string& name) {
-  if (options.frames.empty() || name.find(kFrame) == std::string::npos) return {name};
-  const auto [first, last, step] = frame_range_of(options.frames);
-  std::vector<std::string> names;
-  for (std::int64_t frame = first; frame <= last && names.size() < kMostFrames; frame += step) names.push_back(of_frame(name, int(frame)));
-  return names;
-}
-
 // Tells the files of an output option, whose value gets each of the endings; with none, what a volume of that name is.
 FilesOfValue files_written_to(const std::shared_ptr<Options>& options, const std::vector<const char*>& endings = {}) {
   return [options, endings](const std::string& value) {
     OptionFiles files;
-    for (const std::string& name : names_of(*options, value)) {
+    for (const std::string& name : names_of(value, options->frames)) {
       for (const char* ending : endings) files.written.emplace_back(mesh_file(name, ending));
       if (endings.empty())
         for (const Path& file : files_written_as(name)) files.written.push_back(file);
@@ -140,7 +96,7 @@ FilesOfValue files_of_pair(const std::shared_ptr<Options>& options) {
   return [options](const std::string& value) {
     const Companion pair = companion(value, "input", "IN=OUT");
     OptionFiles files{{pair.from}, {}};
-    for (const std::string& name : names_of(*options, pair.to))
+    for (const std::string& name : names_of(pair.to, options->frames))
       for (const Path& file : files_written_as(name)) files.written.push_back(file);
     return files;
   };
@@ -301,20 +257,6 @@ void describe(Report& report, const Options& options, const Armature& rig, const
     if (!path.empty()) report.inputs.push_back(describe_input(path));
 }
 
-// What the tets of the solve hold of the body at rest.
-std::string mesh_share(const TissueModel& model, const Body& body) {
-  std::set<Label> in_mesh, in_body;
-  double mm3 = 0, all_mm3 = 0;
-  for (const auto& part : model.parts)
-    if (part.label != 0) mm3 += part.mm3, in_mesh.insert(part.label);
-  for (const Label label : body.file.volume.voxels)
-    if (label != 0) all_mm3 += body.file.volume.grid.voxel_volume(), in_body.insert(label);
-  char text[240];
-  std::snprintf(text, sizeof text, "the mesh holds %.1f %% of the body's volume and %zu of its %zu tissues: it is what bends, not a whole phantom; what is rigid or does not bend is not in it, and each tet has one tissue",
-                100 * mm3 / all_mm3, in_mesh.size(), in_body.size());
-  return text;
-}
-
 // The mesh as NAME.node and NAME.ele with organ numbers, and NAME.material, where what all of them are made of is known.
 void write_mesh(const Options& options, const TissueTable& tissues, const FemShape& shape, Outputs& outputs) {
   TetMesh mesh = posed_mesh(shape, tissues);
@@ -401,7 +343,7 @@ bool finish(const Options& options, const Body& body, const Pose& pose, const st
   if (posed.report.mass_exact) note_masses(report, *posed.report.mass_exact, body.tissues);
 
   if (!options.weights.empty()) note_foreign_weights(body, pose, landmarks, posed, report);
-  if (!options.mesh_out.empty()) note(report, {mesh_share(posed.shape->model, body)});
+  if (!options.mesh_out.empty()) note(report, {share_of_body(posed.shape->model, body.file.volume)});
 
   Outputs outputs;
   const Stopwatch writing;

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/cmd/mesh_share.h"
+
+#include <cstdio>
+#include <set>
+
+namespace limber::cmd {
+
+std::string share_of_body(const TissueModel& model, const LabelVolume& body) {
+  std::set<Label> in_mesh, in_body;
+  double mm3 = 0, all_mm3 = 0;
+  for (const auto& part : model.parts)
+    if (part.label != 0) mm3 += part.mm3, in_mesh.insert(part.label);
+  for (const Label label : body.voxels)
+    if (label != 0) all_mm3 += body.grid.voxel_volume(), in_body.insert(label);
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "the mesh holds %.1f %% of the body's volume and %zu of its %zu tissues: it is what bends, not a whole "
+                "phantom; what is rigid or does not bend is not in it, and each tet has one tissue",
+                100 * mm3 / all_mm3, in_mesh.size(), in_body.size());
+  return text;
+}
+
+}  // namespace limber::cmd
