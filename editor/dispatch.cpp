@@ -17,13 +17,13 @@ constexpr double kLongestClick = 0.3;  // s
 
 bool dialog_open(const Editor& editor) { return editor.dialog || !editor.messages.errors.empty(); }
 
-// Chords that a focused text field wants itself.
+// Chords that a focused text field keeps to itself, whether it has a use for them or not. With Alt many layouts write.
 bool belongs_to_text(const Chord& chord) {
-  if (chord.modifiers.alt) return false;
   if (chord.key >= Key::F1 && chord.key <= Key::F12) return false;
-  if (!chord.modifiers.ctrl) return true;
-  constexpr Key kEditing[] = {Key::A, Key::C, Key::V, Key::X, Key::Y, Key::Z, Key::Left, Key::Right, Key::Home, Key::End, Key::Delete, Key::Backspace};
-  return std::find(std::begin(kEditing), std::end(kEditing), chord.key) != std::end(kEditing);
+  if (!chord.modifiers.ctrl || chord.modifiers.alt) return true;
+  constexpr Key kEditing[] = {Key::A, Key::C, Key::V, Key::X, Key::Y, Key::Z};
+  const bool moves = chord.key >= Key::Space && chord.key <= Key::End && chord.key != Key::PageUp && chord.key != Key::PageDown;
+  return moves || std::find(std::begin(kEditing), std::end(kEditing), chord.key) != std::end(kEditing);
 }
 
 // Keys that choose among the recent files.
@@ -76,7 +76,12 @@ void on_key(Editor& editor, const KeyChanged& event) {
     editor.dialog->key(editor, chord);
     return;
   }
-  if (ImGui::GetIO().WantTextInput && belongs_to_text(chord)) return;
+  if (is_typing(editor)) {
+    // Only what is meant for the whole window leaves a field.
+    const std::string* id = belongs_to_text(chord) ? nullptr : editor.keymap.find(chord, {"global"});
+    if (id) run(editor, *id);
+    return;
+  }
   if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId) || list_takes(editor, chord)) return;
   run_chord(editor, chord);
 }

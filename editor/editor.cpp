@@ -34,6 +34,8 @@ constexpr double kCameraMove = 0.18;  // s
 constexpr double kLongestRest = 60;   // s; only so that a wait ends at all
 constexpr double kJobPulse = 0.1;     // s between frames while a job runs
 constexpr int kJobsAtOnce = 2;
+constexpr int kMostTurns = 200;        // of the panels within a frame, for what was typed since the last
+constexpr float kTurnSeconds = 1e-5f;  // no time passes between them
 constexpr double kUploadTime = 0.008;  // s of a frame that weights take on their way to the card
 
 // Made when it is needed first.
@@ -141,7 +143,11 @@ Editor::~Editor() {
   ImGui::DestroyContext(imgui);
 }
 
-void Editor::open_dialog(std::unique_ptr<Dialog> dialog) { next_dialog_ = std::move(dialog); }
+void Editor::open_dialog(std::unique_ptr<Dialog> dialog) {
+  if (!of_users_act_) return waiting_dialogs_.push_back(std::move(dialog));
+  next_dialog_ = std::move(dialog);
+  await_field(*this);
+}
 void Editor::close_dialog() { next_dialog_ = std::unique_ptr<Dialog>(); }
 
 bool Editor::busy() const { return jobs.busy() || live->busy() || skin->shares.busy(); }
@@ -158,7 +164,8 @@ double Editor::rest() const {
 }
 
 void Editor::take_input() {
-  const std::vector<Event> events = host.events.take_frame();
+  std::vector<Event> events;
+  if (!keyboard.waits()) events = host.events.take_frame(keyboard.typed ? KeysFor::Text : KeysFor::Commands, input.modifiers());
   const InputState before = input;
   input.wheel = input.wheel_sideways = 0;
   for (const Event& event : events) input.apply(event);
@@ -167,6 +174,48 @@ void Editor::take_input() {
   tell_imgui(events, input);
   ImGui::NewFrame();
   dispatch(*this, events, before);
+}
+
+// Each key that does more than insert a character has its turn of the panels, without new pictures of the views. Ends with
+// the input of the frame that is shown.
+void Editor::read_typed_text() {
+  for (int turn = 0; turn < kMostTurns && (keyboard.typed || keyboard.waits()) && !host.events.empty(); ++turn) {
+    layout = layout_of(*this, host.size());
+    draw();
+    change_dialog();
+    ImGui::EndFrame();
+    ImGui::GetIO().DeltaTime = kTurnSeconds;
+    take_input();
+  }
+}
+
+// What a job's end brings does not take the keyboard from a field, nor does it stand under a pressed button.
+void Editor::meet_jobs() {
+  const std::size_t errors = messages.errors.size();
+  of_users_act_ = false;
+  open_waiting_files(*this);
+  if (modal && !modal->frame(*this, ImGui::GetIO().DeltaTime)) modal.reset();
+  if (poll_jobs(*this)) touch();
+  std::erase_if(each_frame, [this](const auto& act) { return !act(*this); });
+  of_users_act_ = true;
+  const auto first = messages.errors.begin() + static_cast<std::ptrdiff_t>(std::min(errors, messages.errors.size()));
+  std::move(first, messages.errors.end(), std::back_inserter(waiting_errors_));
+  messages.errors.erase(first, messages.errors.end());
+  if ((waiting_errors_.empty() && waiting_dialogs_.empty()) || next_dialog_ || !may_interrupt(*this)) return;
+  if (!waiting_errors_.empty()) {
+    messages.errors = std::exchange(waiting_errors_, {});
+  } else {
+    open_dialog(std::move(waiting_dialogs_.front()));
+    waiting_dialogs_.pop_front();
+  }
+  touch();
+}
+
+void Editor::change_dialog() {
+  if (!next_dialog_) return;
+  dialog = std::move(*next_dialog_);
+  next_dialog_.reset();
+  touch();
 }
 
 void Editor::draw_views() {
@@ -212,6 +261,7 @@ void Editor::draw() {
   draw_error_message(*this);
   draw_tooltip(*this);
   widgets.end_frame();
+  follow_keyboard(*this);
   if (modal && modal->hides_pointer()) cursor = Cursor::Hidden;
   host.set_cursor(ImGui::GetIO().WantTextInput ? Cursor::Text : cursor);
   // Regions stand behind popups and dialogs, in the order in which they were drawn.
@@ -234,11 +284,9 @@ void Editor::frame(double time) {
   layout = layout_of(*this, size);
   ImGui_ImplOpenGL3_NewFrame();
   take_input();
+  read_typed_text();
   ended(*this, "input");
-  open_waiting_files(*this);
-  if (modal && !modal->frame(*this, io.DeltaTime)) modal.reset();
-  if (poll_jobs(*this)) touch();
-  std::erase_if(each_frame, [this](const auto& act) { return !act(*this); });
+  meet_jobs();
   ended(*this, "jobs");
   layout = layout_of(*this, size);
   advance_time(*this);
@@ -251,11 +299,7 @@ void Editor::frame(double time) {
   keep_edits(*this);
   keep_remembered(*this);
   ended(*this, "keeping");
-  if (next_dialog_) {
-    dialog = std::move(*next_dialog_);
-    next_dialog_.reset();
-    touch();
-  }
+  change_dialog();
 
   if (const std::string title = name.empty() ? "Limber" : name + " - Limber"; title != shown_title) host.set_title(shown_title = title);
 

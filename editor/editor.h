@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "core/project/job.h"
 #include "editor/folders.h"
 #include "editor/host.h"
+#include "editor/keyboard.h"
 #include "editor/keymap.h"
 #include "editor/layout.h"
 #include "editor/lists.h"
@@ -97,7 +99,9 @@ struct Editor {
   Arrangement& arrangement() { return arrangements[static_cast<std::size_t>(workspace)]; }
   const Arrangement& arrangement() const { return arrangements[static_cast<std::size_t>(workspace)]; }
   const Document& document() const { return history.current(); }
-  void open_dialog(std::unique_ptr<Dialog> dialog);  // in place of an open one, from the next frame on
+  // In place of an open one, from the next frame on. One that no act of the user's brought, such as the end of a job, waits
+  // until nothing is interrupted by it.
+  void open_dialog(std::unique_ptr<Dialog> dialog);
   void close_dialog();
   // Draws again at that time, though nothing happens until then.
   void wake_at(double time) { wake_at_ = std::min(wake_at_, std::max(time, now)); }
@@ -153,6 +157,7 @@ struct Editor {
   std::optional<Views> views;
   Selection selection;
   std::string tissue_search;
+  Keyboard keyboard;
   ListFocus list_focus;
   std::optional<Renaming> renaming;
   struct {
@@ -240,9 +245,16 @@ struct Editor {
 
  private:
   void take_input();
+  void read_typed_text();
+  void meet_jobs();
   void draw_views();
   void draw();
+  void change_dialog();
   std::optional<std::unique_ptr<Dialog>> next_dialog_;
+  // What no act of the user's brought, until nothing is interrupted by it.
+  std::deque<std::unique_ptr<Dialog>> waiting_dialogs_;
+  std::vector<ErrorMessage> waiting_errors_;
+  bool of_users_act_ = true;  // what is done now
   double wake_at_ = 1e300;
   int frames_wanted_ = 3;  // ImGui settles a change within that many
 };

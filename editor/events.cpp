@@ -7,17 +7,30 @@ namespace limber::editor {
 
 namespace {
 
+// A key that inserts the character that comes with it.
+bool inserts(Key key, const Modifiers& held) {
+  const bool printed = (key >= Key::A && key <= Key::Digit9) || key == Key::Space || (key >= Key::Comma && key <= Key::NumPlus);
+  return printed && !held.ctrl && !held.alt;
+}
+
 // What of a frame has been seen so far, to tell whether one more event fits.
 struct Seen {
+  KeysFor keys_for;
+  Modifiers held;
   bool buttons[3] = {};
   bool keys[static_cast<std::size_t>(Key::Count)] = {};
   bool any_button = false, any_key = false, wheel = false, text = false;
 
   bool fits(const PointerMoved&) const { return !any_button && !wheel && !any_key; }
-  bool fits(const ButtonChanged& event) const { return !buttons[static_cast<std::size_t>(event.button)] && !wheel && !any_key; }
+  bool fits(const ButtonChanged& event) const { return !buttons[static_cast<std::size_t>(event.button)] && !wheel && !any_key && !text; }
   bool fits(const Wheeled&) const { return !any_button && !any_key; }
-  bool fits(const KeyChanged& event) const { return !keys[static_cast<std::size_t>(event.key)] && !any_button && !wheel && !text; }
-  bool fits(const TextTyped&) const { return !any_button; }
+  bool fits(const KeyChanged& event) const {
+    if (any_button || wheel) return false;
+    if (event.key == Key::Ctrl && event.down && text) return false;  // ImGui takes no text while it is down
+    if (keys_for == KeysFor::Text && !any_key && (event.key >= Key::Ctrl || inserts(event.key, held))) return true;
+    return !keys[static_cast<std::size_t>(event.key)] && !text && !(keys_for == KeysFor::Text && any_key);
+  }
+  bool fits(const TextTyped&) const { return !any_button && !(keys_for == KeysFor::Text && any_key); }
   bool fits(const FilesDropped&) const { return !any_button && !any_key; }
   bool fits(const FocusChanged&) const { return !any_button && !any_key; }
 
@@ -25,9 +38,12 @@ struct Seen {
   void add(const Wheeled&) { wheel = true; }
   void add(const TextTyped&) { text = true; }
   void add(const KeyChanged& event) {
+    if (event.key == Key::Ctrl) held.ctrl = event.down;
+    if (event.key == Key::Alt) held.alt = event.down;
+    const bool together = keys_for == KeysFor::Text && (event.key >= Key::Ctrl || inserts(event.key, held));
     // Modifiers go together with the key or button that they modify.
-    if (event.key < Key::Ctrl) any_key = true;
-    keys[static_cast<std::size_t>(event.key)] = true;
+    if (event.key < Key::Ctrl && !together) any_key = true;
+    keys[static_cast<std::size_t>(event.key)] = !together;
   }
   template <class Other>
   void add(const Other&) {}
@@ -40,10 +56,10 @@ void EventQueue::push(Event event) {
   events_.push_back(std::move(event));
 }
 
-std::vector<Event> EventQueue::take_frame() {
+std::vector<Event> EventQueue::take_frame(KeysFor keys, Modifiers held) {
   const std::lock_guard lock(mutex_);
   std::vector<Event> frame;
-  Seen seen;
+  Seen seen{.keys_for = keys, .held = held};
   while (!events_.empty() && std::visit([&](const auto& event) { return seen.fits(event); }, events_.front())) {
     std::visit([&](const auto& event) { seen.add(event); }, events_.front());
     frame.push_back(std::move(events_.front()));

@@ -2,7 +2,8 @@
 // What the user did, in order. The window's callbacks, scripts and tests push events into one queue; each frame takes from
 // it as much as cannot be mistaken: it stops before the second change of a key or button, before a move that follows a
 // press, before text that follows another text's key. So a key pressed and released between two frames is seen twice:
-// down in one frame, up in the next. Nothing is dropped.
+// down in one frame, up in the next. While a text field has the keyboard, keys that only insert a character go together,
+// up to the next one that does more, such as Backspace. Nothing is dropped.
 #pragma once
 
 #include <deque>
@@ -44,11 +45,13 @@ struct FocusChanged {
 };
 using Event = std::variant<PointerMoved, ButtonChanged, Wheeled, KeyChanged, TextTyped, FilesDropped, FocusChanged>;
 
+enum class KeysFor { Commands, Text };
+
 class EventQueue {
  public:
   void push(Event event);
-  // The events of the next frame, taken out.
-  std::vector<Event> take_frame();
+  // The events of the next frame, taken out. `held` are the modifiers that are down before them.
+  std::vector<Event> take_frame(KeysFor keys = KeysFor::Commands, Modifiers held = {});
   bool empty() const;
 
  private:

@@ -13,6 +13,12 @@
 namespace limber::editor {
 
 namespace {
+// For the field that is drawn next.
+void ask_for_keyboard(Editor& editor, const std::string& id) {
+  ImGui::SetKeyboardFocusHere();
+  await_field(editor, ImGui::GetID(id.c_str()));
+}
+
 constexpr double kFastest = 1;  // of a number for a pixel's drag, however far its ends are
 
 // Beside a field's text. Where several fields share a row their digits need the room.
@@ -88,7 +94,7 @@ bool number_field(Editor& editor, const std::string& name, const Rect& rect, dou
 
 bool judged_number_field(Editor& editor, const std::string& name, const Rect& rect, double& value, double low, double high, const char* format,
                          const char* unit, bool focus) {
-  if (focus) ImGui::SetKeyboardFocusHere();
+  if (focus) ask_for_keyboard(editor, "##" + name);
   bool committed = false;
   return any_number_field(editor, name, rect, value, low, high, format, unit, false, committed, ImGuiSliderFlags_None);
 }
@@ -123,8 +129,9 @@ bool text_field(Editor& editor, const std::string& name, const Rect& rect, std::
   ImGui::SetCursorScreenPos(im(rect.low));
   ImGui::SetNextItemWidth(rect.width());
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(look.px(8), std::round((rect.height() - look.fonts.regular->FontSize) / 2)));
-  if (focus) ImGui::SetKeyboardFocusHere();
-  ImGui::InputTextWithHint(("##" + name).c_str(), hint, &text, ImGuiInputTextFlags_AutoSelectAll);
+  const std::string id = "##" + name;
+  if (focus) ask_for_keyboard(editor, id);
+  ImGui::InputTextWithHint(id.c_str(), hint, &text, ImGuiInputTextFlags_AutoSelectAll);
   ImGui::PopStyleVar();
   register_widget(editor, name, rect);
   return ImGui::IsItemDeactivatedAfterEdit();

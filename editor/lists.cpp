@@ -63,7 +63,7 @@ ListKey list_key(Editor& editor, const std::string& list, int rows) {
 
 void begin_renaming(Editor& editor, const std::string& what, const std::string& name) {
   editor.renaming = Renaming{what, name};
-  editor.touch();
+  await_field(editor);
 }
 
 bool is_renaming(const Editor& editor, const std::string& what) { return editor.renaming && editor.renaming->what == what; }

@@ -56,7 +56,8 @@ void begin_region(Editor& editor, Region region, const std::string& name, const 
   ImGui::SetNextWindowSize(im(rect.size()));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   ImGui::PushStyleColor(ImGuiCol_WindowBg, background);
-  ImGui::Begin(("##" + name).c_str(), nullptr, kRegionFlags);
+  // What appears takes no keyboard and closes no menu, but for a dialog.
+  ImGui::Begin(("##" + name).c_str(), nullptr, kRegionFlags | (region == Region::Dialog ? 0 : ImGuiWindowFlags_NoFocusOnAppearing));
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();
   // A new window goes behind the others; a dialog stands before them, and what it opens before itself.

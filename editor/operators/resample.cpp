@@ -161,6 +161,7 @@ std::vector<Operator> resample_operators() {
       {"result.rename", "Rename result...", icon::kRename, "Result", "Gives the chosen result another name, in the table below the views.",
        [](Editor& e) {
          e.renaming_result = {chosen_result(e)->name, chosen_result(e)->name};
+         await_field(e);
          show_results(e, true);
        },
        needs_result},

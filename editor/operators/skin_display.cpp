@@ -87,6 +87,7 @@ void invert_locks(Editor& editor) {
 void search_bones(Editor& editor) {
   editor.arrangement().sidebar = true;
   editor.open_sections["Bones"] = editor.skin->searching = editor.skin->focus_search = true;
+  await_field(editor);
 }
 
 }  // namespace

@@ -56,6 +56,7 @@ void open_context_menu(Editor& editor) {
 void search_outliner(Editor& editor) {
   editor.arrangement().sidebar = true;
   editor.open_sections["Outliner"] = editor.outliner.searching = editor.outliner.focus_search = true;
+  await_field(editor);
 }
 
 void toggle_xray(Editor& editor) {

@@ -119,6 +119,7 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
   if (pressed.double_clicked) {
     editor.comparison.b = result->name;
     editor.renaming_result = {result->name, result->name};
+    await_field(editor);
   } else if (pressed.clicked) {
     focus_list(editor, kList, index);
     choose_side(editor, result->name);
@@ -184,7 +185,10 @@ void draw_results(Editor& editor, const Rect& rect) {
     const std::string name = row == 0 || row > results.size() ? "" : results[results.size() - row]->name;
     if (key == ListKey::Moved) show_result(editor, name);
     if (key == ListKey::Activate) choose_side(editor, name);
-    if (key == ListKey::Rename && !name.empty()) editor.renaming_result = {name, name};
+    if (key == ListKey::Rename && !name.empty()) {
+      editor.renaming_result = {name, name};
+      await_field(editor);
+    }
     int index = 0;
     draw_rest_row(editor, column, index++);
     for (auto result = results.rbegin(); result != results.rend(); ++result) draw_result_row(editor, column, index++, *result, open_menu);
