@@ -347,7 +347,9 @@ std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view) {
   const bool at_head = editor.tool == Tool::Rotate || b.parent < 0;
   const glm::dvec3 place = posed_from_rest(*armature, pose)[*bone] * (at_head ? b.head : b.tail);
   if (!view.shows(place)) return std::nullopt;
-  return Gizmo{editor.tool, place, axes_of(editor.handling->space, *armature, pose, *bone, view)};
+  const Space space = editor.handling->space;
+  const bool rings = editor.tool == Tool::Rotate;
+  return Gizmo{editor.tool, place, rings ? axes_of_rings(editor, space, *armature, pose, *bone, view) : axes_of(space, *armature, pose, *bone, view)};
 }
 
 std::optional<GizmoPart> part_at(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel) {

@@ -159,7 +159,7 @@ StrokeSettings stroke_settings(const Editor& editor, BrushKind kind) {
       const bool visible = !editor.views->scene.looks || (*editor.views->scene.looks)[tissue.label].visible;
       const bool allowed = painting.tissue == PaintedTissue::Visible  ? visible
                            : painting.tissue == PaintedTissue::Chosen ? editor.selection.tissues.contains(tissue.label)
-                                                                      : !is_bone(tissue.kind);
+                                                                      : visible && !is_bone(tissue.kind);
       filter.labels[tissue.label] = allowed;
     }
   }

@@ -46,7 +46,7 @@ struct Painting {
   BrushDistance distance = BrushDistance::Geodesic;
   BrushDepth depth = BrushDepth::ToDepth;
   double depth_mm = 25;
-  PaintedTissue tissue = PaintedTissue::All;
+  PaintedTissue tissue = PaintedTissue::Visible;
   bool subtree = false;   // only where the active bone, the one it hangs on or one below it has most of the weight
   Normalize normalize = Normalize::Unlocked;  // as chosen; see normalize_of
   bool relative_to_locks = false;

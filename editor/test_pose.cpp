@@ -63,11 +63,26 @@ void set_bend(Editor& editor, double degrees) {
   TestPose& test = editor.skin->painting->test;
   test.bone = editor.document().armature->bones[static_cast<std::size_t>(*skin_bone(editor))].name;
   test.degrees = std::clamp(degrees, -TestPose::kMost, TestPose::kMost);
+  if (test.degrees == 0) test.before.degrees = 0;
   editor.touch();
 }
 
 void clear_bend(Editor& editor) {
-  editor.skin->painting->test.degrees = 0;
+  TestPose& test = editor.skin->painting->test;
+  test.degrees = test.before.degrees = 0;
+  editor.touch();
+}
+
+void toggle_test_pose(Editor& editor) {
+  TestPose& test = editor.skin->painting->test;
+  if (test.posed || test.degrees != 0) {
+    test.before = {test.posed, test.degrees};
+    test.posed = false;
+    test.degrees = 0;
+  } else {
+    test.degrees = test.before.degrees;
+    test.posed = test.before.posed || test.degrees == 0;
+  }
   editor.touch();
 }
 

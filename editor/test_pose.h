@@ -16,6 +16,10 @@ struct TestPose {
   bool posed = false;  // the document's pose; else rest
   std::string bone;    // bent at its head; "" or no bone of the rig: none
   double degrees = 0;
+  struct {
+    bool posed = false;
+    double degrees = 0;
+  } before;  // what the body at rest goes back to
 };
 
 // Whether the views show the body in a pose: shown_pose().
@@ -29,5 +33,8 @@ std::string why_not_bend(const Editor& editor);
 double bend(const Editor& editor);
 void set_bend(Editor& editor, double degrees);
 void clear_bend(Editor& editor);
+// To rest, and back to what was shown before: the document's pose, the joint bent on trial, or both. The document's pose
+// where neither was.
+void toggle_test_pose(Editor& editor);
 
 }  // namespace limber::editor

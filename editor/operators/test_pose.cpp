@@ -25,8 +25,8 @@ std::string needs_bend(const Editor& editor) {
 
 std::vector<Operator> test_pose_operators() {
   return {
-      {"skin.posed", "Posed", icon::kPose, "Test pose", "Shows the body in its pose while its weights are painted; once more at rest. Strokes land where the pointer is seen.",
-       [](Editor& e) { e.skin->painting->test.posed = !e.skin->painting->test.posed; }, needs_weights, [](const Editor& e) { return e.skin->painting->test.posed; }},
+      {"skin.posed", "Posed", icon::kPose, "Test pose", "Shows the body in its pose while its weights are painted; once more at rest, a joint bent on trial too, and back. Strokes land where the pointer is seen.",
+       toggle_test_pose, needs_weights, [](const Editor& e) { return e.skin->painting->test.posed; }},
       {"skin.bend_by_wheel", "Bend by wheel", "", "Test pose", "Bends the active bone on trial, by a step of the wheel.", [](Editor& e) { set_bend(e, bend(e) + TestPose::kStep * e.input.wheel); }, why_not_bend},
       {"skin.bend_more", "Bend further", "", "Test pose", "Bends the active bone on trial; the pose of the project stays.", [](Editor& e) { set_bend(e, bend(e) + TestPose::kStep); }, why_not_bend},
       {"skin.bend_less", "Bend less", "", "Test pose", "Bends the active bone on trial the other way.", [](Editor& e) { set_bend(e, bend(e) - TestPose::kStep); }, why_not_bend},

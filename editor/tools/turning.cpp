@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <glm/gtx/quaternion.hpp>
+
 #include "core/rig/anatomical_zero.h"
 #include "core/rig/joint_reading.h"
 #include "editor/gizmo_painter.h"
@@ -15,6 +17,21 @@ namespace limber::editor {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+
+// The posed axis of a hinge that keeps its limits; nothing of another joint.
+std::optional<glm::dvec3> hinge_of(const Editor& editor, const Armature& armature, const Pose& pose, int bone) {
+  const Bone& b = armature.bones[bone];
+  if (!editor.posing.keep_limits || b.limits.type != JointLimits::Type::Hinge) return std::nullopt;
+  return b.parent < 0 ? b.limits.axis : posed_from_rest(armature, pose)[b.parent].rotation * b.limits.axis;
+}
+
+// The axis of the three that runs most nearly along a direction.
+int nearest_axis(const glm::dmat3& axes, const glm::dvec3& direction) {
+  int nearest = 0;
+  for (int axis = 1; axis < 3; ++axis)
+    if (std::abs(glm::dot(axes[axis], direction)) > std::abs(glm::dot(axes[nearest], direction))) nearest = axis;
+  return nearest;
+}
 constexpr double kSnapDegrees = 5, kSnapFine = 1;  // with Ctrl, with Ctrl and Shift
 constexpr double kTrackballPerPixel = 0.01;        // radians, at scale 1
 constexpr double kNearLimit = 5;                   // degrees, from where an end of a joint's range is warned of
@@ -25,15 +42,17 @@ class Turning final : public TransformTool {
  public:
   Turning(Editor& editor, const Grip& grip)
       : TransformTool(editor, grip), armature_(editor.document().armature), before_(pose_of(editor.document())), bones_(topmost(*armature_, chosen_bones(editor))),
-        active_(editor.selection.bone.value_or(bones_.front())), trackball_(grip.trackball), scale_(editor.look.scale),
+        active_(editor.selection.bone.value_or(bones_.front())), trackball_(grip.trackball), by_ring_(grip.held && !grip.trackball && grip.lock.axis >= 0), scale_(editor.look.scale),
         drag_(view_, scale_, pivot_of_active(), grip.held && !grip.trackball), at_rest_(turn_at_rest(*armature_, active_)) {
+    if (by_ring_) ring_axes_ = axes_of_rings(editor, lock_.space, *armature_, before_, active_, view_);
+    on_hinge_ = by_ring_ && hinge_of(editor, *armature_, before_, active_) && nearest_axis(ring_axes_, *hinge_of(editor, *armature_, before_, active_)) == lock_.axis;
     if (const int parent = armature_->bones[active_].parent; parent >= 0) above_ = posed_from_rest(*armature_, before_)[parent].rotation;
     drag_.about(axis(), start_, pointer_);
   }
 
   std::string title() const override {
     if (trackball_ && !number_.typed()) return "Trackball";
-    return "Rotate " + (number_.typed() ? number_.text() : text_of_number("%.1f", shown_)) + "\u00b0" + lock_text("about");
+    return "Rotate " + (number_.typed() ? number_.text() : text_of_number("%.1f", shown_)) + "\u00b0" + about();
   }
 
   std::vector<KeyHint> hints(const Editor&) const override {
@@ -56,11 +75,12 @@ class Turning final : public TransformTool {
         painter.ring(ring_of(view_, scale_, pivot(), axes(lock_.space)[other], AngleDrag::kRing), with_alpha(theme.axis[other], 0.3f), 2.5f, GizmoPainter::Part::Front);
     drag_.draw(painter, theme, shown_);
     const std::string number = (number_.typed() ? number_.text() : text_of_number("%+.1f", shown_)) + "\u00b0";
-    painter.read_out(pivot(), number, lock_.axis < 0 ? "view" : lock_text("").substr(1), limit_text(editor), limit_colour(editor));
+    painter.read_out(pivot(), number, lock_.axis < 0 ? "view" : on_hinge_ && by_ring_ ? "hinge" : lock_text("").substr(1), limit_text(editor), limit_colour(editor));
   }
 
  private:
-  glm::dmat3 axes(Space space) const override { return axes_of(space, *armature_, before_, active_, view_); }
+  glm::dmat3 axes(Space space) const override { return by_ring_ ? ring_axes_ : axes_of(space, *armature_, before_, active_, view_); }
+  std::string about() const { return on_hinge_ && by_ring_ ? " about the hinge" : lock_text("about"); }
 
   glm::dvec3 axis() const {
     const glm::dvec3 locked = lock_axis();
@@ -82,7 +102,7 @@ class Turning final : public TransformTool {
   }
 
   void locked(Editor&) override {
-    trackball_ = false;
+    trackball_ = by_ring_ = false;
     drag_.leave_ring();
     drag_.about(axis(), start_, pointer_);
   }
@@ -146,7 +166,9 @@ class Turning final : public TransformTool {
       return;
     }
     number_.set(fields[0].value);
+    const AxisLock before = lock_;
     set_axis(fields, 1);
+    if (lock_.axis != before.axis || lock_.space != before.space) by_ring_ = false;
   }
 
   void show(Editor& editor) override { show_pose(editor, pose(editor)); }
@@ -192,6 +214,8 @@ class Turning final : public TransformTool {
   std::vector<int> bones_;
   int active_ = 0;
   bool trackball_;
+  bool by_ring_, on_hinge_ = false;  // held by a ring; by the one that turns about the hinge
+  glm::dmat3 ring_axes_{1};
   float scale_;
   AngleDrag drag_;
   const glm::dvec3 at_rest_;      // of the active joint, from the anatomical position
@@ -202,6 +226,17 @@ class Turning final : public TransformTool {
 };
 
 }  // namespace
+
+glm::dmat3 axes_of_rings(const Editor& editor, Space space, const Armature& armature, const Pose& pose, int bone, const SeenFrom& view) {
+  glm::dmat3 axes = axes_of(space, armature, pose, bone, view);
+  const auto hinge = hinge_of(editor, armature, pose, bone);
+  if (!hinge) return axes;
+  const int nearest = nearest_axis(axes, *hinge);
+  const glm::dvec3 along = glm::normalize(*hinge) * (glm::dot(axes[nearest], *hinge) < 0 ? -1.0 : 1.0);
+  const glm::dquat turn = glm::rotation(glm::normalize(axes[nearest]), along);
+  for (int axis = 0; axis < 3; ++axis) axes[axis] = turn * axes[axis];
+  return axes;
+}
 
 std::unique_ptr<TransformTool> begin_turning(Editor& editor, const Grip& grip) { return std::make_unique<Turning>(editor, grip); }
 

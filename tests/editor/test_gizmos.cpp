@@ -122,6 +122,31 @@ TEST_CASE("gizmos: dragging a ring turns the bone by the angle swept round it, i
     }
 }
 
+TEST_CASE("gizmos: a hinge that lies askew has a ring of its own, and turns by the angle swept round it") {
+  for (const bool local : {false, true}) {
+    GizmoEditor test;
+    Document next = test.editor->document();
+    Armature armature = *next.armature;
+    armature.bones[1].limits.axis = glm::normalize(glm::dvec3(1, -0.9, 0));
+    next.armature = std::make_shared<const Armature>(armature);
+    test.editor->history.commit("Hinge", next);
+    test.editor->posing.keep_limits = true;
+    test.editor->handling->space = local ? Space::Local : Space::Global;
+    test.play("click \"strip/tool.rotate\"\nwait-idle");
+    int along = -1;
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::abs(glm::dot(test.gizmo().axes[axis], armature.bones[1].limits.axis)) > 0.999999) along = axis;
+    REQUIRE(along >= 0);
+    const double sense = glm::dot(test.gizmo().axes[along], armature.bones[1].limits.axis) < 0 ? -1 : 1, begin = test.front(along);
+    test.pointer_to(test.on_ring(along, begin));
+    test.press();
+    for (int i = 1; i <= 4; ++i) test.pointer_to(test.on_ring(along, begin + sense * glm::radians(47.8) * i / 4));
+    CHECK(test.editor->modal->title().find("about the hinge") != std::string::npos);
+    test.release();
+    CHECK(std::abs(test.degrees(1, armature.bones[1].limits.axis) - 47.8) < 0.1);
+  }
+}
+
 TEST_CASE("gizmos: the ring about the line of sight turns like the pointer goes round the joint") {
   for (const bool parallel : {false, true}) {
     GizmoEditor test(1, parallel);

@@ -6,6 +6,7 @@
 #include "core/rig/mirror.h"
 #include "editor/handling.h"
 #include "editor/skin_display.h"
+#include "editor/tissues.h"
 #include "tests/editor/paint_editor.h"
 
 using namespace limber;
@@ -296,4 +297,24 @@ TEST_CASE("painting: only the tissue that the filter lets through changes") {
   });
   CHECK(skin > 10);
   CHECK(others == 0);
+}
+
+TEST_CASE("painting: tissue that is hidden is not painted unless all tissue is asked for") {
+  for (const bool all : {false, true}) {
+    PaintEditor test;
+    show_tissues(*test.editor, {17}, false);
+    test.play("wait-idle");
+    if (all) test.play("click \"Edit/Brush reach/All tissue\"");
+    const auto before = test.editor->document().weights;
+    test.stroke(test.at(0, 12), test.at(20, 12));
+    test.play("wait-idle");
+    REQUIRE(test.editor->document().weights != before);
+    int hidden = 0, shown = 0;
+    test.for_each([&](const glm::dvec3& p, const glm::ivec3& voxel, const Influence& influence) {
+      if (p.z < 0 || influence.of(1) == 0) return;
+      (test.editor->document().volume->at(voxel) == 17 ? hidden : shown) += 1;
+    });
+    CHECK(shown > 20);
+    CHECK((hidden > 0) == all);
+  }
 }

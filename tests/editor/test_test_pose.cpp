@@ -139,4 +139,21 @@ TEST_CASE("test pose: bones are posed for the project in the Skin workspace too,
   CHECK(!test.editor->views->scene.pose);
 }
 
+TEST_CASE("test pose: Tab shows rest and brings back what was bent on trial, posed or both") {
+  PaintEditor test;
+  set_bend(*test.editor, 60);
+  test.play("wait-idle\nkey Tab\nwait-idle");
+  CHECK_FALSE(shows_pose(*test.editor));
+  test.play("key Tab\nwait-idle");
+  CHECK(bend(*test.editor) == 60);
+  CHECK_FALSE(test.editor->skin->painting->test.posed);
+  CHECK(shows_pose(*test.editor));
+  // Unbent for good, only the pose is there to be shown.
+  clear_bend(*test.editor);
+  test.editor->skin->painting->test.posed = false;
+  test.play("move \"3D view/view\"\nkey Tab");
+  CHECK(test.editor->skin->painting->test.posed);
+  CHECK(test.editor->skin->painting->test.degrees == 0);
+}
+
 }  // namespace limber::test
