@@ -93,6 +93,12 @@ bool over_timeline(const Editor& editor) {
          editor.arrangement().timeline && !editor.arrangement().console;
 }
 
+// The sidebar and the area below the views have keys of their own, the views' are not theirs.
+bool is_over(const char* region) {
+  const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
+  return window && std::string_view(window->RootWindow->Name) == region;
+}
+
 // Buttons, handles and bars in the views take the left button for themselves.
 bool over_widget(const Editor& editor) {
   const auto& widgets = editor.widgets.widgets();
@@ -171,10 +177,11 @@ std::vector<std::string> contexts(const Editor& editor) {
   if (view && view->id != ViewId::Body) contexts.push_back("slice");
   if (view && view->id == ViewId::Body) contexts.push_back("view3d");
   if (over_timeline(editor)) contexts.push_back("timeline");
+  if (is_over("##sidebar")) contexts.push_back("sidebar");
   constexpr const char* kWorkspaces[] = {"rig", "skin", "pose", "resample"};
   contexts.push_back(kWorkspaces[static_cast<int>(editor.workspace)]);
   contexts.push_back("select");
-  if (!view) contexts.push_back("view3d");
+  if (!view && !is_over("##sidebar") && !is_over("##bottom")) contexts.push_back("view3d");
   contexts.push_back("global");
   return contexts;
 }

@@ -116,6 +116,7 @@ Editor::Editor(Host& host, const Preferences& preferences)
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.ConfigInputTextCursorBlink = false;  // an idle editor draws nothing
+  io.ConfigDragClickToInputText = true;   // a click without a drag types a number
   io.ClipboardUserData = &host;
   io.GetClipboardTextFn = [](void* user) {
     static std::string text;

@@ -147,7 +147,7 @@ bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_w
   bool committed = false;
   if (numbers == OutOfRange::Clamped) number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, false, committed);
   else committed = judged_number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, focus);
-  if (ImGui::IsItemHovered()) tooltip(editor, rect, field.label, field.sentence + "\nDrag it, or type after a double click.");
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, field.label, field.sentence + "\nDrag it, or click it and type.");
   return committed;
 }
 

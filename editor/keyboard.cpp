@@ -44,7 +44,7 @@ bool is_typing(const Editor& editor) { return editor.keyboard.typed && active_it
 
 bool may_interrupt(const Editor& editor) {
   const bool pressed = std::any_of(std::begin(editor.input.buttons), std::end(editor.input.buttons), [](bool down) { return down; });
-  return !editor.keyboard.typed && !editor.keyboard.waits() && !pressed && !editor.modal && !editor.drag && !editor.dialog && editor.messages.errors.empty() &&
+  return editor.host.events.empty() && !editor.keyboard.typed && !editor.keyboard.waits() && !pressed && !editor.modal && !editor.drag && !editor.dialog && editor.messages.errors.empty() &&
          !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 

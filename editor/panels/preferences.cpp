@@ -67,7 +67,7 @@ void PreferencesDialog::number(Editor& editor, Column& column, const std::string
     edited_ = label;
     edited_value_ = shown;
   }
-  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, sentence + "\nDrag it, or type after a double click.");
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, sentence + "\nDrag it, or click it and type.");
   if (!committed || edited_ != label) return;
   value(editor.preferences) = edited_value_;
   edited_.clear();

@@ -12,7 +12,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::pair<const char*, const char*> kContexts[] = {{"global", "Everywhere"}, {"view3d", "3D view"},  {"slice", "Slices"}, {"select", "Selection"},
+constexpr std::pair<const char*, const char*> kContexts[] = {{"global", "Everywhere"}, {"view3d", "3D view"},  {"slice", "Slices"}, {"sidebar", "Sidebar"}, {"select", "Selection"},
                                                              {"rig", "Rig"},           {"skin", "Skin"},       {"pose", "Pose"},    {"resample", "Resample"},
                                                              {"timeline", "Timeline"}};
 

@@ -31,7 +31,7 @@ float draw_menus(Editor& editor, float x, const Rect& bar) {
     if (pressed.hovered || open) fill(rect, open ? look.theme.active : look.theme.hover, look.px(4));
     put_text(editor, look.fonts.regular, look.theme.text, rect, menu.title, Align::Centre);
     // Opens at the press; with another menu open, pointing is enough.
-    const bool from_neighbour = !open && !editor.open_menu.empty() && rect.contains(editor.input.pointer);
+    const bool from_neighbour = !open && !editor.open_menu.empty() && editor.open_menu != menu.title && rect.contains(editor.input.pointer);
     if (pressed.activated || from_neighbour) ImGui::OpenPopup(popup.c_str());
     ImGui::SetNextWindowPos({rect.low.x, bar.high.y});
     if (ImGui::BeginPopup(popup.c_str(), ImGuiWindowFlags_NoMove)) {

@@ -79,7 +79,7 @@ TEST_CASE("replay: clip box and plane are moved by number, one edit each") {
   const Grid& grid = test.editor->document().volume->grid;
   CHECK((world_from_voxel(grid) * glm::dvec3(0, 0, box_of(test).high.z)).z == doctest::Approx(15));
   const auto steps = test.editor->history.steps().size();
-  test.play("key Shift+Alt+B");
+  test.play("move \"3D view/view\"\n key Shift+Alt+B");
   const ClipPlane plane = test.editor->document().visibility->clip_plane;
   test.play("double-click Clipping/Plane\n type \"12.5\"\n key Return\n expect edit \"Move clip plane\"");
   CHECK(test.editor->history.steps().size() == steps + 2);
