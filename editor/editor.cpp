@@ -23,6 +23,7 @@
 #include "editor/sitting.h"
 #include "editor/painting.h"
 #include "editor/skin_display.h"
+#include "editor/steady.h"
 #include "editor/timeline.h"
 #include "editor/tooltip.h"
 
@@ -35,6 +36,7 @@ constexpr double kLongestRest = 60;   // s; only so that a wait ends at all
 constexpr double kJobPulse = 0.1;     // s between frames while a job runs
 constexpr int kJobsAtOnce = 2;
 constexpr int kMostTurns = 200;        // of the panels within a frame, for what was typed since the last
+constexpr int kMostAgain = 3;          // that a frame's panels are laid out once more
 constexpr float kTurnSeconds = 1e-5f;  // no time passes between them
 constexpr double kUploadTime = 0.008;  // s of a frame that weights take on their way to the card
 
@@ -88,6 +90,15 @@ bool begins_something(const Event& event) {
 
 void ended(const Editor& editor, const char* part_of_frame) {
   if (editor.timeline->frame_log) editor.timeline->frame_log->part(part_of_frame);
+}
+
+// The panels are drawn once more in the frame that is shown.
+void begin_turn_without_input(Editor& editor) {
+  ImGuiIO& io = ImGui::GetIO();
+  ImGui::EndFrame();
+  io.DeltaTime = kTurnSeconds;
+  io.MouseWheel = io.MouseWheelH = editor.input.wheel = editor.input.wheel_sideways = 0;
+  ImGui::NewFrame();
 }
 
 void show_preferred(Editor& editor) {
@@ -284,8 +295,15 @@ void Editor::frame(double time) {
   io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
   layout = layout_of(*this, size);
   ImGui_ImplOpenGL3_NewFrame();
+  const bool pressed = input.down(MouseButton::Left) || input.down(MouseButton::Right);
   take_input();
   read_typed_text();
+  // A press meets what was shown when it was made, before a job changes it.
+  if (pressed != (input.down(MouseButton::Left) || input.down(MouseButton::Right))) {
+    draw();
+    change_dialog();
+    begin_turn_without_input(*this);
+  }
   ended(*this, "input");
   meet_jobs();
   ended(*this, "jobs");
@@ -294,6 +312,10 @@ void Editor::frame(double time) {
   ended(*this, "time");
   draw_views();
   draw();
+  for (int again = 0; again < kMostAgain && has_moved_under_pointer(*this); ++again) {
+    begin_turn_without_input(*this);
+    draw();
+  }
   ended(*this, "panels");
   await_next_frame(*this);
   follow_tour(*this);

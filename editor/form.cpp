@@ -52,6 +52,7 @@ class Form final : public Dialog {
   bool accept_ = false;
   bool focused_ = false;  // the first field that is typed into has been given the keyboard
   std::string words_;     // of the last picture: what it is laid out for
+  std::vector<std::string> problems_;  // of each field, as they stood when no button was down: what it is laid out for
 };
 
 // What is wrong with a number; empty where nothing is.
@@ -72,8 +73,13 @@ float height_of(const Look& look, const FormField& field) {
 void Form::draw(Editor& editor) {
   const Look& look = editor.look;
   const float sentence = height_of_wrapped(look.fonts.regular, request_.sentence, look.px(kWidth - 36), 2) > look.px(24) ? 44 : 28;
+  // Nothing moves under a pressed button.
+  if (!editor.input.down(MouseButton::Left) || problems_.size() != request_.fields.size()) {
+    problems_.clear();
+    for (const FormField& field : request_.fields) problems_.push_back(problem_of(field));
+  }
   float fields = 0;
-  for (const FormField& field : request_.fields) fields += height_of(look, field) + (problem_of(field).empty() ? 0 : kProblem);
+  for (std::size_t i = 0; i < problems_.size(); ++i) fields += height_of(look, request_.fields[i]) + (problems_[i].empty() ? 0 : kProblem);
   const float said = std::max(52.0f, 20 + height_of_wrapped(look.fonts.small, words_, look.px(kWidth - 36 - 24), kMostLines) / look.scale);
   Rect rect = begin_dialog(editor, request_.title, kWidth + (request_.picture ? kPicture + 18 : 0), 36 + 18 + sentence + fields + said + 28 + 18);
   if (request_.picture) {
@@ -83,12 +89,13 @@ void Form::draw(Editor& editor) {
   }
   put_wrapped(editor, look.fonts.regular, look.theme.text2, rect.low, rect.width(), request_.sentence, 2);
   float y = rect.low.y + look.px(sentence);
-  for (FormField& field : request_.fields) {
+  for (std::size_t i = 0; i < request_.fields.size(); ++i) {
+    FormField& field = request_.fields[i];
     const bool typed_into = field.kind == FormField::Kind::Text || field.kind == FormField::Kind::Number;
     const float end = y + look.px(height_of(look, field));
     draw_field(editor, field, {{rect.low.x, y}, {rect.high.x, end}}, look.px(kLabel), typed_into && !std::exchange(focused_, true), OutOfRange::Stays);
     y = end;
-    if (const std::string wrong = problem_of(field); !wrong.empty()) {
+    if (const std::string& wrong = problems_[i]; !wrong.empty()) {
       put_text(editor, look.fonts.small, look.theme.warn, Rect{{rect.low.x + look.px(kLabel + 8), y - look.px(3)}, {rect.high.x, y + look.px(kProblem - 3)}}, wrong);
       y += look.px(kProblem);
     }
@@ -106,7 +113,7 @@ void Form::draw(Editor& editor) {
     ready = false;
   }
   const std::string& words = problem.empty() ? outcome : problem;
-  if (words != words_) {
+  if (words != words_ && !editor.input.down(MouseButton::Left)) {
     words_ = words;
     editor.touch();
   }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/panels/column.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "editor/icons.h"
+#include "editor/steady.h"
 
 namespace limber::editor {
 
@@ -13,7 +15,8 @@ Column::Column(Editor& editor, const std::string& name, const Rect& area) : edit
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   ImGui::BeginChild("column", im(area.size()), false, ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar();
-  width_ = ImGui::GetContentRegionAvail().x;
+  // Nothing becomes narrower when a scroll bar comes.
+  width_ = std::min(ImGui::GetContentRegionAvail().x, area.width() - ImGui::GetStyle().ScrollbarSize);
   y_ = top_ = ImGui::GetCursorScreenPos().y;
 }
 
@@ -34,6 +37,7 @@ bool Column::begin_section(const std::string& title, const std::string& right, b
   const Look& look = editor_.look;
   bool& open = editor_.open_sections.try_emplace(title, open_at_first).first->second;
   const Rect rect = head_ = row(28);
+  note_section(title.c_str(), rect.low.y);
   if (editor_.wanted_section == title) {
     ImGui::SetScrollY(ImGui::GetScrollY() + rect.low.y - area_.low.y);
     editor_.wanted_section.clear();
@@ -47,8 +51,9 @@ bool Column::begin_section(const std::string& title, const std::string& right, b
   put_icon(look.fonts.regular, look.theme.text2, Rect{{rect.low.x + look.px(10), rect.low.y}, {rect.low.x + look.px(26), rect.high.y}},
            open ? icon::kOpened : icon::kClosed);
   put_text(editor_, look.fonts.semibold, look.theme.text, Rect{{rect.low.x + look.px(34), rect.low.y}, {rect.high.x - look.px(100), rect.high.y}}, title);
-  if (!right.empty())
-    put_text(editor_, look.fonts.small, look.theme.text2, Rect{{rect.high.x - look.px(150), rect.low.y}, {rect.high.x - look.px(10), rect.high.y}}, right, Align::Right);
+  // The word has what the title leaves.
+  const float words = rect.low.x + look.px(34 + 12) + text_size(look.fonts.semibold, title).x;
+  if (!right.empty()) put_text(editor_, look.fonts.small, look.theme.text2, Rect{{words, rect.low.y}, {rect.high.x - look.px(10), rect.high.y}}, right, Align::Right);
   if (pressed.clicked) {
     open = !open;
     editor_.touch();
@@ -75,7 +80,9 @@ bool Column::list_row(Rect& rect, int index, bool chosen, const std::string& lis
     if (rect.high.y > area_.high.y) ImGui::SetScrollY(ImGui::GetScrollY() + rect.high.y - area_.high.y);
     editor_.touch();
   }
-  if (!ImGui::IsRectVisible(im(rect.low), im(rect.high))) return false;
+  // A row whose name is typed has the keyboard, also out of sight.
+  const bool typed = editor_.renaming || !editor_.renaming_result.result.empty();
+  if (!typed && !ImGui::IsRectVisible(im(rect.low), im(rect.high))) return false;
   if (chosen) fill(rect, look.theme.accent_soft);
   else if (index % 2) fill(rect, look.theme.row_alt);
   if (focused) outline(rect, look.theme.accent_text, 0, 2 * look.line());

@@ -343,7 +343,12 @@ float height_of_list(const Editor& editor, const Column& column, float whole) {
   if (editor.workspace != Workspace::Rig || !editor.document().armature) return whole;
   const float top = column.head().high.y + ImGui::GetScrollY() - editor.layout.sidebar.low.y + (editor.outliner.searching ? look.px(32) : 0);
   const float room = std::floor((editor.layout.sidebar.height() - top) / look.scale - kBoneSection);
-  return std::min(whole, std::max(kRow * kFewestRows, room));
+  // While the sidebar is pointed at, what stands above the list does not change its height.
+  float& rows = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("rows"), -1);
+  float& height = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("height"), -1);
+  if (rows == whole && (editor.layout.sidebar.contains(editor.input.pointer) || editor.input.down(MouseButton::Left))) return height;
+  rows = whole;
+  return height = std::min(whole, std::max(kRow * kFewestRows, room));
 }
 
 // The row in the middle of the list, unless it is seen already.

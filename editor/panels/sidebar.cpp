@@ -4,6 +4,7 @@
 #include "editor/panels/panels.h"
 #include "editor/panels/posed_bone.h"
 #include "editor/pose_library.h"
+#include "editor/steady.h"
 
 namespace limber::editor {
 
@@ -31,8 +32,11 @@ void draw_sidebar(Editor& editor) {
   const Rect& rect = editor.layout.sidebar;
   if (rect.empty()) return;
   begin_region(editor, Region::Sidebar, "sidebar", rect, editor.look.theme.panel);
+  const float shift = sidebar_shift() / editor.look.scale;
+  ImGui::PushID(static_cast<int>(editor.workspace));  // each is scrolled by itself
   {
     Column column(editor, "sections", rect);
+    column.space(shift);
     draw_steps(editor, column);
     if (editor.workspace == Workspace::Skin) draw_bones(editor, column);
     if (editor.workspace == Workspace::Resample) {
@@ -64,6 +68,7 @@ void draw_sidebar(Editor& editor) {
     draw_under_cursor(editor, column);
     draw_history(editor, column);
   }
+  ImGui::PopID();
   end_region(editor);
 }
 

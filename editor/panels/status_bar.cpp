@@ -52,7 +52,10 @@ std::vector<KeyHint> hints(const Editor& editor) {
   if (!(editor.input.modifiers() == Modifiers{}) && !editor.dialog) return held_hints(editor);
   std::vector<std::pair<const char*, const char*>> operators;
   const ViewPlace* view = hovered_view(editor);
-  if (view && editor.workspace == Workspace::Skin && editor.seams->brush)
+  if (contexts(editor).front() == "timeline")
+    operators = {{"motion.scrub", "Scrub"}, {"motion.zoom", "Zoom"}, {"motion.pan", "Shift"}, {"motion.insert_key", "Key"}, {"motion.move_keys", "Move keys"}, {"motion.delete_keys", "Delete keys"},
+                 {"motion.marker", "Marker"}, {"motion.play", "Play"}};
+  else if (view && editor.workspace == Workspace::Skin && editor.seams->brush)
     operators = {{"skin.paint", "Cut a seam"}, {"skin.paint_subtract", "Erase"}, {"skin.radius", "Radius"}, {"edit.undo", "Undo"}, {"skin.brush_pie", "Brushes"}};
   else if (view && editor.workspace == Workspace::Skin && why_not_paint(editor).empty())
     operators = {{"skin.paint", name_of(editor.skin->painting->kind)}, {"skin.paint_subtract", "Take away"}, {"skin.paint_smooth", "Smooth"}, {"skin.radius", "Radius"},

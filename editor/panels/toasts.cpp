@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Short messages at the bottom right of the views: info 4 s, warnings 8 s, errors stay; pointing at one holds it. At most
-// three are seen, the older ones are counted above them.
+// Short messages at the bottom right of the 3D view: info 4 s, warnings 8 s, errors stay. At most three are seen, where only
+// slices are shown one; the older ones are counted above them. While the pointer is over them they stay as they are: none
+// goes, and what comes meanwhile waits.
 #include "editor/icons.h"
 #include "editor/panels/panels.h"
 #include "editor/severity.h"
@@ -10,7 +11,7 @@ namespace limber::editor {
 namespace {
 
 constexpr std::size_t kMost = 3;
-constexpr float kWidth = 332, kLeast = 52, kGap = 8;
+constexpr float kWidth = 332, kLeast = 52, kGap = 8, kLeastPlace = 240;
 constexpr int kLines = 2, kDetailLines = 3;
 constexpr double kFadeIn = 0.12, kFadeOut = 0.2;  // s
 
@@ -78,6 +79,7 @@ bool draw_toast(Editor& editor, const Toast& toast, const Shape& shape, const Re
     if (pressed.clicked) op ? run(editor, *op) : editor.messages.show_again(toast.failure);
   }
   const Rect close{{rect.high.x - look.px(30), middle - look.px(12)}, {rect.high.x - look.px(6), middle + look.px(12)}};
+  register_widget(editor, "box", rect);
   const bool closed = button(editor, "Close message", close, {icon::kClose, "", ButtonStyle::Flat});
   fade(canvas, first, presence(editor, toast));
   end_region(editor);
@@ -103,33 +105,55 @@ void draw_more(Editor& editor, std::size_t count, float bottom, float right) {
   end_region(editor);
 }
 
+// Over the 3D view, else over the views.
+Rect place_of_toasts(const Editor& editor) {
+  const Layout& layout = editor.layout;
+  Rect place = layout.views;
+  for (const ViewPlace& view : layout.view_places)
+    if (view.id == ViewId::Body && !view.side_a && view.rect.width() >= editor.look.px(kLeastPlace)) place = view.rect;
+  if (layout.sidebar_over_views && !layout.sidebar.empty()) place.high.x = std::min(place.high.x, layout.sidebar.low.x);
+  return place;
+}
+
+// As they were drawn last.
+bool points_at_toasts(const Editor& editor) {
+  const auto& widgets = editor.widgets.widgets();
+  return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) { return widget.region == Region::Toast && widget.name.starts_with("toast") && widget.rect.contains(editor.input.pointer); });
+}
+
 }  // namespace
 
 void draw_toasts(Editor& editor) {
   auto& toasts = editor.messages.toasts;
   const Look& look = editor.look;
-  for (Toast& toast : toasts)
-    if (toast.since < 0) toast.since = editor.now;
-  std::erase_if(toasts, [&](const Toast& toast) { return editor.now - toast.since >= life_of(toast.severity); });
+  const bool held = points_at_toasts(editor);
+  for (Toast& toast : toasts) {
+    // One that came again is seen already.
+    if (toast.since < 0 && (!held || toast.times > 1)) toast.since = editor.now;
+    if (held && toast.since >= 0) toast.since = std::max(toast.since, editor.now - kFadeIn);
+  }
+  std::erase_if(toasts, [&](const Toast& toast) { return toast.since >= 0 && editor.now - toast.since >= life_of(toast.severity); });
+  std::vector<std::size_t> seen;  // newest first
+  for (std::size_t at = toasts.size(); at-- > 0;)
+    if (toasts[at].since >= 0) seen.push_back(at);
 
-  Rect views = editor.layout.views;
-  if (editor.layout.sidebar_over_views && !editor.layout.sidebar.empty()) views.high.x = std::min(views.high.x, editor.layout.sidebar.low.x);
+  const Rect views = place_of_toasts(editor);
   const float width = std::min(look.px(kWidth), views.width() - look.px(24)), right = views.high.x - look.px(12);
   float bottom = views.high.y - look.px(12);
   std::size_t closed = toasts.size();
-  const std::size_t shown = std::min(toasts.size(), kMost);
-  for (std::size_t i = 0; i < shown; ++i) {
-    const std::size_t at = toasts.size() - 1 - i;
+  const std::size_t most = std::min(seen.size(), editor.layout.place_of(ViewId::Body) ? kMost : 1);
+  std::size_t shown = 0;
+  for (; shown < most && (shown == 0 || bottom > views.centre().y); ++shown) {
+    const std::size_t at = seen[shown];
     const Toast toast = toasts[at];  // what is pressed in it may bring others
     const Shape shape = shape_of(editor, toast, width);
     const Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
-    if (draw_toast(editor, toast, shape, rect, static_cast<int>(i))) closed = at;
-    if (rect.contains(editor.input.pointer)) toasts[at].since = std::max(toast.since, editor.now - kFadeIn);
+    if (draw_toast(editor, toast, shape, rect, static_cast<int>(shown))) closed = at;
     if (life_of(toast.severity) < 1e9) editor.wake_at(toasts[at].since + life_of(toast.severity) - kFadeOut);
     bottom = rect.low.y - look.px(kGap);
   }
   if (closed < toasts.size()) toasts.erase(toasts.begin() + static_cast<std::ptrdiff_t>(closed));
-  else if (toasts.size() > shown) draw_more(editor, toasts.size() - shown, bottom, right);
+  else if (seen.size() > shown) draw_more(editor, seen.size() - shown, bottom, right);
 }
 
 }  // namespace limber::editor

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What lies under the pointer in the sidebar stays there: where a text above it comes, goes or grows, the sections are
+// shifted by as much until the pointer leaves the sidebar, the user scrolls, or another workspace is shown.
+#pragma once
+
+namespace limber::editor {
+
+struct Editor;
+
+// By how far the sections begin below the sidebar's top, pixels. Call in the sidebar's window.
+float sidebar_shift();
+// Call where a section's head stands, seen or not.
+void note_section(const char* title, float y);
+// Once after the panels were drawn. True when what the pointer points at has moved: they are to be drawn again.
+bool has_moved_under_pointer(Editor& editor);
+
+}  // namespace limber::editor
