@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/steady.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -13,7 +14,7 @@ namespace limber::editor {
 namespace {
 
 // Kept by the sidebar's window, under these names.
-constexpr ImGuiID kShift = 1, kWidget = 2, kLow = 3, kHigh = 4, kScroll = 5, kState = 6, kHead = 7, kSection = 8;
+constexpr ImGuiID kShift = 1, kWidget = 2, kLow = 3, kHigh = 4, kScroll = 5, kState = 6, kHead = 7, kSection = 8, kEnd = 9;
 
 ImGuiWindow* sidebar() {
   ImGuiWindow* window = ImGui::FindWindowByName("##sidebar");
@@ -66,6 +67,13 @@ void note_section(const char* title, float y) {
 }
 
 float sidebar_shift() { return ImGui::GetStateStorage()->GetFloat(kShift); }
+
+float sidebar_rest(float end) {
+  ImGuiStorage& noted = ImGui::GetCurrentWindow()->RootWindow->StateStorage;
+  const float whole = noted.GetInt(kWidget) != 0 ? std::max(noted.GetFloat(kEnd), end) : end;
+  noted.SetFloat(kEnd, whole);
+  return whole - end;
+}
 
 bool has_moved_under_pointer(Editor& editor) {
   ImGuiWindow* window = sidebar();

@@ -9,6 +9,9 @@ struct Editor;
 
 // By how far the sections begin below the sidebar's top, pixels. Call in the sidebar's window.
 float sidebar_shift();
+// The room that is left below the sections, pixels, so that what goes above does not scroll the rest. `end`: where they end,
+// from the beginning of what is scrolled.
+float sidebar_rest(float end);
 // Call where a section's head stands, seen or not.
 void note_section(const char* title, float y);
 // Once after the panels were drawn. True when what the pointer points at has moved: they are to be drawn again.

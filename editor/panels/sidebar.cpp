@@ -67,6 +67,7 @@ void draw_sidebar(Editor& editor) {
     draw_clipping(editor, column);
     draw_under_cursor(editor, column);
     draw_history(editor, column);
+    column.space(sidebar_rest(column.row(0).high.y + ImGui::GetScrollY() - rect.low.y) / editor.look.scale);
   }
   ImGui::PopID();
   end_region(editor);
