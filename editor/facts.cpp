@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <functional>
 
+#include <imgui_internal.h>
+
 #include "core/base/error.h"
 #include "core/deform/preview_map.h"
 #include "editor/recording.h"
@@ -43,6 +45,14 @@ std::string hidden(const Editor& editor) {
   if (editor.document().visibility)
     for (const auto& [label, look] : editor.document().visibility->looks) count += !look.visible;
   return std::to_string(count);
+}
+
+// Of the text field that has the keyboard.
+std::optional<std::string> typed_text(const Editor& editor) {
+  ImGui::SetCurrentContext(editor.imgui);
+  const ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
+  if (!editor.keyboard.typed || !state) return std::nullopt;
+  return std::string(state->TextA.Data);
 }
 
 std::string yes(bool is) { return is ? "yes" : "no"; }
@@ -86,6 +96,7 @@ const std::vector<std::pair<std::string, Fact>>& facts() {
       {"jobs", [](const Editor& e) { return yes(e.jobs.busy()); }},
       {"toast", [](const Editor& e) { return e.messages.toasts.empty() ? std::string("none") : e.messages.toasts.back().line; }},
       {"error", [](const Editor& e) { return e.messages.errors.empty() ? std::string("none") : e.messages.errors.front().what; }},
+      {"typed", [](const Editor& e) { return typed_text(e).value_or("no field"); }},
       {"dialog", [](const Editor& e) { return yes(e.dialog != nullptr); }},
       {"quit", [](const Editor& e) { return yes(e.quit); }},
   };

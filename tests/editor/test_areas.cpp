@@ -143,7 +143,7 @@ TEST_CASE("areas: the status bar's hints are those of the timeline while the poi
 }
 
 TEST_CASE("areas: a word in a section's head is whole where the title leaves room for it") {
-  const std::string name = "Left middle finger's end";
+  const std::string name = "Left middle finger's end bone";
   LimbEditor test;
   Document next = test.editor->document();
   Armature armature = *next.armature;
