@@ -4,6 +4,7 @@
 #include <exception>
 #include <new>
 #include <sstream>
+#include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
@@ -74,6 +75,11 @@ int run_command(CLI::App& app, int argc, char** argv) {
     return told(error.what(), 1);
   } catch (const std::bad_alloc&) {
     return told("there is not enough memory: this request: use a coarser spacing or a smaller volume", 1);
+  } catch (const std::system_error& error) {
+    // A thread that cannot be started.
+    const bool lacks_room = error.code() == std::errc::resource_unavailable_try_again;
+    if (lacks_room) return told("there is not enough memory for another thread: this request: use a coarser spacing or a smaller volume", 1);
+    return told(std::string("the system refuses: ") + error.what() + ": try again, and report it with the command that shows it if it stays", 1);
   } catch (const std::exception& error) {
     return told(std::string("a mistake of the program itself: ") + error.what() + ": please report it with the command that shows it", 1);
   }
