@@ -37,7 +37,8 @@ void draw_splitters(Editor& editor) {
     }
     if (pressed.hovered && !pressed.held && editor.now < editor.splitter_since + kShownAfter) editor.wake_at(editor.splitter_since + kShownAfter);
     if (pressed.double_clicked) editor.arrangement() = restored(editor.arrangement(), splitter.id, editor.workspace);
-    else if (pressed.held && !pressed.activated) editor.arrangement() = dragged(editor.arrangement(), splitter.id, editor.input.pointer, editor.layout, look.scale);
+    else if (pressed.held && !pressed.activated && ImGui::GetIO().MouseClickedLastCount[ImGuiMouseButton_Left] < 2)
+      editor.arrangement() = dragged(editor.arrangement(), splitter.id, editor.input.pointer, editor.layout, look.scale);
     end_region(editor);
   }
 }

@@ -44,7 +44,8 @@ Pressed press_divider(Editor& editor, const std::string& name, float x, const Re
   const float half = editor.look.px(4);
   const Pressed pressed = press_area(editor, name, {{x - half, rect.low.y}, {x + half, rect.high.y}});
   if (pressed.hovered || pressed.held) editor.cursor = Cursor::ResizeX;
-  if (pressed.held && !pressed.activated) comparison.share = std::clamp((editor.input.pointer.x - rect.low.x) / std::max(1.0f, rect.width()), least, 1 - least);
+  const bool drags = pressed.held && !pressed.activated && ImGui::GetIO().MouseClickedLastCount[ImGuiMouseButton_Left] < 2;
+  if (drags) comparison.share = std::clamp((editor.input.pointer.x - rect.low.x) / std::max(1.0f, rect.width()), least, 1 - least);
   if (pressed.double_clicked) comparison.share = 0.5f;
   return pressed;
 }
