@@ -72,7 +72,7 @@ TEST_CASE("leftovers: what a killed process left is removed by the next start, a
   CHECK(state.notes() == 0);
 }
 
-TEST_CASE("leftovers: a folder goes with all that is in it; a link goes and what it names stays") {
+TEST_CASE("leftovers: a folder goes with all that is in it, a link goes and what it names stays") {
   const StateFolder state;
   const test::TemporaryFolder folder;
   fs::create_directory(folder / "precious");
