@@ -301,6 +301,7 @@ void Editor::frame(double time) {
   // A press meets what was shown when it was made, before a job changes it.
   if (pressed != (input.down(MouseButton::Left) || input.down(MouseButton::Right))) {
     draw();
+    note_pressed(*this);
     change_dialog();
     begin_turn_without_input(*this);
   }

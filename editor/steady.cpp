@@ -59,6 +59,17 @@ float way_of(const Widget& widget, const ImGuiStorage& noted, const Rect& sideba
   return clipped ? widget.rect.high.y - noted.GetFloat(kHigh) : widget.rect.low.y - noted.GetFloat(kLow);
 }
 
+// The widget that is to stay where it is now; nullptr for none.
+void note(ImGuiStorage& noted, const Widget* widget, float scroll) {
+  noted.SetInt(kWidget, widget ? static_cast<int>(id_of(*widget)) : 0);
+  noted.SetFloat(kScroll, scroll);
+  if (!widget) return;
+  noted.SetFloat(kLow, widget->rect.low.y);
+  noted.SetFloat(kHigh, widget->rect.high.y);
+  noted.SetInt(kSection, static_cast<int>(section_of(*widget)));
+  noted.SetFloat(kHead, noted.GetFloat(section_of(*widget)));
+}
+
 }  // namespace
 
 void note_section(const char* title, float y) {
@@ -102,15 +113,12 @@ bool has_moved_under_pointer(Editor& editor) {
     return true;
   }
   const Widget* now = held && id != 0 ? with_id(editor, id) : pointed_at(editor);
-  noted.SetInt(kWidget, now ? static_cast<int>(id_of(*now)) : 0);
-  noted.SetFloat(kScroll, scroll);
-  if (now) {
-    noted.SetFloat(kLow, now->rect.low.y);
-    noted.SetFloat(kHigh, now->rect.high.y);
-    noted.SetInt(kSection, static_cast<int>(section_of(*now)));
-    noted.SetFloat(kHead, noted.GetFloat(section_of(*now)));
-  }
+  note(noted, now, scroll);
   return false;
+}
+
+void note_pressed(const Editor& editor) {
+  if (ImGuiWindow* window = sidebar()) note(window->StateStorage, pointed_at(editor), scroll_of(*window));
 }
 
 }  // namespace limber::editor

@@ -16,5 +16,7 @@ float sidebar_rest(float end);
 void note_section(const char* title, float y);
 // Once after the panels were drawn. True when what the pointer points at has moved: they are to be drawn again.
 bool has_moved_under_pointer(Editor& editor);
+// Once after a press was met: what it met is what the pointer points at, also where both came in one frame.
+void note_pressed(const Editor& editor);
 
 }  // namespace limber::editor
