@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -17,6 +18,7 @@ namespace {
 constexpr std::size_t kFewest = 30;                     // voxels that tell how a limb turned
 constexpr double kShaftBegin = 0.25, kShaftEnd = 0.75;  // of a rig bone's axis: away from the joints, where bones meet
 constexpr double kShaftRadius = 0.15;                   // of the rig bone's length
+constexpr double kManyAtShaft = 0.2;  // of the voxels there
 
 struct Moved {
   glm::dvec3 rest, posed;  // world, mm
@@ -93,17 +95,19 @@ int best_bone(const MovedVoxels& voxels, const std::vector<int>& allowed, const 
   return best;
 }
 
-// The rig bone whose motion comes nearest to most of the voxels.
-int followed_bone(const MovedVoxels& voxels, const std::vector<RigidTransform>& motions) {
+// The rig bone whose motion comes nearest to where a voxel went.
+std::size_t followed_bone(const Moved& one, const std::vector<RigidTransform>& motions) {
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < motions.size(); ++b)
+    if (const double off = glm::distance(motions[b] * one.rest, one.posed); off < least - 1e-6) least = off, best = b;
+  return best;
+}
+// The one that most of the voxels follow.
+std::size_t followed_bone(const MovedVoxels& voxels, const std::vector<RigidTransform>& motions) {
   std::vector<std::int64_t> votes(motions.size(), 0);
-  for (const Moved& one : voxels) {
-    std::size_t best = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t b = 0; b < motions.size(); ++b)
-      if (const double off = glm::distance(motions[b] * one.rest, one.posed); off < least - 1e-6) least = off, best = b;
-    ++votes[best];
-  }
-  return static_cast<int>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+  for (const Moved& one : voxels) ++votes[followed_bone(one, motions)];
+  return static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
 }
 
 // One bone of the body: the voxels of a label on one side, and the rig bones that its name allows.
@@ -160,6 +164,18 @@ bool is_at_shaft(const Armature& armature, int bone, const glm::dvec3& p) {
                      [&](const Bone& other) { return distance_to_bone(other, p) >= away; });
 }
 
+// Of the voxels at a shaft those of the limb itself: other bones may pass there, as ribs do below a collarbone. They are those
+// that go with its rig bone where these are many, else those that go where most of them go.
+void keep_limb(int bone, const std::vector<RigidTransform>& motions, MovedVoxels& shaft) {
+  const auto follows = [&](std::size_t b) {
+    return [&motions, b](const Moved& one) { return followed_bone(one, motions) == b; };
+  };
+  const auto own = std::count_if(shaft.begin(), shaft.end(), follows(static_cast<std::size_t>(bone)));
+  const bool are_many = double(own) >= kManyAtShaft * double(shaft.size());
+  if (shaft.empty()) return;
+  std::erase_if(shaft, std::not_fn(follows(are_many ? static_cast<std::size_t>(bone) : followed_bone(shaft, motions))));
+}
+
 std::vector<LimbDirection> limb_directions(const JudgedPose& pose, const std::vector<BoneVoxel>& bone,
                                            const std::vector<MovedVoxels>& named) {
   std::vector<LimbDirection> limbs;
@@ -170,6 +186,7 @@ std::vector<LimbDirection> limb_directions(const JudgedPose& pose, const std::ve
     if (!by_name)
       for (const BoneVoxel& one : bone)
         if (is_at_shaft(*pose.armature, b, one.moved.rest)) shaft.push_back(one.moved);
+    keep_limb(b, pose.applied, shaft);
     const MovedVoxels& voxels = by_name ? named[b] : shaft;
     if (voxels.size() >= kFewest) limbs.push_back(direction_of(b, voxels, by_name, pose));
   }

@@ -155,3 +155,15 @@ TEST_CASE("posed bones: without names the bone around the middle of a limb tells
   left.figure.tissues = body.figure.tissues;
   CHECK(measure_posed_bones(left.judged()).limbs.at(0).direction_degrees == doctest::Approx(40).epsilon(0.001));
 }
+
+TEST_CASE("posed bones: where no label has a name, another bone that passes beside a limb's shaft does not turn the limb") {
+  PosedFigure body = pose_figure({{"LeftThigh", -60}}, [](Label label, const glm::ivec3& v) {
+    return label == kLeftFemur && (v.x + v.y) % 3 == 0 ? 0 : own_bone(label, v);  // a third stays
+  });
+  for (Tissue& tissue : body.figure.tissues.tissues) tissue.name = "bone";
+  const PosedBones bones = measure_posed_bones(body.judged());
+  REQUIRE(bones.limbs.size() == 2);
+  CHECK(bones.limbs[0].bone == "LeftThigh");
+  CHECK_FALSE(bones.limbs[0].by_name);
+  CHECK(bones.limbs[0].direction_degrees < 1e-3);
+}
