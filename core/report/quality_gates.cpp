@@ -7,11 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/pose/pose.h"
+#include "core/pose/limit_check.h"
 #include "core/report/gate_rules.h"
 #include "core/report/report.h"
 #include "core/report/solve_gates.h"
-#include "core/rig/joint_limits.h"
 
 namespace limber {
 
@@ -99,25 +98,42 @@ QualityGate gate_of_limits() {
   return gate;
 }
 
-// Of the joint that is furthest beyond.
-void decide_limits(QualityGate& gate, double excess_degrees, const std::string& bone, const QualityLimits& limits) {
-  const bool within = excess_degrees <= limits.joint_excess_degrees;
-  gate.worst = within ? "" : bone;
-  decide(gate, within, within ? "within" : formatted("%+.1f\u00b0", excess_degrees),
-         within ? "Every joint is within its limits."
-                : bone + " is turned " + formatted("%.1f", excess_degrees) + " degrees beyond its limits.");
+// What a gate is told of joints, by a report or a rig at hand.
+struct LimitFigures {
+  bool turned = true;               // false: the report names no turned joint
+  int limited = 0, unlimited = 0;   // joints with limits and without
+  double excess_degrees = 0;        // of the joint that is furthest beyond its limits
+  std::string bone;                 // that joint
+};
+
+void decide_limits(QualityGate& gate, const LimitFigures& figures, const QualityLimits& limits) {
+  if (!figures.turned) return not_checked(gate, "the pose turns no joint.");
+  if (figures.limited == 0) return not_checked(gate, "no joint has limits.");
+  const bool within = figures.excess_degrees <= limits.joint_excess_degrees;
+  gate.worst = within ? "" : figures.bone;
+  if (!within)
+    return decide(gate, false, formatted("%+.1f\u00b0", figures.excess_degrees),
+                  figures.bone + " is turned " + formatted("%.1f", figures.excess_degrees) +
+                      " degrees beyond its limits.");
+  const std::string others = counted(figures.unlimited, "joint") + (figures.unlimited == 1 ? " has" : " have");
+  decide(gate, true, "within",
+         figures.unlimited == 0 ? "Every joint is within its limits."
+                                : "Every joint that has limits is within them; " + others + " none.");
 }
 
 void judge_limits(const Json& report, const QualityLimits& limits, QualityGate& gate) {
   const Json& joints = part(report, "joints");
-  double worst = 0;
-  std::string bone;
-  for (const Json& joint : joints)
-    if (const auto excess = number(joint, "excess_degrees"); excess && *excess > worst) {
-      worst = *excess;
-      bone = text(joint, "bone");
+  if (!joints.is_array()) return;
+  LimitFigures figures{.turned = !joints.empty()};
+  for (const Json& joint : joints) {
+    const auto excess = number(joint, "excess_degrees");
+    ++(excess ? figures.limited : figures.unlimited);
+    if (excess && *excess > figures.excess_degrees) {
+      figures.excess_degrees = *excess;
+      figures.bone = text(joint, "bone");
     }
-  if (joints.is_array()) decide_limits(gate, worst, bone, limits);
+  }
+  decide_limits(gate, figures, limits);
 }
 
 const GateRule<Json> kFineGates[] = {
@@ -165,13 +181,13 @@ std::vector<QualityGate> all_gates(const std::string& report, const QualityLimit
 
 QualityGate judge_joint_limits(const Armature& armature, const Pose& pose, const QualityLimits& limits) {
   QualityGate gate = gate_of_limits();
-  double worst = 0;
-  std::string bone;
-  for (std::size_t b = 0; b < armature.bones.size() && b < pose.rotation.size(); ++b) {
-    const double excess = limit_excess(armature.bones[b], pose.rotation[b]) * 180 / M_PI;
-    if (excess > worst) worst = excess, bone = armature.bones[b].name;
-  }
-  decide_limits(gate, worst, bone, limits);
+  const LimitCheck check = check_limits(armature, pose, 0);
+  decide_limits(gate,
+                {.limited = check.limited,
+                 .unlimited = check.unlimited,
+                 .excess_degrees = check.excess * 180 / M_PI,
+                 .bone = check.worst < 0 ? "" : armature.bones[check.worst].name},
+                limits);
   return gate;
 }
 

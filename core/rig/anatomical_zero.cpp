@@ -29,12 +29,13 @@ bool straightens(const Armature& armature, int bone, const std::optional<JointRo
     case BodyPart::Forearm:
     case BodyPart::Shank:
     case BodyPart::Hand:
-    case BodyPart::Toes:
-    case BodyPart::Thumb:
+    case BodyPart::Toes: return true;
+    // A metacarpal does not go on from the hand: a thumb's stands off, the others fan out.
+    case BodyPart::Thumb: return role->index > 1;
     case BodyPart::Index:
     case BodyPart::Middle:
     case BodyPart::Ring:
-    case BodyPart::Little: return true;
+    case BodyPart::Little: return role->index > 0;
     default: return false;
   }
 }
@@ -71,16 +72,20 @@ std::vector<std::optional<JointRole>> roles_of(const Armature& armature) {
   return joint_roles(names, parents);
 }
 
-double hinge_angle_at_rest(const Armature& armature, int index, const glm::dvec3& axis) {
+std::optional<double> told_hinge_angle(const Armature& armature, int index, const glm::dvec3& axis) {
   const Bone& bone = armature.bones[index];
-  if (bone.parent < 0) return 0;
+  if (bone.parent < 0) return std::nullopt;
   const auto role = roles_of(armature)[index];
-  if (!straightens(armature, index, role)) return 0;
+  if (!straightens(armature, index, role)) return std::nullopt;
   const auto across = [&](const Bone& b) { return direction(b) - glm::dot(direction(b), axis) * axis; };
   const glm::dvec3 above = across(armature.bones[bone.parent]), below = across(bone);
-  if (glm::length(above) < kTells || glm::length(below) < kTells) return 0;
+  if (glm::length(above) < kTells || glm::length(below) < kTells) return std::nullopt;
   const double angle = std::atan2(glm::dot(glm::cross(above, below), axis), glm::dot(above, below));
   return role && runs_askew(role->part) && std::abs(angle) <= kAskew ? 0 : angle;
+}
+
+double hinge_angle_at_rest(const Armature& armature, int index, const glm::dvec3& axis) {
+  return told_hinge_angle(armature, index, axis).value_or(0);
 }
 
 glm::dvec3 ball_swing_at_rest(const Armature& armature, int index, BodyPart part) {

@@ -21,8 +21,10 @@ namespace limber {
 // The roles of an armature's bones, by their names.
 std::vector<std::optional<JointRole>> roles_of(const Armature& armature);
 
-// The angle of a hinge at rest about that unit axis, -pi .. pi: 0 is straight. Also 0 where its bones run along the axis,
+// The angle of a hinge at rest about that unit axis, -pi .. pi: 0 is straight. Nothing where its bones run along the axis,
 // so that they do not tell, and for a bone without parent or of a part of the body that has no straight position.
+std::optional<double> told_hinge_angle(const Armature& armature, int bone, const glm::dvec3& axis);
+// The same, 0 for nothing.
 double hinge_angle_at_rest(const Armature& armature, int bone, const glm::dvec3& axis);
 
 // A ball's swing at rest as a rotation vector, from the anatomical position of that part of the body; zero for other

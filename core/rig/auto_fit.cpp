@@ -23,6 +23,7 @@
 #include "core/rig/draw_inside.h"
 #include "core/rig/fit_starts.h"
 #include "core/rig/fit_target.h"
+#include "core/rig/fitted_limits.h"
 #include "core/rig/found_joints.h"
 #include "core/rig/hand_fit.h"
 #include "core/rig/limb_paths.h"
@@ -399,7 +400,7 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
     constexpr double kGivesWay = 1.25;
     std::vector<double> free;
     for (const JointFit& joint : result.joints) free.push_back(kGivesWay * joint.error);
-    result.armature = drawn_inside(placed.armature, volume, target.cuts, free);
+    result.armature = with_fitted_limits(drawn_inside(placed.armature, volume, target.cuts, free), rig);
     constexpr double kUnlike = 0.016;  // of the tissue's diagonal
     if (result.misfit_mm > kUnlike * target.length) result.warnings.push_back("the tissue looks little like the body that this rig is of; check every joint by eye");
   }

@@ -47,7 +47,8 @@ struct AutoFit {
   std::vector<std::string> warnings;  // what failed, in words
 };
 
-// The rig placed, turned and scaled to the tissue; its joint limits turn along.
+// The rig placed, turned and scaled to the tissue; its joint limits turn along and count from the body's own rest
+// (core/rig/fitted_limits.h).
 // Throws Error for a volume without tissue.
 AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Armature& rig, Progress& progress = no_progress());
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/rig/joint_limits.h"
+#include "core/pose/limit_check.h"
 #include "editor/icons.h"
 #include "editor/live_pose.h"
 #include "editor/panels/change.h"
@@ -84,13 +84,10 @@ void put_metrics(Editor& editor, Column& column, const PoseMetrics& metrics, boo
 
 void put_limits(Editor& editor, Column& column) {
   const Armature& armature = *editor.document().armature;
-  const Pose pose = shown_pose(editor);
-  int beyond = 0;
-  std::string first;
-  for (std::size_t b = 0; b < armature.bones.size(); ++b)
-    if (limit_excess(armature.bones[b], pose.rotation[b]) > kBeyond && ++beyond == 1) first = armature.bones[b].name;
-  put_line(editor, column, "Joint limits", beyond == 0 ? "all within" : beyond == 1 ? first + " is beyond" : first + " and " + std::to_string(beyond - 1) + " more are beyond",
-           beyond ? editor.look.theme.warn : editor.look.theme.ok);
+  const LimitCheck check = check_limits(armature, shown_pose(editor), kBeyond);
+  const Theme& theme = editor.look.theme;
+  put_line(editor, column, "Joint limits", words_of(check, armature),
+           check.limited == 0 ? theme.text3 : check.beyond ? theme.warn : theme.ok);
 }
 
 }  // namespace

@@ -132,3 +132,19 @@ TEST_CASE("quality gates: a report in hand is judged as its file is, and limits 
   CHECK(beyond.worst == "Fore");
   CHECK(beyond.figure == "+2.5\u00b0");
 }
+
+TEST_CASE("quality gates: joints without limits are not within them") {
+  const QualityGate none = gate(R"({"joints": [{"bone": "Fore"}, {"bone": "Up"}]})", "limits");
+  CHECK(none.state == GateState::NotMeasured);
+  CHECK(none.sentence == "\"Joint limits\" is not checked: no joint has limits.");
+  CHECK(gate(R"({"joints": []})", "limits").state == GateState::NotMeasured);
+  const QualityGate some = gate(R"({"joints": [{"bone": "Fore", "excess_degrees": 0}, {"bone": "Up"}]})", "limits");
+  CHECK(some.state == GateState::Passed);
+  CHECK(some.sentence == "Every joint that has limits is within them; 1 joint has none.");
+
+  Armature rig;
+  rig.bones.push_back({.name = "Up", .parent = -1, .head = {0, 0, 0}, .tail = {0, 0, 100}});
+  rig.bones.push_back({.name = "Fore", .parent = 0, .head = {0, 0, 100}, .tail = {0, 0, 200}});
+  CHECK(judge_joint_limits(rig, rest_pose(rig)).state == GateState::NotMeasured);
+  CHECK(judge_joint_limits(rig, rest_pose(rig)).figure.empty());
+}

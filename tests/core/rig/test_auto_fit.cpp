@@ -12,6 +12,7 @@
 #include "core/pose/pose.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/fit_check.h"
+#include "core/rig/motion_range.h"
 #include "core/resample/resample.h"
 #include "core/rig/templates.h"
 #include "core/skin/heat_diffusion.h"
@@ -228,6 +229,13 @@ TEST_CASE("auto-fit: the joints of a real arm lie within 16 mm, its shoulder in 
   }
   CHECK(fitted.joints[0].how == JointFit::How::Ball);
   CHECK(fitted.check.whole > 0.99);
+  // However it rests, its elbow reaches from straight to the template's 145 degrees, in the plane in which it is bent.
+  const Armature& rig = fitted.armature;
+  const int forearm = *rig.find("Forearm"), upper_arm = rig.bones[forearm].parent;
+  const auto along = [&](int b) { return glm::normalize(rig.bones[b].tail - rig.bones[b].head); };
+  const glm::dvec3 across = glm::normalize(glm::cross(along(upper_arm), along(forearm)));
+  CHECK(glm::dot(across, rig.bones[forearm].limits.axis) > 0.8);
+  CHECK(limits_text(fitted.armature, *fitted.armature.find("Forearm")) == "hinge, 0 to 145 degrees");
 }
 
 TEST_CASE("auto-fit: an arm that is cut off below the shoulder may be longer than it looks, and every joint says how far it may be off") {
