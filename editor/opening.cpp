@@ -16,9 +16,11 @@
 #include "core/rig/up_axis.h"
 #include "core/skin/weights_io.h"
 #include "core/volume/dicom.h"
+#include "core/volume/grey_image.h"
 #include "core/volume/phantom.h"
 #include "core/volume/volume_io.h"
 #include "editor/layers.h"
+#include "editor/panels/grey_image.h"
 #include "editor/project.h"
 #include "editor/retargeting.h"
 #include "editor/rig_fitting.h"
@@ -71,11 +73,43 @@ Document with_volume(const VolumeFile& file) {
 
 // ---- work: reads beside the editor, fits against the document as it was then
 
+// A volume's file: labels, a grey image, or both where whole values look like one.
+struct ReadVolume {
+  std::optional<VolumeFile> labels;
+  std::shared_ptr<const GreyVolume> image;
+  std::string doubt;  // of an image: why it is no label volume
+};
+
+ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
+  ReadVolume read;
+  try {
+    read.labels = read_volume(path, progress);
+  } catch (const Error&) {
+    if (summarize_volume(path).is_label) throw;
+    read.doubt = "its values are no whole numbers, or more than 65 535";
+  }
+  if (read.labels)
+    if (const auto doubt = grey_image_doubt(read.labels->volume, read.labels->tissues)) read.doubt = *doubt;
+  if (!read.doubt.empty()) read.image = shared(read_grey_volume(path, progress));
+  return read;
+}
+
+// Labels go in; of a grey image it is shown first, and only an answer takes it as labels.
+void take_or_show(Editor& editor, const ReadVolume& read, const Path& path, const char* answer, const Finish& take) {
+  if (!read.image) return take(editor);
+  show_grey_image(editor, {.image = read.image,
+                           .name = path.filename().string(),
+                           .doubt = read.doubt,
+                           .answer = read.labels ? answer : "",
+                           .as_labels = take});
+}
+
 using Change = std::function<void(Document&)>;
 struct Import {
   Change change;
   std::vector<std::string> warnings;
   double inside = 1;  // of a rig: the share of its bones' length that is in tissue
+  ReadVolume read = {};  // of a volume
 };
 
 Import read_tissues(const Path& path, const Document& now) {
@@ -153,7 +187,9 @@ Import read_import(FileKind kind, const Path& path, const Document& now, Progres
     case FileKind::Project: refuse("a project is opened, not imported", path, "use File > Open");
     case FileKind::Volume: break;
   }
-  VolumeFile file = read_volume(path, progress);
+  ReadVolume read = read_labels_or_image(path, progress);
+  if (!read.labels) return {{}, {}, 1, std::move(read)};
+  VolumeFile& file = *read.labels;
   Document replaced = with_volume(file);
   replaced.volume = shared(std::move(file.volume));
   return {[replaced](Document& d) {
@@ -163,7 +199,7 @@ Import read_import(FileKind kind, const Path& path, const Document& now, Progres
             d.clip = before.clip;
             d.frame = before.frame;
           },
-          file.warnings};
+          file.warnings, 1, std::move(read)};
 }
 
 // What an import was fitted against must still be there when it ends.
@@ -236,7 +272,9 @@ void open_files(Editor& editor, std::vector<Path> paths, Then then) {
 void open_volume(Editor& editor, const Path& path, Then then) {
   ask_about_unsaved(editor, [path, then](Editor& e) {
     const int job = start_task(e, "Open " + path.filename().string(), [path, then, agreed = e.history.revision()](Progress& progress) -> Finish {
-      VolumeFile file = read_volume(path, progress);
+      ReadVolume read = read_labels_or_image(path, progress);
+      if (!read.labels) return [read, path](Editor& ed) { take_or_show(ed, read, path, "", {}); };
+      VolumeFile& file = *read.labels;
       auto opened = std::make_shared<Opened>();
       opened->document = with_volume(file);
       opened->document.volume = shared(std::move(file.volume));
@@ -248,11 +286,12 @@ void open_volume(Editor& editor, const Path& path, Then then) {
         keep_thumbnail(ed, path);
         if (then) then(ed);
       };
-      return [opened, path, warnings = file.warnings](Editor& ed) {
+      const Finish take = [opened, path, warnings = file.warnings](Editor& ed) {
         warn_of(ed, path, warnings);
         add_recent(ed.remembered, path, std::time(nullptr));
         replace_project(ed, opened);
       };
+      return [take, path, read = std::move(read)](Editor& ed) { take_or_show(ed, read, path, "Open as labels", take); };
     });
     e.step_of_job[job] = StepOfWork::Prepare;
   });
@@ -261,7 +300,7 @@ void open_volume(Editor& editor, const Path& path, Then then) {
 void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
   const int job = start_task(editor, imported(path), [kind, path, then, before = editor.document()](Progress& progress) -> Finish {
     auto import = std::make_shared<Import>(read_import(kind, path, before, progress));
-    return [import, kind, path, then, before](Editor& e) {
+    const Finish take = [import, kind, path, then, before](Editor& e) {
       if (!same_basis(kind, before, e.document()))
         refuse("the project changed while the file was read", path, "import it once more");
       Document next = e.document();
@@ -275,6 +314,7 @@ void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
       if (then) then(e);
       if (import->inside < kMisplaced) offer_fit(e, path.filename().string(), import->inside);
     };
+    return [import, path, take](Editor& e) { take_or_show(e, import->read, path, "Replace the labels", take); };
   });
   editor.step_of_job[job] = step_of(kind);
 }

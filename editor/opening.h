@@ -19,7 +19,8 @@ FileKind kind_of(const Path& path);
 void open_files(Editor& editor, std::vector<Path> paths, Then then = {});
 void open_volume(Editor& editor, const Path& path, Then then = {});
 
-// Into the open project, as one edit. A volume replaces the open one and all that was made for it.
+// Into the open project, as one edit. A volume replaces the open one and all that was made for it. A grey image is only
+// shown (panels/grey_image.h), here and in open_volume, until an answer takes it as labels all the same.
 void import_file(Editor& editor, FileKind kind, const Path& path, Then then = {});
 
 enum class Sample { Arm, ArmXray, Body, BodyTissues };

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/bones/bone_identity.h"
-#include "core/volume/neighbour_changes.h"
+#include "core/volume/grey_image.h"
 
 namespace limber {
 
@@ -45,14 +45,9 @@ Armature moved(Armature armature, const Move& move) {
 }
 
 std::optional<std::string> doubt_about_grey(const LabelVolume& volume, const TissueTable& tissues) {
-  if (!NeighbourChanges::may_be_grey(tissues.tissues.size())) return std::nullopt;
-  NeighbourChanges changes(volume.grid.size.x);
-  changes.add(volume.voxels.data(), volume.voxels.size());
-  if (!changes.looks_grey(tissues.tissues.size())) return std::nullopt;
-  char text[200];
-  std::snprintf(text, sizeof text, "this looks like a grey image, not a label volume: it has %d values, and %.0f %% of neighbouring voxels differ; give the labels, and the image with --with",
-                int(tissues.tissues.size()), 100 * changes.share());
-  return text;
+  const auto doubt = grey_image_doubt(volume, tissues);
+  if (!doubt) return std::nullopt;
+  return "this looks like a grey image, not a label volume: " + *doubt + "; give the labels, and the image with --with";
 }
 
 std::optional<std::string> doubt_about_place(const LabelVolume& volume, const Armature& armature) {

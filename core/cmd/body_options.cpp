@@ -7,6 +7,7 @@
 #include "core/cmd/command.h"
 #include "core/rig/armature_io.h"
 #include "core/bones/guess_bone_labels.h"
+#include "core/volume/grey_image.h"
 #include "core/volume/guess_skin.h"
 
 namespace limber::cmd {
@@ -55,6 +56,7 @@ Body read_body(const BodyOptions& options, Progress& progress) {
     const TissueTable user = read_tissue_table(options.tissues);
     body.tissues = merge_tissue_tables(body.file.tissues, &user);
   }
+  require_labels(body.file.volume, body.tissues, options.volume);
   ArmatureFile rig = read_armature_file(options.rig);
   warn(rig.warnings);
   body.rig = std::move(rig.armature);

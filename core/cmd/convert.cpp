@@ -10,6 +10,7 @@
 #include "core/cmd/tissue_options.h"
 #include "core/deck/decks.h"
 #include "core/mesh/surface_files.h"
+#include "core/volume/grey_image.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/volume_files.h"
 #include "core/volume/volume_io.h"
@@ -50,6 +51,8 @@ void convert_volume(const Options& options) {
   }
   VolumeFile file = read_volume(options.in, progress);
   warn(file.warnings);
+  if (format != DeckFormat::None || is_surface)
+    require_labels(file.volume, tissues_of(file, options.material.tissues), options.in);
   if (format != DeckFormat::None) return write_as_deck(format, file, options);
   if (is_surface) return write_surfaces_of(file.volume, tissues_of(file, options.material.tissues), {}, options.out, progress);
   if (!options.material.tissues.empty()) file.tissues = tissues_of(file, options.material.tissues);

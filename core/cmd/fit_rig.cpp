@@ -15,6 +15,7 @@
 #include "core/cmd/command_files.h"
 #include "core/rig/armature_io.h"
 #include "core/rig/templates.h"
+#include "core/volume/grey_image.h"
 #include "core/volume/volume_io.h"
 
 namespace limber::cmd {
@@ -77,6 +78,7 @@ void run(const Options& options) {
   std::optional<TissueTable> user;
   if (!options.tissues.empty()) user = read_tissue_table(options.tissues);
   TissueTable tissues = merge_tissue_tables(file.tissues, user ? &*user : nullptr);
+  require_labels(file.volume, tissues, options.volume);
   if (!options.bones.empty()) tissues = with_bones(std::move(tissues), options.bones);
   const Armature rig = wanted_rig(options.rig, file, progress);
 

@@ -29,6 +29,7 @@
 #include "core/rig/armature_io.h"
 #include "core/seams/seams_io.h"
 #include "core/skin/weights_io.h"
+#include "core/volume/grey_image.h"
 
 namespace limber::cmd {
 
@@ -63,6 +64,7 @@ void read_body_parts(const Options& options, Document& document, Progress& progr
   std::optional<TissueTable> user;
   if (!options.tissues.empty()) user = read_tissue_table(options.tissues);
   document.tissues = shared(merge_tissue_tables(file.tissues, user ? &*user : nullptr));
+  require_labels(file.volume, *document.tissues, options.part);
   document.volume_type = shared(std::move(file.type));
   document.volume = shared(std::move(file.volume));
 }

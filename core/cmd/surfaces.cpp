@@ -11,6 +11,7 @@
 #include "core/cmd/surface_options.h"
 #include "core/cmd/tissue_options.h"
 #include "core/mesh/surface_files.h"
+#include "core/volume/grey_image.h"
 #include "core/volume/header_text.h"
 
 namespace limber::cmd {
@@ -83,7 +84,9 @@ void add_surfaces(CLI::App& app) {
     CommandProgress progress(options->progress);
     const VolumeFile file = read_volume(options->volume, progress);
     warn(file.warnings);
-    write_surfaces_of(file.volume, tissues_of(file, options->tissues), options->choice, options->output, progress);
+    const TissueTable tissues = tissues_of(file, options->tissues);
+    require_labels(file.volume, tissues, options->volume);
+    write_surfaces_of(file.volume, tissues, options->choice, options->output, progress);
   });
 }
 

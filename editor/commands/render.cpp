@@ -30,6 +30,7 @@
 #include "editor/body_seams.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
+#include "core/volume/grey_image.h"
 #include "editor/commands/command.h"
 #include "render/headless.h"
 #include "render/image_io.h"
@@ -115,6 +116,7 @@ Document read_files(const Options& options, Progress& progress) {
     std::optional<TissueTable> user;
     if (!options.body.tissues.empty()) user = read_tissue_table(options.body.tissues);
     body.tissues = merge_tissue_tables(body.file.tissues, user ? &*user : nullptr);
+    require_labels(body.file.volume, body.tissues, options.body.volume);
     if (!options.body.bones.empty()) body.tissues = with_bones(std::move(body.tissues), options.body.bones);
   } else {
     body = cmd::read_body(options.body, progress);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Wrong inputs and wrong results, planted one by one: each must be caught with a sentence and, with --strict, by exit
 // code 5. And good inputs in small poses, of which none may be called wrong.
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -207,7 +208,7 @@ TEST_CASE("planted faults: labels whose sides are swapped are caught") {
   check_caught(resample(folder, {}), folder, "left and right are swapped");
 }
 
-TEST_CASE("planted faults: a grey image in place of labels is caught") {
+TEST_CASE("planted faults: a grey image in place of labels is refused before anything is written") {
   const TemporaryFolder folder;
   Figure figure = block_figure();
   write_figure(figure, folder.path());
@@ -221,10 +222,27 @@ TEST_CASE("planted faults: a grey image in place of labels is caught") {
   for (Label& label : figure.volume.voxels)
     if (label) label = static_cast<Label>(1 + random() % 300);
   write_volume(figure.volume, folder / "grey.nrrd", greys);
-  const auto run =
-      run_limber({"resample", folder / "grey.nrrd", "--rig", folder / "rig.json", "--bones", "7", "--method", "lbs",
-                  "--strict", "-o", folder / "posed.nrrd", "--report", folder / "report.json"});
-  check_caught(run, folder, "this looks like a grey image");
+  const std::string grey = folder / "grey.nrrd", rig = folder / "rig.json";
+  const std::vector<std::vector<std::string>> commands{
+      {"resample", grey, "--rig", rig, "--bones", "7", "--method", "lbs", "-o", folder / "out.nrrd"},
+      {"weights", grey, "--rig", rig, "--bones", "7", "-o", folder / "out.nrrd"},
+      {"fit-rig", grey, "--template", "arm", "-o", folder / "out.json"},
+      {"surfaces", grey, "-o", folder / "out.obj"},
+      {"convert", grey, folder / "out.stl"},
+      {"project", folder / "out.limber", "create", grey}};
+  for (const auto& command : commands) {
+    const auto run = run_limber(command);
+    INFO(command[0], ": ", run.err);
+    CHECK(run.exit_code == 1);
+    CHECK(run.err.find("this looks like a grey image, not a label volume (it has 300 values, and ") != std::string::npos);
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    int written = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+      written += entry.path().filename().string().starts_with("out");
+    CHECK(written == 0);
+  }
+  // As an image it may still be converted.
+  CHECK(run_limber({"convert", grey, folder / "copy.mha"}).exit_code == 0);
 }
 
 TEST_CASE("planted faults: an organ that vanished and a muscle that fell apart are caught between two volumes") {
