@@ -18,12 +18,11 @@ class TissueFront {
  public:
   // References are kept.
   TissueFront(const LabelVolume& volume, const TissueVoxels& tissue)
-      : grid_(volume.grid), tissue_(tissue), corner_(tissue.size()), to_corner_(tissue.size()), way_(tissue.size()),
+      : grid_(volume.grid), tissue_(tissue), ways_(tissue.size()),
         width_(static_cast<float>(kWidth * std::min({grid_.spacing.x, grid_.spacing.y, grid_.spacing.z}))), buckets_(1) {}
 
   void start(std::int64_t place, const glm::ivec3& voxel) {
-    corner_[place] = glm::i16vec3(voxel);
-    to_corner_[place] = way_[place] = 0;
+    ways_[place] = {glm::i16vec3(voxel), 0, 0};
     buckets_[0].push_back({static_cast<std::int32_t>(place), 0, glm::i16vec3(voxel)});
   }
 
@@ -38,9 +37,10 @@ class TissueFront {
     for (std::size_t bucket = 0; bucket < buckets_.size(); ++bucket) {
       for (std::size_t i = 0; i < buckets_[bucket].size(); ++i) {
         const auto [place, way_here, small_voxel] = buckets_[bucket][i];
-        if (way_here > way_[place]) continue;  // a shorter one came later
-        const glm::ivec3 voxel(small_voxel), corner(corner_[place]);
-        const float before = to_corner_[place];
+        const Way here = ways_[place];
+        if (way_here > here.length) continue;  // a shorter one came later
+        const glm::ivec3 voxel(small_voxel), corner(here.corner);
+        const float before = here.to_corner;
         const int brick_here = tissue_.brick_at(voxel);
         for (int direction = 0; direction < 6; ++direction) {
           const glm::ivec3 w = voxel + kSteps[direction];
@@ -58,9 +58,7 @@ class TissueFront {
             if (!is_shorter(std::int64_t{place}, there, way)) continue;
           }
           take(std::int64_t{place}, there, way);
-          corner_[there] = bends ? small_voxel : glm::i16vec3(corner);
-          to_corner_[there] = bends ? to_bend : before;
-          way_[there] = way;
+          ways_[there] = bends ? Way{small_voxel, to_bend, way} : Way{here.corner, before, way};
           add({static_cast<std::int32_t>(there), way, glm::i16vec3(w)}, bucket);
         }
       }
@@ -73,6 +71,11 @@ class TissueFront {
   static constexpr glm::ivec3 kSteps[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
   static constexpr double kWidth = 0.5;  // of the shortest voxel edge: ways that differ by less may come in any order
 
+  // The shortest known to a voxel, mm: to the corner that it last came round, and all of it.
+  struct Way {
+    glm::i16vec3 corner{0};
+    float to_corner = 0, length = 0;
+  };
   struct Reached {
     std::int32_t place;
     float way;  // mm
@@ -121,8 +124,7 @@ class TissueFront {
   const Grid& grid_;
   const glm::vec3 spacing_{grid_.spacing};
   const TissueVoxels& tissue_;
-  std::vector<glm::i16vec3> corner_;
-  std::vector<float> to_corner_, way_;
+  std::vector<Way> ways_;  // by place
   float width_;
   std::vector<std::vector<Reached>> buckets_;  // by length of the way
 };
