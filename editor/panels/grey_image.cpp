@@ -38,7 +38,7 @@ class GreyImageDialog final : public Dialog {
     const Rect rect = begin_dialog(editor, shown_.name + " is a grey image", kWidth, kHeight);
     const std::string words = "A grey image, not labels: " + shown_.doubt +
                               ". It can be looked at here, and nothing that is open changes. Rigs, weights and poses "
-                              "need the label volume that was drawn from it; `limber resample --with` moves the image "
+                              "need the label volume that was drawn from it; limber resample --with moves the image "
                               "along with a pose.";
     const float text = put_wrapped(editor, look.fonts.regular, look.theme.text, rect.low, rect.width(), words);
     const float foot = rect.high.y - look.px(28), top = rect.low.y + text + look.px(10);
