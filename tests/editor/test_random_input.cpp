@@ -50,6 +50,7 @@ class RandomUser {
     }
   }
   int events() const { return events_; }
+  int numbers() const { return numbers_; }  // that were begun
 
  private:
   static Preferences small() {
@@ -192,7 +193,7 @@ class RandomUser {
   LimbEditor test_;
   Document document_;
   std::mt19937_64 random_;
-  int events_ = 0;
+  int events_ = 0, numbers_ = 0;
   bool pending_ = false;
   std::string held_;  // the widget that is pressed
 };
@@ -236,7 +237,8 @@ void RandomUser::search() {
 
 void RandomUser::type_number() {
   const Widget* field = editor().widgets.find("Bone/Length");
-  REQUIRE(field);
+  if (!field) return;  // a wheel has scrolled it out of sight
+  ++numbers_;
   push(PointerMoved{field->rect.centre()});
   push(ButtonChanged{MouseButton::Left, true});
   push(ButtonChanged{MouseButton::Left, false});
@@ -351,4 +353,5 @@ TEST_CASE("random input: no letter of a field is a command, nothing moves under 
     INFO("seed ", seed, ", event ", user.events());
     user.act();
   }
+  CHECK(user.numbers() > 0);
 }
