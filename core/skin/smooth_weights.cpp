@@ -21,7 +21,8 @@ int cell_in_brick(const glm::ivec3& v) { return v.x + 8 * v.y + 64 * v.z; }
 SmoothWeights::SmoothWeights(const TissueVoxels& tissue, const glm::dvec3& spacing)
     : tissue_(tissue), spacing_(spacing), slot_of_(tissue.bricks().size(), kNone) {}
 
-void SmoothWeights::spread(const std::vector<int>& bricks, double width, const std::function<InfluenceView(int)>& weights) {
+void SmoothWeights::spread(const std::vector<int>& bricks, double width,
+                           const std::function<InfluenceView(int)>& weights) {
   for (const int brick : spread_) slot_of_[brick] = kNone;
   spread_ = bricks;
   for (std::size_t slot = 0; slot < bricks.size(); ++slot) slot_of_[bricks[slot]] = static_cast<std::int32_t>(slot);
@@ -57,7 +58,8 @@ void SmoothWeights::find_cells(const std::vector<int>& bricks) {
 }
 
 // What hangs together with a voxel within its block of `edge_` voxels.
-void SmoothWeights::flood(const glm::ivec3& voxel, const TissueVoxels::Brick& brick, std::int32_t* cell_of, std::int32_t cell) {
+void SmoothWeights::flood(const glm::ivec3& voxel, const TissueVoxels::Brick& brick, std::int32_t* cell_of,
+                          std::int32_t cell) {
   const glm::ivec3 low = voxel / edge_ * edge_, high = low + edge_ - 1;
   std::array<glm::ivec3, kVoxels> open;
   int count = 0;
@@ -124,7 +126,8 @@ void SmoothWeights::link_cells(const std::vector<int>& bricks) {
       const bool in_grid = glm::all(glm::greaterThanEqual(there, glm::ivec3(0))) &&
                            glm::all(glm::lessThan(there, tissue_.grid_size()));
       const int brick = in_grid ? tissue_.brick_at(there) : -1;
-      if (brick >= 0 && slot_of_[brick] != kNone) cells_beside[direction] = &cell_of_[std::size_t(slot_of_[brick]) * kVoxels];
+      if (brick >= 0 && slot_of_[brick] != kNone)
+        cells_beside[direction] = &cell_of_[std::size_t(slot_of_[brick]) * kVoxels];
     }
     const std::int32_t* const cells = &cell_of_[slot * kVoxels];
     for (int i = 0; i < kVoxels; ++i) {
@@ -136,7 +139,8 @@ void SmoothWeights::link_cells(const std::vector<int>& bricks) {
         w[axis] += direction & 1 ? 1 : -1;
         const std::int32_t* const there = w[axis] >= 0 && w[axis] < kBrick ? cells : cells_beside[direction];
         const std::int32_t other = there ? there[cell_in_brick(w & 7)] : kNone;
-        if (other != kNone && other != cells[i] && !is_cut(corner + v, direction)) links_.push_back({cells[i], other, direction, 1});
+        if (other == kNone || other == cells[i] || is_cut(corner + v, direction)) continue;
+        links_.push_back({cells[i], other, direction, 1});
       }
     }
   }
@@ -145,8 +149,10 @@ void SmoothWeights::link_cells(const std::vector<int>& bricks) {
   });
   std::size_t kept = 0;
   for (const Link& link : links_) {
-    const bool same = kept > 0 && links_[kept - 1].from == link.from && links_[kept - 1].direction == link.direction && links_[kept - 1].to == link.to;
-    if (same) ++links_[kept - 1].faces;
+    const auto is_same = [&](const Link& last) {
+      return last.from == link.from && last.direction == link.direction && last.to == link.to;
+    };
+    if (kept > 0 && is_same(links_[kept - 1])) ++links_[kept - 1].faces;
     else links_[kept++] = link;
   }
   links_.resize(kept);
@@ -183,7 +189,8 @@ void SmoothWeights::take_steps(double width) {
   for (std::size_t l = 0; l < links_.size(); ++l) {
     const Link& link = links_[l];
     const int axis = link.direction >> 1;
-    rate[l] = static_cast<float>(step / (edge[axis] * edge[axis]) * (link.faces / faces_of_full[axis]) * (full / voxels_in_[link.from]));
+    const double joined = link.faces / faces_of_full[axis], holds = voxels_in_[link.from] / full;
+    rate[l] = static_cast<float>(step / (edge[axis] * edge[axis]) * joined / holds);
     all[link.from] += rate[l];
   }
   for (std::size_t l = 0; l < links_.size(); ++l)
@@ -205,7 +212,8 @@ void SmoothWeights::take_steps(double width) {
   }
 }
 
-// The cells whose middles are the corners of the box around a place in a cell; where there is none, the nearest that is.
+// The cells whose middles are the corners of the box around a place in a cell; where there is none, the nearest that
+// is.
 //   towards  0 or 1 along each axis: on which side of the cell's middle
 std::array<std::int32_t, 8> SmoothWeights::corners_around(std::int32_t cell, const glm::ivec3& towards) const {
   std::array<std::int32_t, 8> corner;

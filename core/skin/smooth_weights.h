@@ -65,7 +65,7 @@ class SmoothWeights {
   std::vector<int> spread_;                        // bricks
   std::vector<std::int32_t> cell_of_;              // by slot and voxel; kNone for air
   std::vector<std::int32_t> voxels_in_;            // by cell
-  std::vector<std::array<std::int32_t, 6>> beside_;  // by cell and direction: with which it shares most faces; kNone for none
+  std::vector<std::array<std::int32_t, 6>> beside_;  // by cell and direction: with which it shares most faces, or kNone
   std::vector<Link> links_;                        // rising by `from`
   std::vector<std::int32_t> first_link_;           // by cell, and one more
   std::vector<int> bones_;                         // that weigh anything here

@@ -19,7 +19,8 @@ class TissueSet {
   void add(const glm::ivec3& voxel) { slice(voxel) |= bit(voxel); }
   bool contains(const glm::ivec3& voxel) const { return slice(voxel) & bit(voxel); }
 
-  // Adds all voxels of `within` that hang together with the set through faces of voxels of `within`; seams do not count.
+  // Adds all voxels of `within` that hang together with the set through faces of voxels of `within`; seams do not
+  // count.
   //   within  of the same list of tissue voxels
   void spread(const TissueSet& within);
 

@@ -24,7 +24,8 @@ constexpr double kLength = 240, kRadius = 36;
 // A cylinder of muscle along z; its second bone begins in the middle.
 Painted cylinder(double spacing) {
   SmallBody body;
-  const int across = static_cast<int>(std::ceil(2 * kRadius / spacing)) + 4, along = static_cast<int>(kLength / spacing);
+  const int across = static_cast<int>(std::ceil(2 * kRadius / spacing)) + 4;
+  const int along = static_cast<int>(kLength / spacing);
   body.volume.grid.size = {across, across, along};
   body.volume.grid.spacing = glm::dvec3(spacing);
   body.volume.voxels.assign(body.volume.grid.voxel_count(), 0);
@@ -59,7 +60,8 @@ double band(const Painted& body, const SkinWeights& weights, double depth) {
   for (int z = 0; z < grid.size.z; ++z) {
     const double now = at(body.tissue, weights, {middle, y, z}).of(1);
     for (int i = 0; i < 2; ++i)
-      if (const double level = i ? 0.75 : 0.25; before < level && now >= level) reached[i] = (z - (now - level) / (now - before)) * spacing;
+      if (const double level = i ? 0.75 : 0.25; before < level && now >= level)
+        reached[i] = (z - (now - level) / (now - before)) * spacing;
     before = now;
   }
   return reached[1] - reached[0];
@@ -122,7 +124,7 @@ TEST_CASE("smooth weights: nothing spreads through air or across a seam") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("smooth weights: a stroke widens a blend by as many millimetres at 1 mm as at 2 mm, and the same with more threads") {
+TEST_CASE("smooth weights: a stroke widens a blend by as many mm at 1 mm as at 2 mm, and the same with more threads") {
   std::array<double, 2> wider{};
   for (const int fine : {0, 1}) {
     Painted body = cylinder(fine ? 1 : 2);
@@ -177,11 +179,12 @@ TEST_CASE("smooth weights: ten strokes around a real elbow halve what its muscle
     Stroke stroke({file.volume, tissue, tissues, rig}, weights, settings);
     for (int i = -6; i <= 6; ++i) {
       glm::dvec3 skin = joint + 10.0 * i * along;
-      for (int d = 100; d > 0; --d)
-        if (const glm::dvec3 at = skin + double(d) * outwards; file.volume.at_or_air(glm::ivec3(glm::round(from_world * at)))) {
-          skin = at;
-          break;
-        }
+      for (int d = 100; d > 0; --d) {
+        const glm::dvec3 at = skin + double(d) * outwards;
+        if (file.volume.at_or_air(glm::ivec3(glm::round(from_world * at))) == 0) continue;
+        skin = at;
+        break;
+      }
       stroke.to(skin);
     }
     weights = std::make_shared<const SkinWeights>(stroke.finish());
