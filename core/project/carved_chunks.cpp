@@ -14,6 +14,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/project/read_at.h"
 
 namespace limber {
 
@@ -92,15 +93,7 @@ CarvedChunks::CarvedChunks(const Path& path, Progress& progress)
 CarvedChunks::~CarvedChunks() { ::close(descriptor_); }
 
 bool CarvedChunks::read_at(std::int64_t offset, char* to, std::size_t size) const {
-  while (size > 0) {
-    const ssize_t got = ::pread(descriptor_, to, size, offset);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
-    to += got;
-    offset += got;
-    size -= static_cast<std::size_t>(got);
-  }
-  return true;
+  return limber::read_at(descriptor_, offset, to, size);
 }
 
 void CarvedChunks::scan(Progress& progress) {

@@ -13,6 +13,7 @@
 #include "core/base/leftovers.h"
 #include "core/project/bytes.h"
 #include "core/project/carved_chunks.h"
+#include "core/project/read_at.h"
 
 namespace limber {
 
@@ -136,20 +137,6 @@ JournalReader::JournalReader(const Path& path) : where_(path.string()), descript
 }
 
 JournalReader::~JournalReader() { ::close(descriptor_); }
-
-namespace {
-bool read_at(int descriptor, std::int64_t offset, char* to, std::size_t size) {
-  while (size > 0) {
-    const ssize_t got = ::pread(descriptor, to, size, offset);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
-    to += got;
-    offset += got;
-    size -= static_cast<std::size_t>(got);
-  }
-  return true;
-}
-}  // namespace
 
 // Up to the first record that is not whole.
 void JournalReader::scan() {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <numeric>
 #include <set>
@@ -11,6 +10,7 @@
 #include <unordered_set>
 
 #include "core/resample/skin_at_rest.h"
+#include "core/volume/label_runs.h"
 
 namespace limber {
 
@@ -19,27 +19,6 @@ namespace {
 struct AirRun {
   int begin, end;  // x
 };
-
-// First x from `x` on that is not air; 16 voxels at a time.
-int end_of_air(const Label* row, int x, int size) {
-  for (std::uint64_t words[4]; x + 16 <= size; x += 16) {
-    std::memcpy(words, row + x, sizeof words);
-    if (words[0] | words[1] | words[2] | words[3]) break;
-  }
-  while (x < size && row[x] == 0) ++x;
-  return x;
-}
-
-// First x from `x` on that is air; four voxels at a time.
-int end_of_tissue(const Label* row, int x, int size) {
-  constexpr std::uint64_t kOnes = 0x0001000100010001, kHighest = kOnes << 15;
-  for (std::uint64_t word; x + 4 <= size; x += 4) {
-    std::memcpy(&word, row + x, sizeof word);
-    if ((word - kOnes) & ~word & kHighest) break;  // a label of them is 0
-  }
-  while (x < size && row[x] != 0) ++x;
-  return x;
-}
 
 // Runs of air of all rows, joined where they touch through faces.
 class AirRuns {

@@ -8,21 +8,12 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/volume/label_runs.h"
 
 namespace limber {
 
 namespace {
 using Run = Components::Run;
-
-// First x from `x` on that is not air; 16 voxels at a time.
-int end_of_air(const Label* row, int x, int size) {
-  for (std::uint64_t words[4]; x + 16 <= size; x += 16) {
-    std::memcpy(words, row + x, sizeof words);
-    if (words[0] | words[1] | words[2] | words[3]) break;
-  }
-  while (x < size && row[x] == 0) ++x;
-  return x;
-}
 
 // First x from `begin` on with another label than there; four voxels at a time.
 int end_of_run(const Label* row, int begin, int size) {

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Where stretches of air and of tissue end along a row of labels, found several voxels at a time.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "core/volume/label_volume.h"
+
+namespace limber {
+
+// First x from `x` on, below `size`, that is not air; `size` where there is none.
+inline int end_of_air(const Label* row, int x, int size) {
+  for (std::uint64_t words[4]; x + 16 <= size; x += 16) {
+    std::memcpy(words, row + x, sizeof words);
+    if (words[0] | words[1] | words[2] | words[3]) break;
+  }
+  while (x < size && row[x] == 0) ++x;
+  return x;
+}
+
+// First x from `x` on, below `size`, that is air; `size` where there is none.
+inline int end_of_tissue(const Label* row, int x, int size) {
+  constexpr std::uint64_t kOnes = 0x0001000100010001, kHighest = kOnes << 15;
+  for (std::uint64_t word; x + 4 <= size; x += 4) {
+    std::memcpy(&word, row + x, sizeof word);
+    if ((word - kOnes) & ~word & kHighest) break;  // a label of them is 0
+  }
+  while (x < size && row[x] != 0) ++x;
+  return x;
+}
+
+}  // namespace limber
