@@ -6,6 +6,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "core/base/large_blocks.h"
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
 #include "core/base/named_files.h"
@@ -87,6 +88,7 @@ int run_command(CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int run(CLI::App& app, int argc, char** argv) {
+  use_large_blocks();
   keep_standard_streams();
   remove_leftovers();
   check_files_of_all(app);
