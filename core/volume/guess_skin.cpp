@@ -39,6 +39,8 @@ std::map<Label, std::int64_t> at_surface(const LabelVolume& volume) {
 std::optional<SkinGuess> guess_skin(const LabelVolume& volume, const TissueTable& tissues) {
   for (const Tissue& tissue : tissues.tissues)
     if (tissue.kind == TissueKind::Skin) return std::nullopt;
+  const auto is_unknown = [](const Tissue& tissue) { return tissue.label != 0 && tissue.kind == TissueKind::Unknown; };
+  if (std::none_of(tissues.tissues.begin(), tissues.tissues.end(), is_unknown)) return std::nullopt;
   const auto counts = at_surface(volume);
   std::int64_t surface = 0;
   for (const auto& [_, count] : counts) surface += count;

@@ -2,15 +2,62 @@
 #include "core/volume/outside_air.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "core/volume/label_runs.h"
 
 namespace limber {
 
 namespace {
 
+// The lowest and the highest voxel of all tissue; the lowest is above the highest where there is none.
+std::pair<glm::ivec3, glm::ivec3> box_of_tissue(const LabelVolume& volume) {
+  glm::ivec3 lowest = volume.grid.size, highest(-1);
+  const int size = volume.grid.size.x;
+  for (int z = 0; z < volume.grid.size.z; ++z)
+    for (int y = 0; y < volume.grid.size.y; ++y) {
+      const Label* row = &volume.voxels[volume.grid.index({0, y, z})];
+      const int first = end_of_air(row, 0, size);
+      if (first == size) continue;
+      int last = size - 1;
+      while (row[last] == 0) --last;
+      lowest = glm::min(lowest, glm::ivec3(first, y, z));
+      highest = glm::max(highest, glm::ivec3(last, y, z));
+    }
+  return {lowest, highest};
+}
+
 // Fills stretches of air along x, one at a time.
 class AirFlood {
  public:
   explicit AirFlood(const LabelVolume& volume) : volume_(volume), size_(volume.grid.size), outside_(volume.voxels.size(), 0) {}
+
+  // From all that lies beyond the box of the tissue: each such slab of air holds four edges of the volume's box.
+  void start_around_tissue() {
+    const auto [lowest, highest] = box_of_tissue(volume_);
+    const auto is_beyond = [&](int y, int z) { return y < lowest.y || y > highest.y || z < lowest.z || z > highest.z; };
+    found_any_ = lowest != glm::ivec3(0) || highest != size_ - 1;
+    for (int z = 0; z < size_.z; ++z)
+      for (int y = 0; y < size_.y; ++y) {
+        const auto row = outside_.begin() + volume_.grid.index({0, y, z});
+        if (is_beyond(y, z)) {
+          std::fill(row, row + size_.x, std::uint8_t{1});
+          continue;
+        }
+        std::fill(row, row + lowest.x, std::uint8_t{1});
+        std::fill(row + highest.x + 1, row + size_.x, std::uint8_t{1});
+      }
+    // The box's sides that the air beyond them touches.
+    for (int z = lowest.z; z <= highest.z; ++z)
+      for (int y = lowest.y; y <= highest.y; ++y) {
+        const bool is_side = (y == lowest.y && y > 0) || (y == highest.y && y + 1 < size_.y) || (z == lowest.z && z > 0) ||
+                             (z == highest.z && z + 1 < size_.z);
+        if (is_side) add_row(lowest.x, highest.x + 1, y, z);
+        if (lowest.x > 0) add({lowest.x, y, z});
+        if (highest.x + 1 < size_.x) add({highest.x, y, z});
+      }
+    spread();
+  }
 
   // From every border voxel that lies on at least so many of the box's sides.
   void start(int sides) {
@@ -69,6 +116,7 @@ class AirFlood {
 
 std::vector<std::uint8_t> outside_air(const LabelVolume& volume) {
   AirFlood flood(volume);
+  flood.start_around_tissue();
   flood.start(2);
   if (!flood.found_any()) flood.start(1);
   return flood.take();
