@@ -11,6 +11,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/parallel.h"
+
 namespace limber {
 
 namespace {
@@ -82,17 +84,15 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
 
   const LabelWalls walls(volume, tissue, kinds);
   graph.neighbour.resize(graph.size());
-  for (std::int64_t i = 0; i < graph.size(); ++i)
-    for (int k = 0; k < 26; ++k) {
-      const glm::ivec3 w = graph.voxel[i] + kOffsets[k];
-      std::int32_t& n = graph.neighbour[i][k];
-      if (!volume.grid.contains(w)) {
-        n = kOutside;
-        continue;
-      }
-      const Label label = volume.at(w);
-      n = is_bone(kinds[label]) && !walls.between(volume.at(graph.voxel[i]), label) ? of_place[tissue.index_of(w)] : kNotBone;
-    }
+  const auto neighbour = [&](const glm::ivec3& v, const glm::ivec3& w) {
+    if (!volume.grid.contains(w)) return kOutside;
+    const Label label = volume.at(w);
+    return is_bone(kinds[label]) && !walls.between(volume.at(v), label) ? of_place[tissue.index_of(w)] : kNotBone;
+  };
+  parallel_for(graph.size(), 4096, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i)
+      for (int k = 0; k < 26; ++k) graph.neighbour[i][k] = neighbour(graph.voxel[i], graph.voxel[i] + kOffsets[k]);
+  });
   return graph;
 }
 
