@@ -99,15 +99,15 @@ class SeamFinder {
       label[place] = volume_.at(v);
       if (held_by_[place] == kSoft) return;
       distance[place] = 0;
-      if (has_soft_beside(v)) front.start(place, v);
+      if (has_soft_beside(v)) front.start(place, v, held_by_[place]);
     });
     front.spread(
-        [&](std::int64_t from, std::int64_t to, float way) {
-          return held_by_[to] == kSoft && way < distance[to] && may_hold(bone_[from], label[to]);
+        [&](std::uint16_t bone, std::int64_t to, float way) {
+          return held_by_[to] == kSoft && way < distance[to] && may_hold(bone, label[to]);
         },
-        [&](std::int64_t from, std::int64_t to, float way) {
+        [&](std::uint16_t bone, std::int64_t to, float way) {
           distance[to] = way;
-          bone_[to] = bone_[from];
+          bone_[to] = bone;
         });
   }
 

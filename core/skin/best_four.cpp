@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "core/base/parallel.h"
 
@@ -30,35 +31,64 @@ Influence normalized(Influence influence) {
 }
 }  // namespace
 
-void BestFour::offer(const std::vector<std::int64_t>& place, const std::vector<float>& values, int lanes, int lane, int bone) {
-  parallel_for(std::ssize(place), 16384, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
-      const float value = values[i * lanes + lane];
-      const int whole = static_cast<int>(std::lround(std::clamp(value, 0.0f, 1.0f) * kFullWeight));
-      Influence& best = best_[place[i]];
-      // Of equal weights the lower bone goes first, so that the order of offers does not show.
-      auto after = [&](int k) { return whole > best.weight[k] || (whole == best.weight[k] && bone < best.bone[k]); };
-      if (whole < kLeastWeight || !after(3)) continue;
-      int k = 3;
-      for (; k > 0 && after(k - 1); --k) {
-        best.bone[k] = best.bone[k - 1];
-        best.weight[k] = best.weight[k - 1];
-      }
-      best.bone[k] = static_cast<std::uint16_t>(bone);
-      best.weight[k] = static_cast<std::uint16_t>(whole);
+BestFour::Slot& BestFour::grow_to(std::int64_t brick, std::int64_t place, int k) {
+  Brick& here = bricks_[brick];
+  const std::int64_t count = tissue_.bricks()[brick].count();
+  if (k >= here.used) {
+    here.used = k + 1;
+    here.slots.resize(here.used * count);
+  }
+  return here.slots[k * count + place - tissue_.bricks()[brick].first];
+}
+
+void BestFour::offer(std::int64_t brick, std::int64_t place, int bone, float weight) {
+  const int whole = static_cast<int>(std::lround(std::clamp(weight, 0.0f, 1.0f) * kFullWeight));
+  // Of equal weights the lower bone goes first, so that the order of offers does not show.
+  const auto after = [&](int k) {
+    const Slot best = at(brick, place, k);
+    return whole > best.weight || (whole == best.weight && bone < best.bone);
+  };
+  if (whole < kLeastWeight || !after(3)) return;
+  int k = 3;
+  while (k > 0 && after(k - 1)) --k;
+  Slot moved{static_cast<std::uint16_t>(bone), static_cast<std::uint16_t>(whole)};
+  for (; k < 4 && moved.weight > 0; ++k) std::swap(moved, grow_to(brick, place, k));
+}
+
+void BestFour::hold(std::int64_t brick, std::int64_t place, int bone) {
+  grow_to(brick, place, 0) = {static_cast<std::uint16_t>(bone), kFullWeight};
+  for (int k = 1; k < bricks_[brick].used; ++k) grow_to(brick, place, k) = {};
+}
+
+void BestFour::hold_all(const std::vector<std::uint16_t>& bones, std::uint16_t none) {
+  parallel_for(std::ssize(bricks_), 64, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t brick = begin; brick < end; ++brick) {
+      const auto& here = tissue_.bricks()[brick];
+      for (std::int64_t place = here.first; place < here.first + here.count(); ++place)
+        if (bones[place] != none) hold(brick, place, bones[place]);
     }
   });
 }
 
-SkinWeights BestFour::weights(std::vector<std::string> bone_names, const TissueVoxels& tissue) const {
-  SkinWeights weights(std::move(bone_names), tissue);
-  for (std::int64_t b = 0; b < std::ssize(tissue.bricks()); ++b) {
-    const auto& brick = tissue.bricks()[b];
-    SkinWeights::Influences chunk(best_.begin() + brick.first, best_.begin() + brick.first + brick.count());
-    for (Influence& influence : chunk) influence = normalized(influence);
-    weights.set_chunk(b, std::move(chunk));
-  }
-  return weights;
+SkinWeights BestFour::weights(std::vector<std::string> bone_names) {
+  std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks(bricks_.size());
+  parallel_for(std::ssize(bricks_), 64, [&](std::int64_t begin, std::int64_t end) {
+    SkinWeights::Influences influences;
+    for (std::int64_t brick = begin; brick < end; ++brick) {
+      influences.assign(tissue_.bricks()[brick].count(), {});
+      for (std::int64_t i = 0; i < std::ssize(influences); ++i) {
+        for (int k = 0; k < 4; ++k) {
+          const Slot slot = at(brick, tissue_.bricks()[brick].first + i, k);
+          influences[i].bone[k] = slot.bone;
+          influences[i].weight[k] = slot.weight;
+        }
+        influences[i] = normalized(influences[i]);
+      }
+      bricks_[brick] = {};
+      chunks[brick] = std::make_shared<const SkinWeights::Chunk>(influences);
+    }
+  });
+  return {std::move(bone_names), std::move(chunks)};
 }
 
 std::vector<std::string> names_of_bones(const Armature& armature) {
@@ -79,10 +109,10 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
   const AffineTransform from_voxel = world_from_voxel(volume.grid);
   std::vector<std::pair<std::int64_t, glm::ivec3>> piece;
   tissue.for_each([&](std::int64_t seed, const glm::ivec3& seed_voxel) {
-    if (best.covered(seed)) return;
+    if (best.covered(tissue.brick_at(seed_voxel), seed)) return;
     // Covered for the time being, so that each is met once.
     piece.assign(1, {seed, seed_voxel});
-    best.hold(seed, 0);
+    best.hold(tissue.brick_at(seed_voxel), seed, 0);
     glm::dvec3 sum(0);
     for (size_t k = 0; k < piece.size(); ++k) {
       const glm::ivec3 v = piece[k].second;
@@ -92,8 +122,9 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
         w[direction >> 1] += direction & 1 ? 1 : -1;
         if (volume.at_or_air(w) == 0) continue;
         const std::int64_t place = tissue.index_of(w);
-        if (best.covered(place)) continue;
-        best.hold(place, 0);
+        const int brick = tissue.brick_at(w);
+        if (best.covered(brick, place)) continue;
+        best.hold(brick, place, 0);
         piece.push_back({place, w});
       }
     }
@@ -102,7 +133,7 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
     double nearest = std::numeric_limits<double>::max();
     for (size_t b = 0; b < armature.bones.size(); ++b)
       if (const double d = distance_to_bone(armature.bones[b], island.centre); d < nearest) nearest = d, island.bone = static_cast<int>(b);
-    for (const auto& [place, voxel] : piece) best.hold(place, island.bone);
+    for (const auto& [place, voxel] : piece) best.hold(tissue.brick_at(voxel), place, island.bone);
     islands.push_back(island);
   });
 

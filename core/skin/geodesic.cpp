@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "core/base/parallel.h"
 #include "core/skin/best_four.h"
 #include "core/skin/soft_body.h"
 #include "core/skin/tissue_front.h"
@@ -36,7 +38,7 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
     });
   }
 
-  BestFour best(tissue.size());
+  BestFour best(tissue);
   TissueFront front(volume, tissue);
   std::vector<float> distance(tissue.size(), std::numeric_limits<float>::infinity());
   const auto falloff = static_cast<float>(settings.falloff);
@@ -45,35 +47,34 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
     return 1 / (bound * bound);
   };
   for (int bone = 0; bone < bone_count; ++bone) {
-    std::vector<std::int64_t> reached;
     for (const auto& [place, voxel] : sources[bone]) {
       distance[place] = 0;
-      front.start(place, glm::ivec3(voxel));
+      front.start(place, glm::ivec3(voxel), static_cast<std::uint16_t>(bone));
     }
     front.spread(
-        [&](std::int64_t, std::int64_t to, float way) {
+        [&](std::uint16_t, std::int64_t to, float way) {
           return held_by[to] == kSoft && way < distance[to] && way <= kFurthest * nearest.distance[to];
         },
-        [&](std::int64_t, std::int64_t to, float way) {
-          if (distance[to] == std::numeric_limits<float>::infinity()) reached.push_back(to);
-          distance[to] = way;
-        });
-    // Over the nearest bone's, so that a weight is at most one before the sum is.
-    std::vector<float> weight(reached.size());
-    for (size_t i = 0; i < reached.size(); ++i) {
-      weight[i] = std::min(1.0f, strength(distance[reached[i]]) / strength(nearest.distance[reached[i]]));
-      if (!stiffness.empty()) weight[i] = std::pow(weight[i], stiffness[reached[i]]);
-    }
-    best.offer(reached, weight, 1, 0, bone);
-    for (std::int64_t place : reached) distance[place] = std::numeric_limits<float>::infinity();
-    for (const auto& [place, voxel] : sources[bone]) distance[place] = std::numeric_limits<float>::infinity();
+        [&](std::uint16_t, std::int64_t to, float way) { distance[to] = way; });
+    parallel_for(std::ssize(tissue.bricks()), 256, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t brick = begin; brick < end; ++brick) {
+        const std::int64_t first = tissue.bricks()[brick].first;
+        for (std::int64_t place = first; place < first + tissue.bricks()[brick].count(); ++place) {
+          const float way = std::exchange(distance[place], std::numeric_limits<float>::infinity());
+          if (held_by[place] != kSoft || way == std::numeric_limits<float>::infinity()) continue;
+          // Over the nearest bone's, so that a weight is at most one before the sum is.
+          float weight = std::min(1.0f, strength(way) / strength(nearest.distance[place]));
+          if (!stiffness.empty()) weight = std::pow(weight, stiffness[place]);
+          best.offer(brick, place, bone, weight);
+        }
+      }
+    });
     progress.update("weights", double(bone + 1) / bone_count);
   }
-  for (std::int64_t place = 0; place < tissue.size(); ++place)
-    if (held_by[place] != kSoft) best.hold(place, held_by[place]);
+  best.hold_all(held_by, kSoft);
   WeightsReport ignored;
   cover_islands(volume, tissue, armature, best, report ? *report : ignored);
-  return best.weights(names_of_bones(armature), tissue);
+  return best.weights(names_of_bones(armature));
 }
 
 }  // namespace limber

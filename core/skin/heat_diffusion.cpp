@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/large_blocks.h"
 #include "core/base/parallel.h"
 #include "core/skin/best_four.h"
 #include "core/skin/soft_body.h"
@@ -19,7 +20,9 @@ namespace {
 constexpr float kNegligible = 3e-4f;
 constexpr double kCoarseResidual = 1e-4;
 constexpr double kLaneCost = 0.25;  // of one more right side, over that of a region solved for one
-constexpr int kMostTogether = 4;    // right sides: four floats fill a vector register, and six vectors of them the memory
+constexpr double kBlockBytes = 16;  // a tissue voxel of the body: what a block of several bones may take
+constexpr int kMostTogether = 4;    // right sides
+constexpr std::int64_t kGrain = 64;  // bricks a block of a parallel loop
 
 // Temperatures on the coarse body: by bone, the cells where it matters.
 struct CoarseTemperatures {
@@ -94,7 +97,9 @@ struct Block {
 };
 
 // Largest bone first; it takes along the bones that lie in its bricks anyway.
-std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures, const std::vector<std::int32_t>& brick_of_cell) {
+//   most_bytes  that a block of several bones may take
+std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures, const std::vector<std::int32_t>& brick_of_cell,
+                                   double most_bytes) {
   const int bone_count = static_cast<int>(temperatures.by_bone.size());
   std::vector<std::vector<std::int32_t>> bricks(bone_count);
   std::vector<int> waiting;
@@ -121,6 +126,7 @@ std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures, const
         std::set_union(block.bricks.begin(), block.bricks.end(), own.begin(), own.end(), std::back_inserter(both));
         const double lanes = std::ssize(block.bones);
         const double apart = block.bricks.size() * (1 + kLaneCost * lanes) + own.size() * (1 + kLaneCost);
+        if (both.size() * HeatVectors::bytes_of_brick(static_cast<int>(lanes) + 1) > most_bytes) continue;
         const double together = both.size() * (1 + kLaneCost * (lanes + 1));
         if (apart - together > best_gain) {
           best_gain = apart - together;
@@ -138,6 +144,17 @@ std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures, const
   return blocks;
 }
 
+// body(place, b, slot) for every cell of bricks[b].
+template <class Body>
+void for_cells(const TissueVoxels& tissue, const std::vector<std::int32_t>& bricks, const HeatSystem& system, const Body& body) {
+  parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t b = begin; b < end; ++b)
+      tissue.for_each(bricks[b], bricks[b] + 1, [&](std::int64_t place, const glm::ivec3& v) {
+        if (const int slot = HeatSystem::slot_of(v & 7); system.is_cell(b, slot)) body(place, b, slot);
+      });
+  });
+}
+
 }  // namespace
 
 SkinWeights diffuse_heat(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
@@ -153,6 +170,7 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
   WeightsReport ignored;
   WeightsReport& said = report ? *report : ignored;
   progress.update("weights", 0);
+  return_free_memory();  // what splitting bones and finding seams leaves behind
   const int bone_count = static_cast<int>(armature.bones.size());
   const std::vector<std::uint16_t> held_by = bone_holding(volume, tissue, parts, armature);
   const NearestBone nearest = attracting_bone(volume, tissue, armature, held_by);
@@ -162,10 +180,14 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
   const CoarseTemperatures temperatures = solve_coarse(coarse, reached, bone_count);
   progress.update("weights", 0.2);
 
-  BestFour best(tissue.size());
+  return_free_memory();
+  BestFour best(tissue);
   std::vector<int> lane_of_bone(bone_count, -1);
-  const std::vector<Block> blocks = blocks_of_bones(temperatures, coarse.brick);
-  std::vector<float> guess(coarse.graph.size() * Multigrid::kMostLanes, 0.0f);
+  const std::vector<Block> blocks = blocks_of_bones(temperatures, coarse.brick, kBlockBytes * tissue.size());
+  std::vector<float> guess(coarse.graph.size() * kMostTogether, 0.0f);
+  // Room that all blocks use, the largest first.
+  HeatSystem system;
+  HeatVectors vectors;
   for (size_t k = 0; k < blocks.size(); ++k) {
     const Block& block = blocks[k];
     const int lanes = static_cast<int>(block.bones.size());
@@ -174,18 +196,19 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
       lane_of_bone[block.bones[lane]] = lane;
       for (const auto& entry : temperatures.by_bone[block.bones[lane]]) guess[std::int64_t{entry.cell} * lanes + lane] = entry.value;
     }
-    SoftBody::Region region = body.region(block.bricks);
-    const std::int64_t size = region.graph.size();
-    std::vector<float> b(size * lanes, 0.0f), x(size * lanes);
-    fill_sources(region.held, lane_of_bone, lanes, b);
-    for (std::int64_t i = 0; i < size; ++i) {
-      const std::int32_t cell = coarse.cell_of_place[region.place[i]];
-      if (!reached[cell]) region.graph.diagonal[i] += 1;
-      for (int lane = 0; lane < lanes; ++lane) x[i * lanes + lane] = guess[std::int64_t{cell} * lanes + lane];
-    }
-    region.held = {};
-    const Multigrid multigrid(std::move(region.graph));
-    const SolveReport solved = multigrid.solve(std::move(b), x, lanes, settings.residual, settings.maximum_iterations, progress);
+    body.fill(block.bricks, system);
+    // What no heat reaches stays at zero: a loss of its own keeps the system solvable.
+    for_cells(tissue, block.bricks, system, [&](std::int64_t place, std::int64_t b, int slot) {
+      if (!reached[coarse.cell_of_place[place]]) system.diagonal[b * HeatSystem::kSlots + slot] += 1;
+    });
+    HeatSolver solver(system, lanes, vectors);
+    body.add_sources(block.bricks, lane_of_bone, solver);
+    for_cells(tissue, block.bricks, system, [&](std::int64_t place, std::int64_t b, int slot) {
+      if (slot < HeatSystem::kColour) return;
+      const float* from = &guess[std::int64_t{coarse.cell_of_place[place]} * lanes];
+      for (int lane = 0; lane < lanes; ++lane) solver.first_guess_of_blacks(b, lane)[slot - HeatSystem::kColour] = from[lane];
+    });
+    const SolveReport solved = solver.solve(settings.residual, settings.maximum_iterations, progress);
     if (progress.cancelled()) throw Cancelled();
     if (solved.residual > settings.residual) {
       char text[64];
@@ -195,16 +218,15 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
     }
     said.residual = std::max(said.residual, solved.residual);
     said.iterations = std::max(said.iterations, solved.iterations);
-    for (int lane = 0; lane < lanes; ++lane) {
-      best.offer(region.place, x, lanes, lane, block.bones[lane]);
-      lane_of_bone[block.bones[lane]] = -1;
-    }
+    for_cells(tissue, block.bricks, system, [&](std::int64_t place, std::int64_t b, int slot) {
+      for (int lane = 0; lane < lanes; ++lane) best.offer(block.bricks[b], place, block.bones[lane], solver.temperature(b, lane, slot));
+    });
+    for (const int bone : block.bones) lane_of_bone[bone] = -1;
     progress.update("weights", 0.2 + 0.75 * double(k + 1) / blocks.size());
   }
-  for (std::int64_t place = 0; place < tissue.size(); ++place)
-    if (held_by[place] != kSoft) best.hold(place, held_by[place]);
+  best.hold_all(held_by, kSoft);
   cover_islands(volume, tissue, armature, best, said, &tissues);
-  return best.weights(names_of_bones(armature), tissue);
+  return best.weights(names_of_bones(armature));
 }
 
 }  // namespace limber

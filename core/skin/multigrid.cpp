@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -13,21 +14,22 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kGrain = 4096;       // cells a block of a parallel loop
+constexpr std::int64_t kGrain = 1024;       // cells a block of a parallel loop
 constexpr std::int64_t kCoarsestSize = 64;  // solved directly
 constexpr int kMostLevels = 12;
-// The way between centres doubles.
-constexpr float kCoarseConductance = 0.5f;
 
 int colour_of(const glm::i16vec3& p) { return (p.x + p.y + p.z) & 1; }
+}  // namespace
 
-// Axes along which cells are so close that heat evens out fast; halving the cells there first keeps the others in step.
 glm::i16vec3 coarsened_axes(const glm::dvec3& spacing) {
   const double closest = std::min({spacing.x, spacing.y, spacing.z});
   return {spacing.x < 1.5 * closest, spacing.y < 1.5 * closest, spacing.z < 1.5 * closest};
 }
 
-// Numbers the cells of the next level: connected sets of cells within one block, 2 x 2 x 2 where cells are cubes.
+namespace {
+
+// Numbers the cells of the next level: connected sets of cells within one block, 2 x 2 x 2 where cells are cubes. A cell
+// that is joined to none has no part in it (-1): relaxing solves it.
 std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse) {
   const glm::i16vec3 halved = coarsened_axes(fine.spacing);
   coarse.spacing = fine.spacing * glm::dvec3(halved + glm::i16vec3(1));
@@ -35,7 +37,7 @@ std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse) {
   std::vector<glm::i16vec3> position;
   std::vector<std::int32_t> open;
   for (std::int32_t seed = 0; seed < fine.size(); ++seed) {
-    if (parent[seed] >= 0) continue;
+    if (parent[seed] >= 0 || fine.first[seed] == fine.first[seed + 1]) continue;
     const glm::i16vec3 block = fine.position[seed] >> halved;
     const auto aggregate_number = static_cast<std::int32_t>(position.size());
     position.push_back(block);
@@ -64,34 +66,45 @@ std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse) {
       }
     if (colour == 0) coarse.red_count = next;
   }
-  for (std::int32_t& p : parent) p = number[p];
+  for (std::int32_t& p : parent)
+    if (p >= 0) p = number[p];
   return parent;
+}
+
+// The cells below `count` of each aggregate, as lists one behind the other.
+void list_children(const std::vector<std::int32_t>& parent, std::int64_t count, std::int64_t aggregates,
+                   std::vector<std::int32_t>& first, std::vector<std::int32_t>& child) {
+  first.assign(aggregates + 1, 0);
+  for (std::int64_t i = 0; i < count; ++i)
+    if (parent[i] >= 0) ++first[parent[i] + 1];
+  for (std::int64_t c = 0; c < aggregates; ++c) first[c + 1] += first[c];
+  child.resize(first.back());
+  std::vector<std::int32_t> place(first.begin(), first.end() - 1);
+  for (std::int64_t i = 0; i < count; ++i)
+    if (parent[i] >= 0) child[place[parent[i]]++] = static_cast<std::int32_t>(i);
 }
 
 CellGraph coarsen(const CellGraph& fine, std::vector<std::int32_t>& parent) {
   CellGraph coarse;
   parent = aggregate(fine, coarse);
   const std::int64_t size = coarse.size();
-
-  std::vector<std::int32_t> child_first(size + 1, 0), child(fine.size());
-  for (std::int32_t p : parent) ++child_first[p + 1];
-  for (std::int64_t c = 0; c < size; ++c) child_first[c + 1] += child_first[c];
-  {
-    std::vector<std::int32_t> place(child_first.begin(), child_first.end() - 1);
-    for (std::int32_t i = 0; i < fine.size(); ++i) child[place[parent[i]]++] = i;
-  }
+  std::vector<std::int32_t> child_first, child;
+  list_children(parent, fine.size(), size, child_first, child);
 
   const glm::i16vec3 halved = coarsened_axes(fine.spacing);
-  auto across = [&](const glm::i16vec3& step) {
+  const auto across = [&](const glm::i16vec3& step) {
     const int axis = step.x != 0 ? 0 : step.y != 0 ? 1 : 2;
     return halved[axis] ? kCoarseConductance : 1.0f;
   };
+  struct Links {
+    std::vector<std::int32_t> neighbour;
+    std::vector<float> conductance;
+  };
+  std::vector<Links> blocks((size + kGrain - 1) / kGrain);
   coarse.first.assign(size + 1, 0);
   coarse.diagonal.assign(size, 0);
-  coarse.neighbour.reserve(6 * size);
-  coarse.conductance.reserve(6 * size);
-  for (std::int32_t c = 0; c < size; ++c) {
-    const size_t start = coarse.neighbour.size();
+  const auto link = [&](std::int32_t c, Links& links) {
+    const std::size_t start = links.neighbour.size();
     double linked = 0, lost = 0;
     for (std::int32_t m = child_first[c]; m < child_first[c + 1]; ++m) {
       const std::int32_t i = child[m];
@@ -100,20 +113,29 @@ CellGraph coarsen(const CellGraph& fine, std::vector<std::int32_t>& parent) {
         own -= fine.conductance[k];
         const std::int32_t d = parent[fine.neighbour[k]];
         if (d == c) continue;
-        size_t at = start;
-        while (at < coarse.neighbour.size() && coarse.neighbour[at] != d) ++at;
-        if (at == coarse.neighbour.size()) {
-          coarse.neighbour.push_back(d);
-          coarse.conductance.push_back(0);
+        std::size_t at = start;
+        while (at < links.neighbour.size() && links.neighbour[at] != d) ++at;
+        if (at == links.neighbour.size()) {
+          links.neighbour.push_back(d);
+          links.conductance.push_back(0);
         }
         const float g = fine.conductance[k] * across(coarse.position[c] - coarse.position[d]);
-        coarse.conductance[at] += g;
+        links.conductance[at] += g;
         linked += g;
       }
       lost += std::max(own, 0.0);
     }
     coarse.diagonal[c] = static_cast<float>(linked + kCoarseConductance * lost);
-    coarse.first[c + 1] = static_cast<std::int32_t>(coarse.neighbour.size());
+    coarse.first[c + 1] = static_cast<std::int32_t>(links.neighbour.size() - start);
+  };
+  parallel_for(size, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t c = begin; c < end; ++c) link(static_cast<std::int32_t>(c), blocks[begin / kGrain]);
+  });
+  for (std::int64_t c = 0; c < size; ++c) coarse.first[c + 1] += coarse.first[c];
+  for (Links& links : blocks) {
+    coarse.neighbour.insert(coarse.neighbour.end(), links.neighbour.begin(), links.neighbour.end());
+    coarse.conductance.insert(coarse.conductance.end(), links.conductance.begin(), links.conductance.end());
+    links = {};
   }
   return coarse;
 }
@@ -124,10 +146,12 @@ Multigrid::Multigrid(CellGraph finest) {
   while (levels_.back().graph.size() > kCoarsestSize && std::ssize(levels_) < kMostLevels) {
     Level next;
     next.graph = coarsen(levels_.back().graph, levels_.back().parent);
-    if (next.graph.size() == levels_.back().graph.size()) {
+    if (next.graph.size() == 0 || next.graph.size() == levels_.back().graph.size()) {
       levels_.back().parent.clear();
       break;
     }
+    Level& level = levels_.back();
+    list_children(level.parent, level.graph.red_count, next.graph.size(), level.first_red, level.red);
     levels_.push_back(std::move(next));
   }
   const CellGraph& graph = levels_.back().graph;
@@ -187,7 +211,7 @@ class Multigrid::Solver {
     Sums rz_before{};
     while (check() && report.iterations < most_iterations && !progress.cancelled()) {
       std::vector<float>& z = at_[0].x;
-      cycle(0, r);
+      cycle(0, r, false);
       const Sums rz = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
         for (int l = 0; l < Lanes; ++l) sums[l] += double(r[i * Lanes + l]) * z[i * Lanes + l];
       });
@@ -219,6 +243,31 @@ class Multigrid::Solver {
     }
     return report;
   }
+
+  // x = M^-1 b on a level, where M is symmetric: one visit of the coarser levels between two mirrored half sweeps, or two.
+  void cycle(size_t level, const std::vector<float>& b, bool twice = true) {
+    const Level& here = grid_.levels_[level];
+    const CellGraph& graph = here.graph;
+    std::vector<float>& x = at_[level].x;
+    if (here.parent.empty()) return solve_coarsest(graph, b, x);
+
+    // From x = 0 the first half sweep needs no neighbours.
+    for_cells(graph.red_count, [&](std::int64_t i) {
+      for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] = b[i * Lanes + l] / graph.diagonal[i];
+    });
+    relax(graph, graph.red_count, graph.size(), b, x);
+    visit_coarser(level, b);
+    if (twice) {
+      relax(graph, graph.red_count, graph.size(), b, x);
+      relax(graph, 0, graph.red_count, b, x);
+      relax(graph, graph.red_count, graph.size(), b, x);
+      visit_coarser(level, b);
+    }
+    relax(graph, graph.red_count, graph.size(), b, x);
+    relax(graph, 0, graph.red_count, b, x);
+  }
+
+  const std::vector<float>& solution() const { return at_[0].x; }
 
  private:
   struct Vectors {
@@ -268,44 +317,25 @@ class Multigrid::Solver {
     });
   }
 
-  // x = M^-1 b on a level, where M is symmetric: one visit of the coarser levels between two mirrored half sweeps.
-  void cycle(size_t level, const std::vector<float>& b) {
-    const Level& here = grid_.levels_[level];
-    const CellGraph& graph = here.graph;
-    std::vector<float>& x = at_[level].x;
-    if (here.parent.empty()) return solve_coarsest(graph, b, x);
-
-    // From x = 0 the first half sweep needs no neighbours.
-    for_cells(graph.red_count, [&](std::int64_t i) {
-      for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] = b[i * Lanes + l] / graph.diagonal[i];
-    });
-    relax(graph, graph.red_count, graph.size(), b, x);
-    visit_coarser(level, b);
-    if (level > 0) {
-      relax(graph, graph.red_count, graph.size(), b, x);
-      relax(graph, 0, graph.red_count, b, x);
-      relax(graph, graph.red_count, graph.size(), b, x);
-      visit_coarser(level, b);
-    }
-    relax(graph, graph.red_count, graph.size(), b, x);
-    relax(graph, 0, graph.red_count, b, x);
-  }
-
   // After a half sweep over the black cells only the red ones have a residual.
   void visit_coarser(size_t level, const std::vector<float>& b) {
     const Level& here = grid_.levels_[level];
     std::vector<float>& x = at_[level].x;
     std::vector<float>& coarse_b = at_[level + 1].b;
-    std::fill(coarse_b.begin(), coarse_b.end(), 0.0f);
-    for (std::int64_t i = 0; i < here.graph.red_count; ++i) {
-      float acc[Lanes];
-      gather(here.graph, x.data(), i, acc);
-      float* to = &coarse_b[std::int64_t{here.parent[i]} * Lanes];
-      for (int l = 0; l < Lanes; ++l) to[l] += b[i * Lanes + l] + acc[l] - here.graph.diagonal[i] * x[i * Lanes + l];
-    }
+    for_cells(std::ssize(here.first_red) - 1, [&](std::int64_t c) {
+      float sum[Lanes] = {};
+      for (std::int32_t k = here.first_red[c]; k < here.first_red[c + 1]; ++k) {
+        const std::int64_t i = here.red[k];
+        float acc[Lanes];
+        gather(here.graph, x.data(), i, acc);
+        for (int l = 0; l < Lanes; ++l) sum[l] += b[i * Lanes + l] + acc[l] - here.graph.diagonal[i] * x[i * Lanes + l];
+      }
+      for (int l = 0; l < Lanes; ++l) coarse_b[c * Lanes + l] = sum[l];
+    });
     cycle(level + 1, coarse_b);
     const std::vector<float>& correction = at_[level + 1].x;
     for_cells(here.graph.size(), [&](std::int64_t i) {
+      if (here.parent[i] < 0) return;
       for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] += correction[std::int64_t{here.parent[i]} * Lanes + l];
     });
   }
@@ -336,18 +366,45 @@ class Multigrid::Solver {
   std::vector<Vectors> at_;
 };
 
+template <int Lanes>
+class Multigrid::LanesCycle : public Multigrid::Cycle {
+ public:
+  explicit LanesCycle(const Multigrid& grid) : solver_(grid) { b.resize(grid.finest().size() * Lanes); }
+  const std::vector<float>& run() override {
+    solver_.cycle(0, b);
+    return solver_.solution();
+  }
+
+ private:
+  Solver<Lanes> solver_;
+};
+
+namespace {
+// body(std::integral_constant<int, lanes>)
+template <class Body>
+auto with_lanes(int lanes, const Body& body) {
+  switch (lanes) {
+    case 1: return body(std::integral_constant<int, 1>());
+    case 2: return body(std::integral_constant<int, 2>());
+    case 3: return body(std::integral_constant<int, 3>());
+    case 4: return body(std::integral_constant<int, 4>());
+    case 5: return body(std::integral_constant<int, 5>());
+    case 6: return body(std::integral_constant<int, 6>());
+    case 7: return body(std::integral_constant<int, 7>());
+    default: return body(std::integral_constant<int, 8>());
+  }
+}
+}  // namespace
+
 SolveReport Multigrid::solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual,
                              int most_iterations, const Progress& progress) const {
-  switch (lanes) {
-    case 1: return Solver<1>(*this).solve(std::move(b), x, residual, most_iterations, progress);
-    case 2: return Solver<2>(*this).solve(std::move(b), x, residual, most_iterations, progress);
-    case 3: return Solver<3>(*this).solve(std::move(b), x, residual, most_iterations, progress);
-    case 4: return Solver<4>(*this).solve(std::move(b), x, residual, most_iterations, progress);
-    case 5: return Solver<5>(*this).solve(std::move(b), x, residual, most_iterations, progress);
-    case 6: return Solver<6>(*this).solve(std::move(b), x, residual, most_iterations, progress);
-    case 7: return Solver<7>(*this).solve(std::move(b), x, residual, most_iterations, progress);
-    default: return Solver<8>(*this).solve(std::move(b), x, residual, most_iterations, progress);
-  }
+  return with_lanes(lanes, [&](auto count) {
+    return Solver<count>(*this).solve(std::move(b), x, residual, most_iterations, progress);
+  });
+}
+
+std::unique_ptr<Multigrid::Cycle> Multigrid::cycle(int lanes) const {
+  return with_lanes(lanes, [&](auto count) -> std::unique_ptr<Cycle> { return std::make_unique<LanesCycle<count>>(*this); });
 }
 
 }  // namespace limber

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -36,6 +37,12 @@ struct CellGraph {
   std::int64_t size() const { return std::ssize(position); }
 };
 
+// Axes along which cells are so close that heat evens out fast, a 1 each; halving the cells there first keeps the others in
+// step.
+glm::i16vec3 coarsened_axes(const glm::dvec3& spacing);
+// Conductances of a coarser level over the sums of the finer one's: the way between centres doubles.
+constexpr float kCoarseConductance = 0.5f;
+
 struct SolveReport {
   int iterations = 0;
   double residual = 0;  // largest over right sides, |b - A x| / |b|
@@ -50,6 +57,16 @@ class Multigrid {
 
   const CellGraph& finest() const { return levels_.front().graph; }
 
+  // Solves A x = b roughly, again and again in the same room: x = M b, where M is symmetric.
+  struct Cycle {
+    virtual ~Cycle() = default;
+    // Returns x, which stands until the next run.
+    virtual const std::vector<float>& run() = 0;
+    std::vector<float> b;  // #cells x lanes
+  };
+  // The multigrid is kept as a reference.
+  std::unique_ptr<Cycle> cycle(int lanes) const;
+
   //   b, x       #cells x lanes; x holds the first guess
   //   lanes      right sides, 1 to kMostLanes
   //   residual   where a right side stops, |b - A x| / |b|
@@ -59,10 +76,14 @@ class Multigrid {
  private:
   struct Level {
     CellGraph graph;
-    std::vector<std::int32_t> parent;  // #cells, cell of the next level; empty on the coarsest
+    std::vector<std::int32_t> parent;     // #cells, cell of the next level, -1 for cells without neighbours; empty on the coarsest
+    std::vector<std::int32_t> first_red;  // #cells of the next level + 1, places in `red`
+    std::vector<std::int32_t> red;        // the red cells of each
   };
   template <int Lanes>
   class Solver;
+  template <int Lanes>
+  class LanesCycle;
 
   std::vector<Level> levels_;
   std::vector<double> coarsest_inverse_;  // dense, row by row

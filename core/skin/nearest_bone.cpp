@@ -186,15 +186,15 @@ NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tis
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
     if (held_by[place] == kSoft) return;
     nearest.distance[place] = 0;
-    front.start(place, v);
+    front.start(place, v, held_by[place]);
   });
   front.spread(
-      [&](std::int64_t from, std::int64_t to, float way) {
-        return held_by[to] == kSoft && counts[nearest.bone[from]](way) < nearest.distance[to];
+      [&](std::uint16_t bone, std::int64_t to, float way) {
+        return held_by[to] == kSoft && counts[bone](way) < nearest.distance[to];
       },
-      [&](std::int64_t from, std::int64_t to, float way) {
-        nearest.distance[to] = counts[nearest.bone[from]](way);
-        nearest.bone[to] = nearest.bone[from];
+      [&](std::uint16_t bone, std::int64_t to, float way) {
+        nearest.distance[to] = counts[bone](way);
+        nearest.bone[to] = bone;
       });
   return nearest;
 }

@@ -12,12 +12,11 @@ SkinWeights bind_rigid(const LabelVolume& volume, const TissueVoxels& tissue, co
   const std::vector<std::uint16_t> held_by = bone_holding(volume, tissue, parts, armature);
   const NearestBone nearest = nearest_bone(volume, tissue, armature, held_by);
   progress.update("weights", 0.8);
-  BestFour best(tissue.size());
-  for (std::int64_t place = 0; place < tissue.size(); ++place)
-    if (nearest.bone[place] != kSoft) best.hold(place, nearest.bone[place]);
+  BestFour best(tissue);
+  best.hold_all(nearest.bone, kSoft);
   WeightsReport ignored;
   cover_islands(volume, tissue, armature, best, report ? *report : ignored);
-  return best.weights(names_of_bones(armature), tissue);
+  return best.weights(names_of_bones(armature));
 }
 
 }  // namespace limber

@@ -100,95 +100,78 @@ float SoftBody::attraction(std::int64_t place, Label label) const {
   return attraction_[label] * volume_of_voxel_ / (distance * distance);  // zero where no bone is reached
 }
 
-// Cells by colour, then in the order of the list. Fills `place` and `position`; the cell of each place of the list, -1 elsewhere.
-std::vector<std::int32_t> SoftBody::number_cells(const std::vector<std::int32_t>& bricks, Region& region) const {
-  const auto colour_of = [](const glm::ivec3& v) { return (v.x + v.y + v.z) & 1; };
-  std::vector<std::array<std::int32_t, 2>> first(bricks.size());  // by colour: at first how many there are
-  parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t b = begin; b < end; ++b)
-      tissue_.for_each(bricks[b], bricks[b] + 1, [&](std::int64_t place, const glm::ivec3& v) {
-        if (held_by_[place] == kSoft) ++first[b][colour_of(v)];
-      });
+// body(voxel, place, direction, other, conductance) for every face of the soft voxels of a brick behind which there is tissue: the
+// place of the voxel there and what the face conducts; then, with direction 6 and its own place, for what attracts it.
+template <class Body>
+void SoftBody::for_faces(std::int64_t brick, Window& window, const Body& body) const {
+  window.look(*this, brick);
+  const glm::ivec3 corner = tissue_.bricks()[brick].corner;
+  tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+    if (held_by_[place] != kSoft) return;
+    const int here = Window::at(v - corner);
+    for (int direction = 0; direction < 6; ++direction) {
+      const int axis = direction >> 1, there = here + (direction & 1 ? Window::kStep[axis] : -Window::kStep[axis]);
+      const std::int32_t other = window.place[there];
+      if (other < 0 || window.is_cut(v, direction)) continue;
+      const bool is_held = held_by_[other] != kSoft;
+      body(v, place, direction, std::int64_t{other},
+           is_held ? 2 * face_[axis] * conductivity_[window.label[here]] : face(axis, window.label[here], window.label[there]));
+    }
+    if (const float g = attraction(place, window.label[here]); g > 0) body(v, place, 6, place, g);
   });
-  std::int32_t size = 0;
-  for (int colour = 0; colour < 2; ++colour) {
-    for (auto& of_brick : first) size += std::exchange(of_brick[colour], size);
-    if (colour == 0) region.graph.red_count = size;
-  }
-  region.place.resize(size);
-  region.graph.position.resize(size);
-  std::vector<std::int32_t> cell_of(tissue_.size(), -1);
-  parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t b = begin; b < end; ++b)
-      tissue_.for_each(bricks[b], bricks[b] + 1, [&](std::int64_t place, const glm::ivec3& v) {
-        if (held_by_[place] != kSoft) return;
-        const std::int32_t cell = first[b][colour_of(v)]++;
-        cell_of[place] = cell;
-        region.place[cell] = place;
-        region.graph.position[cell] = glm::i16vec3(v);
-      });
-  });
-  return cell_of;
 }
 
-SoftBody::Region SoftBody::region(const std::vector<std::int32_t>& bricks) const {
-  Region region;
-  CellGraph& graph = region.graph;
-  graph.spacing = volume_.grid.spacing;
-  const std::vector<std::int32_t> cell_of = number_cells(bricks, region);
-
-  // Faces are found brick by brick, but a cell's list lies at its number: noted with room for six each, then closed up.
-  const std::int64_t size = graph.size();
-  graph.diagonal.assign(size, 0);
-  graph.first.assign(size + 1, 0);
-  graph.neighbour.resize(6 * size);
-  graph.conductance.resize(6 * size);
-  std::vector<std::vector<HeldFace>> held((std::ssize(bricks) + kGrain - 1) / kGrain);
-  const auto look_at = [&](std::int32_t brick, Window& window, std::vector<HeldFace>& faces) {
-    window.look(*this, brick);
-    const glm::ivec3 corner = tissue_.bricks()[brick].corner;
-    tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
-      const std::int32_t cell = cell_of[place];
-      if (cell < 0) return;
-      const int here = Window::at(v - corner);
-      std::int64_t next = 6 * std::int64_t{cell};
-      for (int direction = 0; direction < 6; ++direction) {
-        const int axis = direction >> 1, there = here + (direction & 1 ? Window::kStep[axis] : -Window::kStep[axis]);
-        const std::int32_t other = window.place[there];
-        if (other < 0 || window.is_cut(v, direction)) continue;
-        if (const std::uint16_t holder = held_by_[other]; holder != kSoft) {
-          const float g = 2 * face_[axis] * conductivity_[window.label[here]];
-          graph.diagonal[cell] += g;
-          faces.push_back({cell, holder, g});
-          continue;
-        }
-        const float g = face(axis, window.label[here], window.label[there]);
-        graph.diagonal[cell] += g;
-        if (cell_of[other] < 0) continue;
-        graph.neighbour[next] = cell_of[other];
-        graph.conductance[next++] = g;
-      }
-      graph.first[cell + 1] = static_cast<std::int32_t>(next - 6 * std::int64_t{cell});
-      if (const float g = attraction(place, window.label[here]); g > 0) {
-        graph.diagonal[cell] += g;
-        faces.push_back({cell, nearest_.bone[place], g});
-      }
-    });
-  };
+void SoftBody::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system) const {
+  std::vector<glm::ivec3> corners;
+  std::vector<std::array<std::int32_t, 6>> beside;
+  for (const std::int32_t brick : bricks) {
+    corners.push_back(tissue_.bricks()[brick].corner);
+    for (int direction = 0; direction < 6; ++direction) {
+      glm::ivec3 there = corners.back();
+      there[direction >> 1] += direction & 1 ? TissueVoxels::kBrick : -TissueVoxels::kBrick;
+      const std::int32_t other = volume_.grid.contains(there) ? tissue_.brick_at(there) : -1;
+      const auto found = std::lower_bound(bricks.begin(), bricks.end(), other);
+      if (direction == 0) beside.emplace_back();
+      beside.back()[direction] = found != bricks.end() && *found == other ? static_cast<std::int32_t>(found - bricks.begin()) : -1;
+    }
+  }
+  system.reset(std::move(corners), std::move(beside), volume_.grid.spacing);
   parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Window window;
-    for (std::int64_t b = begin; b < end; ++b) look_at(bricks[b], window, held[begin / kGrain]);
+    for (std::int64_t b = begin; b < end; ++b) {
+      tissue_.for_each(bricks[b], bricks[b] + 1, [&](std::int64_t place, const glm::ivec3& v) {
+        if (held_by_[place] == kSoft) system.add_cell(b, HeatSystem::slot_of(v - system.corners[b]), 0);
+      });
+      for_faces(bricks[b], window, [&](const glm::ivec3& v, std::int64_t, int direction, std::int64_t other, float g) {
+        const glm::ivec3 in = v - system.corners[b];
+        const int slot = HeatSystem::slot_of(in);
+        system.diagonal[b * HeatSystem::kSlots + slot] += g;
+        if (direction == 6 || slot >= HeatSystem::kColour || held_by_[other] != kSoft) return;
+        const int beyond = in[direction >> 1] + (direction & 1 ? 1 : -1);
+        const bool is_left_out = (beyond < 0 || beyond > 7) && system.beside[b][direction] == system.brick_count();
+        if (!is_left_out) system.conductance_of_red(b, direction, slot) = g;
+      });
+    }
   });
-  for (const auto& faces : held) region.held.insert(region.held.end(), faces.begin(), faces.end());
-  for (std::int64_t i = 0; i < size; ++i) {
-    const std::int32_t count = graph.first[i + 1], to = graph.first[i];
-    std::copy_n(graph.neighbour.begin() + 6 * i, count, graph.neighbour.begin() + to);
-    std::copy_n(graph.conductance.begin() + 6 * i, count, graph.conductance.begin() + to);
-    graph.first[i + 1] = to + count;
-  }
-  graph.neighbour.resize(graph.first[size]);
-  graph.conductance.resize(graph.first[size]);
-  return region;
+}
+
+void SoftBody::add_sources(const std::vector<std::int32_t>& bricks, const std::vector<int>& lane_of_bone, HeatSolver& solver) const {
+  parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Window window;
+    for (std::int64_t b = begin; b < end; ++b) {
+      const glm::ivec3 corner = tissue_.bricks()[bricks[b]].corner;
+      for_faces(bricks[b], window, [&](const glm::ivec3& v, std::int64_t place, int direction, std::int64_t other, float g) {
+        const std::uint16_t bone = direction == 6 ? nearest_.bone[place] : held_by_[other];
+        const int lane = bone == kSoft ? -1 : lane_of_bone[bone];
+        if (lane < 0) return;
+        const int slot = HeatSystem::slot_of(v - corner);
+        if (slot < HeatSystem::kColour)
+          solver.red_sources(b, lane)[slot] += g;
+        else
+          solver.black_sources(b, lane)[slot - HeatSystem::kColour] += g;
+      });
+    }
+  });
 }
 
 // Connected soft voxels of one octant of a brick are one cell. Cells count from those that were found before.
@@ -219,12 +202,28 @@ void SoftBody::find_cells(std::int64_t brick, Window& window, std::vector<std::i
   });
 }
 
+namespace {
+// Sorts the entries from `start` on, and makes one of those that are alike.
+template <class Entry, class IsLess>
+void add_up(std::vector<Entry>& entries, size_t start, const IsLess& is_less) {
+  std::stable_sort(entries.begin() + start, entries.end(), is_less);
+  size_t kept = start;
+  for (size_t i = start; i < entries.size(); ++i) {
+    if (kept > start && !is_less(entries[kept - 1], entries[i]))
+      entries[kept - 1].conductance += entries[i].conductance;
+    else
+      entries[kept++] = entries[i];
+  }
+  entries.resize(kept);
+}
+}  // namespace
+
 // One entry for each pair of cells; the way between their centres is four times as long as between voxels.
 void SoftBody::link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of, std::vector<float>& diagonal,
                           std::vector<Link>& links, std::vector<HeldFace>& held) const {
   const glm::ivec3 corner = tissue_.bricks()[brick].corner;
   window.look(*this, brick);
-  const size_t start = links.size();
+  const size_t start = links.size(), held_start = held.size();
   tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
     const std::int32_t cell = cell_of[place];
     if (cell < 0) return;
@@ -248,15 +247,8 @@ void SoftBody::link_cells(std::int64_t brick, Window& window, const std::vector<
       held.push_back({cell, nearest_.bone[place], g});
     }
   });
-  std::stable_sort(links.begin() + start, links.end(), [](const Link& a, const Link& b) { return a.from != b.from ? a.from < b.from : a.to < b.to; });
-  size_t kept = start;
-  for (size_t i = start; i < links.size(); ++i) {
-    if (kept > start && links[kept - 1].from == links[i].from && links[kept - 1].to == links[i].to)
-      links[kept - 1].conductance += links[i].conductance;
-    else
-      links[kept++] = links[i];
-  }
-  links.resize(kept);
+  add_up(links, start, [](const Link& a, const Link& b) { return a.from != b.from ? a.from < b.from : a.to < b.to; });
+  add_up(held, held_start, [](const HeldFace& a, const HeldFace& b) { return a.cell != b.cell ? a.cell < b.cell : a.bone < b.bone; });
 }
 
 SoftBody::Coarse SoftBody::coarse() const {

@@ -20,7 +20,7 @@
 
 #include "core/rig/armature.h"
 #include "core/bones/bone_parts.h"
-#include "core/skin/multigrid.h"
+#include "core/skin/heat_system.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/tissue_voxels.h"
 
@@ -62,13 +62,11 @@ class SoftBody {
   SoftBody(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
            const std::vector<std::uint16_t>& held_by, const NearestBone& nearest, const std::map<Label, double>& stiffness = {});
 
-  // The soft voxels of some bricks as cells; what lies in other bricks has temperature zero.
-  struct Region {
-    CellGraph graph;
-    std::vector<HeldFace> held;
-    std::vector<std::int64_t> place;  // #cells, in the tissue list
-  };
-  Region region(const std::vector<std::int32_t>& bricks) const;
+  // Makes the soft voxels of some bricks (rising) the cells of a system; what lies in other bricks has temperature zero.
+  void fill(const std::vector<std::int32_t>& bricks, HeatSystem& system) const;
+  // What bones give to the cells of such a system, added to a solver's sources.
+  //   lane_of_bone  -1 for bones that are not solved for
+  void add_sources(const std::vector<std::int32_t>& bricks, const std::vector<int>& lane_of_bone, HeatSolver& solver) const;
 
   // The whole body in cells of up to 4^3 voxels: connected sets of soft voxels in one octant of a brick.
   struct Coarse {
@@ -89,7 +87,8 @@ class SoftBody {
     std::int32_t from, to;
     float conductance;
   };
-  std::vector<std::int32_t> number_cells(const std::vector<std::int32_t>& bricks, Region& region) const;
+  template <class Body>
+  void for_faces(std::int64_t brick, Window& window, const Body& body) const;
   void find_cells(std::int64_t brick, Window& window, std::vector<std::int32_t>& cell_of, std::vector<CoarseCell>& found) const;
   void link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of, std::vector<float>& diagonal,
                   std::vector<Link>& links, std::vector<HeldFace>& held) const;

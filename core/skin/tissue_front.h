@@ -4,12 +4,18 @@
 // the rest is straight. Where the voxel before it on that straight line is air, or a seam is near, the way bends, and the
 // voxel the front came from is the new corner. So lengths are straight distances wherever one can see the start, and most
 // voxels are visited once.
+//
+// The tissue is cut into fixed domains of bricks. Threads advance domains by one step of length at a time; what crosses
+// from one domain into another is sent, and taken in a fixed order: the same ways for any number of threads.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "core/volume/tissue_voxels.h"
 
 namespace limber {
@@ -19,61 +25,54 @@ class TissueFront {
   // References are kept.
   TissueFront(const LabelVolume& volume, const TissueVoxels& tissue)
       : grid_(volume.grid), tissue_(tissue), ways_(tissue.size()),
-        width_(static_cast<float>(kWidth * std::min({grid_.spacing.x, grid_.spacing.y, grid_.spacing.z}))), buckets_(1) {}
-
-  void start(std::int64_t place, const glm::ivec3& voxel) {
-    ways_[place] = {glm::i16vec3(voxel), 0, 0};
-    buckets_[0].push_back({static_cast<std::int32_t>(place), 0, glm::i16vec3(voxel)});
+        width_(static_cast<float>(kWidth * std::min({grid_.spacing.x, grid_.spacing.y, grid_.spacing.z}))),
+        domains_(std::clamp<std::size_t>(tissue.bricks().size() / kLeastBricks, 1, kMostDomains)) {
+    for (Domain& domain : domains_) domain.sent.resize(domains_.size());
   }
 
-  // Lets the front go on until no way is shorter any more.
-  //   is_shorter  (from, to, way) -> whether a way of that many mm to place `to`, coming from place `from`, is better
-  //               than what `to` has. Where it is not, no longer way may be.
-  //   take        (from, to, way): notes such a way; the front goes on from there
+  //   source  what the ways that start here belong to
+  void start(std::int64_t place, const glm::ivec3& voxel, std::uint16_t source) {
+    ways_[place] = {glm::i16vec3(voxel), source, 0, 0};
+    add(domains_[domain_of(tissue_.brick_at(voxel))], {static_cast<std::int32_t>(place), 0, glm::i16vec3(voxel)}, 0);
+  }
+
+  // Lets the front go on until no way is shorter any more. Both are called from several threads, for different places.
+  //   is_shorter  (source, to, way) -> whether a way of that many mm to place `to` is better than what `to` has. Where it is
+  //               not, no longer way may be.
+  //   take        (source, to, way): notes such a way; the front goes on from there
   template <class IsShorter, class Take>
   void spread(const IsShorter& is_shorter, const Take& take) {
-    const std::vector<bool> is_near_seam = bricks_near_seams();
-    const Seams* seams = tissue_.seams();
-    for (std::size_t bucket = 0; bucket < buckets_.size(); ++bucket) {
-      for (std::size_t i = 0; i < buckets_[bucket].size(); ++i) {
-        const auto [place, way_here, small_voxel] = buckets_[bucket][i];
-        const Way here = ways_[place];
-        if (way_here > here.length) continue;  // a shorter one came later
-        const glm::ivec3 voxel(small_voxel), corner(here.corner);
-        const float before = here.to_corner;
-        const int brick_here = tissue_.brick_at(voxel);
-        for (int direction = 0; direction < 6; ++direction) {
-          const glm::ivec3 w = voxel + kSteps[direction];
-          const std::int64_t there = place_of(w, voxel, brick_here);
-          if (there < 0 || corner == w) continue;
-          // A bent way is longer.
-          float way = before + straight(corner, w);
-          if (!is_shorter(std::int64_t{place}, there, way)) continue;
-          const bool near_seam = seams && is_near_seam[tissue_.brick_at(w)];
-          if (near_seam && seams->is_cut_towards(voxel, direction)) continue;
-          const bool bends = !tissue_.holds(w - step_towards(w - corner)) || (near_seam && seams->touches(w));
-          const float to_bend = before + straight(corner, voxel);
-          if (bends) {
-            way = to_bend + straight(voxel, w);
-            if (!is_shorter(std::int64_t{place}, there, way)) continue;
-          }
-          take(std::int64_t{place}, there, way);
-          ways_[there] = bends ? Way{small_voxel, to_bend, way} : Way{here.corner, before, way};
-          add({static_cast<std::int32_t>(there), way, glm::i16vec3(w)}, bucket);
-        }
+    const std::vector<bool> near_seam = bricks_near_seams();
+    for (std::size_t bucket = 0; bucket < bucket_count(); ++bucket) {
+      for (std::vector<Domain*> waiting = domains_waiting(bucket); !waiting.empty(); waiting = domains_waiting(bucket)) {
+        parallel_for(std::ssize(waiting), 1, [&](std::int64_t begin, std::int64_t end) {
+          for (std::int64_t k = begin; k < end; ++k) advance(*waiting[k], bucket, near_seam, is_shorter, take);
+        });
+        parallel_for(std::ssize(domains_), 1, [&](std::int64_t begin, std::int64_t end) {
+          for (std::int64_t to = begin; to < end; ++to)
+            for (Domain* from : waiting) {
+              for (const Step& step : from->sent[to]) accept(step, domains_[to], bucket, is_shorter, take);
+              from->sent[to].clear();
+            }
+        });
       }
-      buckets_[bucket] = {};
+      for (Domain& domain : domains_) {
+        domain.done = 0;
+        if (bucket < domain.buckets.size()) domain.buckets[bucket] = {};
+      }
     }
-    buckets_.assign(1, {});
+    for (Domain& domain : domains_) domain.buckets.clear();
   }
 
  private:
   static constexpr glm::ivec3 kSteps[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
   static constexpr double kWidth = 0.5;  // of the shortest voxel edge: ways that differ by less may come in any order
+  static constexpr std::size_t kLeastBricks = 256, kMostDomains = 64;
 
   // The shortest known to a voxel, mm: to the corner that it last came round, and all of it.
   struct Way {
     glm::i16vec3 corner{0};
+    std::uint16_t source = 0;
     float to_corner = 0, length = 0;
   };
   struct Reached {
@@ -81,23 +80,90 @@ class TissueFront {
     float way;  // mm
     glm::i16vec3 voxel;
   };
+  struct Step {
+    std::int32_t to;
+    glm::i16vec3 voxel;
+    Way way;
+  };
+  struct Domain {
+    std::vector<std::vector<Reached>> buckets;  // by length of the way
+    std::size_t done = 0;                       // of the bucket that is worked on
+    std::vector<std::vector<Step>> sent;        // to each domain
+  };
 
-  void add(const Reached& reached, std::size_t present) {
-    const std::size_t bucket = std::max(present, static_cast<std::size_t>(reached.way / width_));
-    if (bucket >= buckets_.size()) buckets_.resize(bucket + 1);
-    buckets_[bucket].push_back(reached);
+  template <class IsShorter, class Take>
+  void advance(Domain& domain, std::size_t bucket, const std::vector<bool>& is_near_seam, const IsShorter& is_shorter, const Take& take) {
+    const Seams* seams = tissue_.seams();
+    for (; domain.done < domain.buckets[bucket].size(); ++domain.done) {
+      const auto [place, way_here, small_voxel] = domain.buckets[bucket][domain.done];
+      const Way here = ways_[place];
+      if (way_here > here.length) continue;  // a shorter one came later
+      const glm::ivec3 voxel(small_voxel), corner(here.corner);
+      const float before = here.to_corner;
+      const int brick_here = tissue_.brick_at(voxel);
+      for (int direction = 0; direction < 6; ++direction) {
+        const glm::ivec3 w = voxel + kSteps[direction];
+        const auto [brick, there] = brick_and_place(w, voxel, brick_here);
+        if (there < 0 || corner == w) continue;
+        Domain& beyond = brick == brick_here ? domain : domains_[domain_of(brick)];
+        const bool is_own = &beyond == &domain;
+        // A bent way is longer.
+        float way = before + straight(corner, w);
+        if (is_own && !is_shorter(here.source, there, way)) continue;
+        const bool near_seam = seams && is_near_seam[brick];
+        if (near_seam && seams->is_cut_towards(voxel, direction)) continue;
+        const bool bends = !tissue_.holds(w - step_towards(w - corner)) || (near_seam && seams->touches(w));
+        const float to_bend = before + straight(corner, voxel);
+        if (bends) way = to_bend + straight(voxel, w);
+        const Step step{static_cast<std::int32_t>(there), glm::i16vec3(w),
+                        bends ? Way{small_voxel, here.source, to_bend, way} : Way{here.corner, here.source, before, way}};
+        if (is_own)
+          accept(step, domain, bucket, is_shorter, take);
+        else
+          domain.sent[&beyond - domains_.data()].push_back(step);
+      }
+    }
   }
 
-  // Of a voxel beside another one, which lies in a brick; -1 for air and outside of the grid.
-  std::int64_t place_of(const glm::ivec3& voxel, const glm::ivec3& beside, int brick) const {
+  template <class IsShorter, class Take>
+  void accept(const Step& step, Domain& domain, std::size_t bucket, const IsShorter& is_shorter, const Take& take) {
+    if (!is_shorter(step.way.source, std::int64_t{step.to}, step.way.length)) return;
+    take(step.way.source, std::int64_t{step.to}, step.way.length);
+    ways_[step.to] = step.way;
+    add(domain, {step.to, step.way.length, step.voxel}, bucket);
+  }
+
+  void add(Domain& domain, const Reached& reached, std::size_t present) {
+    const std::size_t bucket = std::max(present, static_cast<std::size_t>(reached.way / width_));
+    if (bucket >= domain.buckets.size()) domain.buckets.resize(bucket + 1);
+    domain.buckets[bucket].push_back(reached);
+  }
+
+  std::size_t bucket_count() const {
+    std::size_t most = 0;
+    for (const Domain& domain : domains_) most = std::max(most, domain.buckets.size());
+    return most;
+  }
+  // Those with something left to do in a bucket.
+  std::vector<Domain*> domains_waiting(std::size_t bucket) {
+    std::vector<Domain*> waiting;
+    for (Domain& domain : domains_)
+      if (bucket < domain.buckets.size() && domain.done < domain.buckets[bucket].size()) waiting.push_back(&domain);
+    return waiting;
+  }
+
+  std::size_t domain_of(std::int64_t brick) const { return brick * domains_.size() / tissue_.bricks().size(); }
+
+  // The brick and place of a voxel beside another one, which lies in a brick; -1 for air and outside of the grid.
+  std::pair<int, std::int64_t> brick_and_place(const glm::ivec3& voxel, const glm::ivec3& beside, int brick) const {
     const glm::ivec3 differs = voxel ^ beside;
     const bool is_in_brick = ((differs.x | differs.y | differs.z) & ~(TissueVoxels::kBrick - 1)) == 0;
     if (!is_in_brick) {
-      if (!grid_.contains(voxel)) return -1;
+      if (!grid_.contains(voxel)) return {-1, -1};
       brick = tissue_.brick_at(voxel);
-      if (brick < 0) return -1;
+      if (brick < 0) return {-1, -1};
     }
-    return TissueVoxels::index_in(tissue_.bricks()[brick], voxel & 7);
+    return {brick, TissueVoxels::index_in(tissue_.bricks()[brick], voxel & 7)};
   }
 
   std::vector<bool> bricks_near_seams() const {
@@ -126,7 +192,7 @@ class TissueFront {
   const TissueVoxels& tissue_;
   std::vector<Way> ways_;  // by place
   float width_;
-  std::vector<std::vector<Reached>> buckets_;  // by length of the way
+  std::vector<Domain> domains_;
 };
 
 }  // namespace limber

@@ -177,13 +177,13 @@ void cover_the_rest(BestFour& best, const LabelVolume& volume, const TissueVoxel
   const AffineTransform from_voxel = world_from_voxel(volume.grid);
   std::int64_t left_out = 0;
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
-    if (best.covered(place)) return;
+    if (best.covered(tissue.brick_at(v), place)) return;
     ++left_out;
     int nearest = 0;
     double least = std::numeric_limits<double>::max();
     for (std::size_t b = 0; b < armature.bones.size(); ++b)
       if (const double d = distance_to_bone(armature.bones[b], from_voxel * glm::dvec3(v)); d < least) least = d, nearest = static_cast<int>(b);
-    best.hold(place, nearest);
+    best.hold(tissue.brick_at(v), place, nearest);
   });
   if (left_out > 0)
     warnings.push_back(path.string() + " gives no bone to " + std::to_string(left_out) + " tissue voxels: each follows the nearest bone");
@@ -200,22 +200,18 @@ WeightsFile read_bender_series(const Path& folder, const LabelVolume& volume, co
     throw Error("the folder holds " + std::to_string(files.size()) + " files weight_NN.mha, the rig has " + std::to_string(armature.bones.size()) + " bones",
                 folder.string(), "give one file for each bone, in the rig's order");
   WeightsFile result;
-  BestFour best(tissue.size());
-  std::vector<std::int64_t> place(tissue.size());
-  std::vector<float> values(tissue.size());
+  BestFour best(tissue);
   for (std::size_t b = 0; b < files.size(); ++b) {
     const GreyVolume grey = read_grey_volume(files[b]);
     require_same_grid(grey.grid, volume, files[b]);
     result.warnings.insert(result.warnings.end(), grey.warnings.begin(), grey.warnings.end());
     tissue.for_each([&](std::int64_t i, const glm::ivec3& v) {
-      place[i] = i;
       const float value = grey.voxels[grey.grid.index(v)];
-      values[i] = value > 0 ? std::min(value, 1.0f) : 0.0f;  // also for NaN
+      if (value > 0) best.offer(tissue.brick_at(v), i, static_cast<int>(b), std::min(value, 1.0f));  // not for NaN
     });
-    best.offer(place, values, 1, 0, static_cast<int>(b));
   }
   cover_the_rest(best, volume, tissue, armature, folder, result.warnings);
-  result.weights = best.weights(names_of(armature), tissue);
+  result.weights = best.weights(names_of(armature));
   return result;
 }
 
@@ -233,12 +229,12 @@ WeightsFile read_bender_map(const Path& path, const LabelVolume& volume, const T
   }
   WeightsFile result;
   result.warnings = std::move(map.warnings);
-  BestFour best(tissue.size());
+  BestFour best(tissue);
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
-    if (const int b = bone[map.volume.at(v)]; b >= 0) best.hold(place, b);
+    if (const int b = bone[map.volume.at(v)]; b >= 0) best.hold(tissue.brick_at(v), place, b);
   });
   cover_the_rest(best, volume, tissue, armature, path, result.warnings);
-  result.weights = best.weights(names_of(armature), tissue);
+  result.weights = best.weights(names_of(armature));
   return result;
 }
 }  // namespace
