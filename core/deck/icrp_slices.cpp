@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -22,16 +23,22 @@ std::string organs_text(const LabelVolume& volume, const TissueTable& tissues, c
   return text;
 }
 
+// The elements of tissue always have a column; those of implants have one where an implant is.
 std::string media_text(const CompositionTable& media, const std::vector<int>& used) {
+  const bool has_implant = std::any_of(used.begin(), used.end(), [&](int row) {
+    const Composition& shares = media.shares[row];
+    return std::any_of(shares.begin() + kTissueElements, shares.end(), [](double share) { return share > 0; });
+  });
+  const std::size_t columns = has_implant ? kElements.size() : kTissueElements;
   std::string text = "medium";
-  for (const Element& element : kElements) text += std::string("\t") + element.symbol;
+  for (std::size_t i = 0; i < columns; ++i) text += std::string("\t") + kElements[i].symbol;
   text += "\tname (shares in % by mass)\n";
   std::vector<bool> written(media.names.size());
   for (const int row : used) {
     if (written[row]) continue;
     written[row] = true;
     text += std::to_string(row + 1);
-    for (const double share : media.shares[row]) text += "\t" + text_of(std::round(share * 1e5) / 1e3);
+    for (std::size_t i = 0; i < columns; ++i) text += "\t" + text_of(std::round(media.shares[row][i] * 1e5) / 1e3);
     text += "\t" + media.names[row].name + "\n";
   }
   return text;

@@ -20,10 +20,16 @@ std::vector<std::string> parts_of(std::string_view text) {
   return parts;
 }
 
-// How many words of `wanted` the name holds: all of them, or 0.
-int words_met(const TissueWords& name, const TissueWords& wanted) {
+// How many words of the row's i-th synonym the name holds: all of them, or 0.
+int words_met(const TissueWords& name, const TissueNames& row, std::size_t i) {
+  const TissueWords& wanted = row.words[i];
+  if (row.whole[i] && name.size() != wanted.size()) return 0;
   const bool all = std::all_of(wanted.begin(), wanted.end(), [&](const std::string& word) { return has_word(name, word); });
   return all ? static_cast<int>(wanted.size()) : 0;
+}
+
+bool is_bone_kind(TissueKind kind) {
+  return kind == TissueKind::Bone || kind == TissueKind::CorticalBone || kind == TissueKind::CancellousBone;
 }
 }  // namespace
 
@@ -61,11 +67,12 @@ TissueMatch match_tissue(const Tissue& tissue, std::size_t rows,
   int best_score = 0;
   for (std::size_t row = 0; row < rows; ++row) {
     const TissueNames& names = names_of(row);
+    if (names.is_bone && tissue.kind == TissueKind::Muscle) continue;
     const bool same_kind = std::find(names.kinds.begin(), names.kinds.end(), tissue.kind) != names.kinds.end();
     int words = 0;
     std::size_t found = 0;
     for (std::size_t i = 0; i < names.words.size(); ++i)
-      if (const int met = words_met(name, names.words[i]); met > words) words = met, found = i;
+      if (const int met = words_met(name, names, i); met > words) words = met, found = i;
     const int score = words > 0 ? 2 * words + 1 + same_kind : same_kind;
     if (score > best_score) {
       best_score = score;
@@ -100,7 +107,7 @@ std::string csv_field(const std::string& text) {
 }
 
 TissueNames tissue_names_of(const std::vector<std::string>& fields, const std::string& where) {
-  TissueNames names{fields.at(0), parts_of(fields.at(1)), {}, {}};
+  TissueNames names{.name = fields.at(0), .synonyms = parts_of(fields.at(1)), .kinds = {}, .words = {}};
   if (names.name.empty()) throw Error("the row has no name", where, "name the tissue in its first field");
   for (const std::string& text : parts_of(fields.at(2))) {
     const auto kind = tissue_kind_from_text(text);
@@ -108,7 +115,13 @@ TissueNames tissue_names_of(const std::vector<std::string>& fields, const std::s
     names.kinds.push_back(*kind);
   }
   names.words.push_back(words_in_tissue_name(names.name));
-  for (const std::string& synonym : names.synonyms) names.words.push_back(words_in_tissue_name(synonym));
+  names.whole.push_back(false);
+  for (std::string& synonym : names.synonyms) {
+    names.whole.push_back(synonym.starts_with('='));
+    if (names.whole.back()) synonym.erase(0, 1);
+    names.words.push_back(words_in_tissue_name(synonym));
+  }
+  names.is_bone = is_bone_kind(tissue_kind_from_name(names.name));
   return names;
 }
 

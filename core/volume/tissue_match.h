@@ -24,6 +24,8 @@ struct TissueNames {
   std::vector<std::string> synonyms;  // each one word or several; a tissue is meant whose name holds all of them
   std::vector<TissueKind> kinds;      // taken for tissues of these kinds that no name fits
   std::vector<TissueWords> words;     // of the name, then of each synonym
+  std::vector<bool> whole = {};       // #words: the synonym, written "=head", must be all words of the tissue's name
+  bool is_bone = false;               // by its own name: a muscle, named after the bone it hangs on, is never this row
 };
 
 struct TissueMatch {

@@ -8,8 +8,10 @@
 #include "core/volume/composition.h"
 #include "core/volume/dielectric.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/tissue_names_in_use.h"
 
 using namespace limber;
+using namespace limber::test;
 
 namespace {
 
@@ -27,13 +29,6 @@ std::string row_of(const std::string& name) {
   return match.row < 0 ? "none" : tissue_rows().rows[match.row].names.name + (match.by_name ? "" : " (kind)");
 }
 
-using Expected = std::vector<std::pair<const char*, std::vector<const char*>>>;  // a row, then names that are it
-
-void check_rows(const Expected& expected) {
-  for (const auto& [row, names] : expected)
-    for (const char* name : names) CHECK_MESSAGE(row_of(name) == std::string(row), name);
-}
-
 // Every name has permittivity, a density with its source, and elements.
 void check_known(const std::vector<Tissue>& tissues) {
   TissueTable table;
@@ -49,10 +44,14 @@ void check_known(const std::vector<Tissue>& tissues) {
   CHECK(media_of(table, read_composition_table(), "test").size() == tissues.size());
 }
 
-void check_names_known(const Expected& expected) {
+// Each name is the row that it should be, and all that a simulation needs is known of it.
+void check_names(const std::vector<NamesOfRow>& expected) {
   std::vector<Tissue> tissues;
   for (const auto& [row, names] : expected)
-    for (const char* name : names) tissues.push_back(tissue_named(name));
+    for (const std::string& name : names) {
+      CHECK_MESSAGE(row_of(name) == row, name);
+      tissues.push_back(tissue_named(name));
+    }
   check_known(tissues);
 }
 
@@ -93,150 +92,74 @@ TEST_CASE("tissue rows: every class of TotalSegmentator is the tissue that it ho
   CHECK(row(116) == "sternum");
   CHECK(row(117) == "cartilage");
 
-  const Expected others = {
-      {"muscle", {"skeletal_muscle", "superior_pharyngeal_constrictor", "prevertebral_left", "sterno_thyroid_right",
-          "thigh_medial_compartment_left", "coracobrachial", "soft_palate"}},
-      {"muscle (kind)", {"masseter_right", "teres_major", "levator_palpebrae_superioris_left",
-          "quadriceps_femoris_left", "digastric_left"}},
-      {"tongue", {"tongue"}}, {"fat", {"subcutaneous_fat", "torso_fat"}}, {"fat infiltrated", {"intermuscular_fat"}},
-      {"blood", {"lung_vessels", "liver_vessels", "coronary_arteries", "heart_atrium_left", "heart_ventricle_right",
-          "pulmonary_artery", "venous_sinuses", "intracerebral_hemorrhage",
-                 "internal_carotid_artery_right", "internal_jugular_vein_left", "left_ventricular_outflow_tract",
-                     "non_coronary_cusp"}},
-      {"heart", {"heart_myocardium"}}, {"gas", {"larynx_air", "nasopharynx", "oropharynx", "hypopharynx",
-          "nasal_cavity_left", "auditory_canal_left"}},
-      {"brain", {"brainstem", "frontal_lobe", "central_sulcus"}}, {"cerebellum", {"cerebellum"}}, {"white matter",
-          {"internal_capsule", "septum_pellucidum"}},
-      {"grey matter", {"caudate_nucleus", "lentiform_nucleus", "insular_cortex", "thalamus"}},
-      {"cerebrospinal fluid", {"subarachnoid_space", "ventricle", "third_ventricle", "ventricle_frontal_horn_left"}},
-      {"gland", {"parotid_gland_left", "submandibular_gland_right"}}, {"eye", {"eye_left", "eyeball_right"}},
-          {"eye lens", {"eye_lens_right"}},
-      {"nerve", {"optic_nerve_left"}}, {"skull", {"hard_palate", "zygomatic_arch_left", "hyoid",
-          "styloid_process_left"}},
-      {"cartilage", {"thyroid_cartilage", "cricoid_cartilage", "intervertebral_discs"}}, {"vertebra", {"vertebrae",
-          "vertebrae_body"}},
-      {"bone", {"patella", "tibia", "fibula", "tarsal", "metatarsal", "phalanges_feet", "ulna", "radius", "carpal",
-          "metacarpal", "phalanges_hand"}},
-      {"soft tissue", {"body_trunc", "body_extremities", "face"}}, {"lung", {"lung_left"}}, {"lung deflated",
-          {"lung_nodules", "lung_covid_infiltrate"}},
-      {"liver", {"liver_segment_3", "liver_tumor"}}, {"breast", {"breast"}}, {"cyst or effusion", {"pleural_effusion",
-          "pericardial_effusion"}}};
-  check_rows(others);
-  check_names_known(others);
-  CHECK(row_of("hip_implant") == "implant");  // no tissue: it has no properties here
+  check_names(total_segmentator_sub_tasks());
 }
 
 TEST_CASE("tissue rows: the organs of ICRP Publication 110 are known, walls apart from what they hold") {
-  const Expected organs = {
-      {"adrenal gland", {"Adrenal, left", "Adrenal, right"}},
-      {"mucous membrane", {"Anterior nasal passage (ET1)", "Posterior nasal passage down to larynx (ET2)",
-          "Oral mucosa, tongue", "Oral mucosa, lips and cheeks"}},
-      {"trachea", {"Trachea"}}, {"bronchi", {"Bronchi"}}, {"blood", {"Blood vessels, head", "Blood vessels, legs",
-          "Heart contents (blood)", "Lung, left, blood", "Lung, right, blood"}},
-      {"cortical bone", {"Humeri, upper half, cortical", "Ulnae and radii, cortical",
-          "Wrists and hand bones, cortical", "Clavicles, cortical", "Cranium, cortical",
-          "Femora, lower half, cortical",
-                         "Tibiae, fibulae and patellae, cortical", "Ankles and foot bones, cortical",
-                             "Mandible, cortical", "Pelvis, cortical", "Ribs, cortical", "Scapulae, cortical",
-                         "Cervical spine, cortical", "Thoracic spine, cortical", "Lumbar spine, cortical",
-                             "Sacrum, cortical", "Sternum, cortical"}},
-      {"spongiosa of the humerus, upper half", {"Humeri, upper half, spongiosa"}},
-          {"spongiosa of the humerus, lower half", {"Humeri, lower half, spongiosa"}},
-      {"spongiosa of the forearm", {"Ulnae and radii, spongiosa"}}, {"spongiosa of the hand",
-          {"Wrists and hand bones, spongiosa"}},
-      {"spongiosa of the collarbone", {"Clavicles, spongiosa"}}, {"spongiosa of the skull", {"Cranium, spongiosa"}},
-          {"spongiosa of the femur, upper half", {"Femora, upper half, spongiosa"}},
-      {"spongiosa of the femur, lower half", {"Femora, lower half, spongiosa"}}, {"spongiosa of the lower leg",
-          {"Tibiae, fibulae and patellae, spongiosa"}},
-      {"spongiosa of the foot", {"Ankles and foot bones, spongiosa"}}, {"spongiosa of the mandible",
-          {"Mandible, spongiosa"}}, {"spongiosa of the pelvis", {"Pelvis, spongiosa"}},
-      {"spongiosa of the ribs", {"Ribs, spongiosa"}}, {"spongiosa of the shoulder blade", {"Scapulae, spongiosa"}},
-          {"spongiosa of the cervical spine", {"Cervical spine, spongiosa"}},
-      {"spongiosa of the thoracic spine", {"Thoracic spine, spongiosa"}}, {"spongiosa of the lumbar spine",
-          {"Lumbar spine, spongiosa"}}, {"spongiosa of the sacrum", {"Sacrum, spongiosa"}},
-      {"spongiosa of the sternum", {"Sternum, spongiosa"}},
-      {"marrow", {"Humeri, upper half, medullary cavity", "Ulnae and radii, medullary cavity",
-          "Femora, lower half, medullary cavity", "Tibiae, fibulae and patellae, medullary cavity"}},
-      {"cartilage", {"Cartilage, head", "Cartilage, trunk", "Cartilage, arms", "Cartilage, legs"}}, {"brain",
-          {"Brain"}},
-      {"breast fat", {"Breast, left, adipose tissue"}}, {"breast gland", {"Breast, right, glandular tissue"}},
-          {"eye lens", {"Eye lens, left"}}, {"eye", {"Eye bulb, right"}},
-      {"gall bladder", {"Gall bladder wall"}}, {"bile", {"Gall bladder contents"}}, {"stomach", {"Stomach wall"}},
-          {"stomach contents", {"Stomach contents"}},
-      {"small intestine", {"Small intestine wall"}},
-      {"intestine contents", {"Small intestine contents", "Ascending colon contents",
-          "Transverse colon contents, right", "Transverse colon contents, left", "Descending colon contents",
-                              "Sigmoid colon contents"}},
-      {"colon", {"Ascending colon wall", "Transverse colon wall, left", "Sigmoid colon wall", "Rectum wall"}},
-          {"heart", {"Heart wall"}},
-      {"kidney", {"Kidney, left, cortex", "Kidney, left, medulla", "Kidney, right, pelvis"}}, {"liver", {"Liver"}},
-          {"lung", {"Lung, left, tissue", "Lung, right, tissue"}},
-      {"lymph node", {"Lymphatic nodes, extrathoracic airways", "Lymphatic nodes, arms"}}, {"muscle", {"Muscle, head",
-          "Muscle, legs"}}, {"oesophagus", {"Oesophagus (wall)"}},
-      {"ovary", {"Ovary, left"}}, {"pancreas", {"Pancreas"}}, {"gland", {"Pituitary gland", "Salivary glands, left",
-          "Tonsils"}}, {"prostate", {"Prostate"}},
-      {"fat", {"Residual tissue, head", "Residual tissue, legs"}}, {"skin", {"Skin, head", "Skin at top and bottom"}},
-          {"spinal cord", {"Spinal cord"}}, {"spleen", {"Spleen"}},
-      {"teeth", {"Teeth"}}, {"testis", {"Testis, left"}}, {"thymus", {"Thymus"}}, {"thyroid", {"Thyroid"}}, {"tongue",
-          {"Tongue (inner part)"}}, {"ureter", {"Ureter, left"}},
-      {"urinary bladder", {"Urinary bladder wall"}}, {"urine", {"Urinary bladder contents"}}, {"uterus",
-          {"Uterus / Cervix"}}, {"gas", {"Air inside body"}}};
-  check_rows(organs);
-  check_names_known(organs);
+  CHECK(names_of(icrp_110_organs()).size() == 141);
+  check_names(icrp_110_organs());
 }
 
 TEST_CASE("tissue rows: names of Gabriel's tissues and of the Visible Human's voxel models are known, in any spelling") {
-  const Expected names = {
-      {"blood", {"Aorta", "Blood", "BloodVessel"}}, {"vessel wall", {"vessel wall"}}, {"urinary bladder",
-          {"Bladder"}}, {"cancellous bone", {"Bone (Cancellous)", "BoneCancellous"}},
-      {"cortical bone", {"Bone (Cortical)", "BoneCortical"}}, {"red marrow", {"Bone Marrow (Infiltrated)"}},
-          {"marrow", {"Bone Marrow (Not Infiltrated)", "BoneMarrow"}},
-      {"grey matter", {"Brain (Grey Matter)", "BrainGreyMatter"}}, {"white matter", {"Brain (White Matter)",
-          "BrainWhiteMatter"}}, {"breast fat", {"Breast fat", "BreastFat"}},
-      {"cartilage", {"Cartilage"}}, {"cerebellum", {"Cerebellum"}}, {"cerebrospinal fluid", {"Cerebro Spinal Fluid",
-          "CerebroSpinalFluid", "CSF"}}, {"cervix", {"Cervix"}}, {"colon", {"Colon"}},
-      {"cornea", {"Cornea"}}, {"dura", {"Dura"}}, {"sclera", {"Eye Tissues (Sclera)", "EyeSclera"}},
-          {"fat infiltrated", {"Fat (Average Infiltrated)"}}, {"fat", {"Fat (Not Infiltrated)", "Fat"}},
-      {"gall bladder", {"Gall Bladder", "GallBladder"}}, {"bile", {"Gall Bladder Bile", "GallBladderBile"}}, {"heart",
-          {"Heart"}}, {"kidney", {"Kidney"}}, {"lens cortex", {"Lens Cortex"}},
-      {"lens nucleus", {"Lens Nucleus"}}, {"eye lens", {"Lens"}}, {"liver", {"Liver"}}, {"lung deflated",
-          {"Lung (Deflated)", "LungDeflated"}}, {"lung", {"Lung (Inflated)", "LungInflated"}},
-      {"muscle", {"Muscle"}}, {"nerve", {"Nerve"}}, {"ovary", {"Ovary"}}, {"skin", {"Skin (Dry)", "SkinDry"}},
-          {"mucous membrane", {"Skin (Wet)", "SkinWet", "MucousMembrane"}},
-      {"small intestine", {"Small Intestine", "SmallIntestine"}}, {"spleen", {"Spleen"}}, {"stomach", {"Stomach"}},
-          {"tendon", {"Tendon"}}, {"testis", {"Testis"}}, {"thyroid", {"Thyroid"}},
-      {"tongue", {"Tongue"}}, {"trachea", {"Trachea"}}, {"uterus", {"Uterus"}}, {"vitreous humour", {"Vitreous Humor",
-          "VitreousHumor", "BodyFluid"}}, {"gas", {"Air"}}, {"duodenum", {"Duodenum"}},
-      {"gland", {"Gland"}}, {"lymph node", {"Lymph"}}, {"nail", {"Nail", "toenail"}}, {"oesophagus", {"Oesophagus",
-          "esophagus"}}, {"pancreas", {"Pancreas"}}, {"prostate", {"Prostate"}},
-      {"retina", {"Retina"}}, {"spinal cord", {"SpinalCord"}}, {"thymus", {"Thymus"}}, {"teeth", {"Tooth"}}};
-  check_rows(names);
-  check_names_known(names);
+  check_names(visible_human_tissues());
   for (const char* name : {"unobtainium", "", "Segment_7"}) CHECK_MESSAGE(row_of(name) == "none", name);
+}
+
+TEST_CASE("tissue rows: a muscle named after a bone is muscle, and \"=head\" is no part of longer names") {
+  for (const char* name : {"levator_scapulae_left", "Right levator scapulae", "levatores costarum",
+                           "masseter of mandible", "serratus anterior, first rib"})
+    CHECK_MESSAGE(row_of(name) == "muscle (kind)", name);
+  for (const char* name : {"scapula_left", "Scapulae, cortical"}) CHECK_MESSAGE(row_of(name) != "muscle (kind)", name);
+  CHECK(row_of("head of femur") == "femur");
+  CHECK(row_of("Lateral head of triceps") == "muscle (kind)");
+  CHECK(row_of("crown of first molar tooth") == "teeth");
+  CHECK(row_of("ventricle_left") == "blood");
+  CHECK(row_of("ventricle_body_left") == "cerebrospinal fluid");
 }
 
 TEST_CASE("tissue rows: every structure of BodyParts3D and of the SPL knee is known") {
   NEEDS_SHARED("data/bp3d/body_structures.labels.json");
-  check_known(read_tissue_table(test::shared_path("data/bp3d/body_structures.labels.json")).tissues);
+  const TissueTable body = read_tissue_table(test::shared_path("data/bp3d/body_structures.labels.json"));
+  check_known(body.tissues);
+  for (const Tissue& tissue : body.tissues)
+    if (tissue.kind == TissueKind::Muscle) {
+      const TissueRow& row = tissue_rows().rows[tissue_rows().match(tissue).row];
+      CHECK_MESSAGE(tissue_kind_from_name(row.names.name) != TissueKind::Bone, tissue.name);
+    }
   TissueTable knee = read_tissue_table(test::shared_path("data/spl/knee.ctbl"));
   CHECK(knee.tissues.size() == 48);
   check_known(knee.tissues);
 }
 
 TEST_CASE("tissue rows: densities are those of the tissue, not of its kind, as their sources have them") {
-  // kg/m3. ICRP 110: adult male. ICRU 46: adult. IT'IS: means of its database.
+  // kg/m3. ICRP 110: adult male, all 53 media, as the Geant4 example ICRP110_HumanPhantoms has them. IT'IS: means of its
+  // database, as its page on density had them in January 2026. ICRU 46: adult.
   const std::pair<const char*, double> densities[] = {
-      {"lung_upper_lobe_left", 382},  // ICRP 110, with its air
-      {"csf", 1007},                  // IT'IS
-      {"teeth", 2750}, {"blood", 1060}, {"muscle", 1050}, {"adipose", 950}, {"skin", 1090}, {"cartilage", 1100},
-          {"cortical bone", 1920}, {"liver", 1050}, {"spleen", 1040},
-      {"adrenal_gland_left", 1030}, {"urine", 1040}, {"stomach contents", 1040}, {"air", 1}, {"Cranium, spongiosa",
-          1157}, {"Sacrum, spongiosa", 1031}, {"medullary cavity", 980}, // ICRP 110
+      {"teeth", 2750}, {"cortical bone", 1920}, {"Humeri, upper half, spongiosa", 1205},
+      {"Humeri, lower half, spongiosa", 1108}, {"Ulnae and radii, spongiosa", 1108},
+      {"Wrists and hand bones, spongiosa", 1108}, {"Clavicles, spongiosa", 1151}, {"Cranium, spongiosa", 1157},
+      {"Femora, upper half, spongiosa", 1124}, {"Femora, lower half, spongiosa", 1108},
+      {"Tibiae, fibulae and patellae, spongiosa", 1108}, {"Ankles and foot bones, spongiosa", 1108},
+      {"Mandible, spongiosa", 1228}, {"Pelvis, spongiosa", 1123}, {"Ribs, spongiosa", 1165},
+      {"Scapulae, spongiosa", 1183}, {"Cervical spine, spongiosa", 1050}, {"Thoracic spine, spongiosa", 1074},
+      {"Lumbar spine, spongiosa", 1112}, {"Sacrum, spongiosa", 1031}, {"Sternum, spongiosa", 1041},
+      {"Humeri, upper half, medullary cavity", 980}, {"Femora, lower half, medullary cavity", 980},
+      {"Ulnae and radii, medullary cavity", 980}, {"Tibiae, fibulae and patellae, medullary cavity", 980},
+      {"cartilage", 1100}, {"skin", 1090}, {"blood", 1060}, {"muscle", 1050}, {"liver", 1050}, {"pancreas", 1050},
+      {"brain", 1050}, {"Heart wall", 1050}, {"Eye bulb, left", 1050}, {"Kidney, left, cortex", 1050},
+      {"Stomach wall", 1040}, {"Small intestine wall", 1040}, {"Sigmoid colon wall", 1040}, {"spleen", 1040},
+      {"thyroid", 1040}, {"Urinary bladder wall", 1040}, {"Testis, left", 1040}, {"adrenal_gland_left", 1030},
+      {"Oesophagus (wall)", 1030}, {"Gall bladder wall", 1030}, {"Trachea", 1030}, {"Thymus", 1030},
+      {"Ureter, left", 1030}, {"prostate", 1030}, {"Lymphatic nodes, head", 1030},
+      {"Breast, left, glandular tissue", 1020}, {"Breast, left, adipose tissue", 950}, {"adipose", 950},
+      {"lung_upper_lobe_left", 382}, {"stomach contents", 1040}, {"urine", 1040}, {"air", 1},  // ICRP 110
+      {"csf", 1007}, {"grey matter", 1045}, {"white matter", 1041}, {"cerebellum_left", 1045}, {"tendon", 1142},
+      {"nerve", 1075}, {"dura", 1174}, {"vessel wall", 1102}, {"sclera", 1032}, {"cornea", 1062},
+      {"eye_lens_left", 1076}, {"vitreous humour", 1005},  // IT'IS
       {"vertebrae_L3", 1330}, {"vertebrae_C4", 1420}, {"skull", 1610}, {"mandible", 1680}, {"femur_left", 1420},
-          {"sternum", 1250}, {"sacrum", 1290}, {"cancellous bone", 1180}, // ICRU 46
-      {"grey matter", 1045}, {"tendon", 1142}, {"nerve", 1075}, {"dura", 1174}};  // IT'IS
-  for (const auto& [name, density] : densities) CHECK_MESSAGE(tissue_named(name).density == doctest::Approx(density /
-      1000), name);
+      {"sternum", 1250}, {"sacrum", 1290}, {"cancellous bone", 1180}};  // ICRU 46
+  for (const auto& [name, density] : densities)
+    CHECK_MESSAGE(tissue_named(name).density == doctest::Approx(density / 1000), name);
   CHECK(usual_density(tissue_named("liver")).row == "liver");
   CHECK(usual_density(tissue_named("liver")).source.find("ICRP") != std::string::npos);
   CHECK(usual_density(tissue_named("unobtainium")).row.empty());
