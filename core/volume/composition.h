@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What tissues are made of, for the transport of particles: shares of elements by mass from a table of comma-separated values, a row
-// a medium with its source (assets/tissues/composition.csv: the media of ICRP Publication 110, 2009, and a metal).
+// What tissues are made of, for the transport of particles: shares of elements by mass from a table of comma-separated
+// values, a row a medium with its source (assets/tissues/composition.csv: the media of ICRP Publication 110, 2009, and
+// a metal).
 // Which medium a tissue is of stands in tissues.csv (tissue_rows.h); each mixture there is a medium of its own behind
 // them, by the masses of its parts.
 #pragma once

@@ -24,7 +24,8 @@ std::vector<std::string> parts_of(std::string_view text) {
 int words_met(const TissueWords& name, const TissueNames& row, std::size_t i) {
   const TissueWords& wanted = row.words[i];
   if (row.whole[i] && name.size() != wanted.size()) return 0;
-  const bool all = std::all_of(wanted.begin(), wanted.end(), [&](const std::string& word) { return has_word(name, word); });
+  const auto is_there = [&](const std::string& word) { return has_word(name, word); };
+  const bool all = std::all_of(wanted.begin(), wanted.end(), is_there);
   return all ? static_cast<int>(wanted.size()) : 0;
 }
 

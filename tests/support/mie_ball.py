@@ -4,10 +4,10 @@
 
   mie_ball.py EXAMPLES
 
-A plane wave of 1 W/m2, polarized along x and going towards z, meets a homogeneous ball. The field inside it is Mie's series
-[Bohren & Huffman 1983, chapter 4, time goes by exp(-i w t)]. The series is checked first: the tangential field goes through the
-ball's surface, and the absorbed power is extinction less scattering. Then the field is sampled at the centres of cells, and what
-peak_sar.py averages is compared with integrals of the exact field over exact cubes of 10 g.
+A plane wave of 1 W/m2, polarized along x and going towards z, meets a homogeneous ball. The field inside it is Mie's
+series [Bohren & Huffman 1983, chapter 4, time goes by exp(-i w t)]. The series is checked first: the tangential field
+goes through the ball's surface, and the absorbed power is extinction less scattering. Then the field is sampled at the
+centres of cells, and what peak_sar.py averages is compared with integrals of the exact field over exact cubes of 10 g.
 """
 import sys
 
@@ -73,7 +73,7 @@ A, B, C, D = coefficients()
 
 
 def field(magnetic, electric, z, dz, argument, theta, phi):
-    """E along r, theta, phi, for E = sum of i^n (2n + 1) / (n (n + 1)) (magnetic M_o1n - i electric N_e1n) and |E_0| = 1.
+    """E along r, theta, phi for |E_0| = 1: the sum of i^n (2n + 1) / (n (n + 1)) (magnetic M_o1n - i electric N_e1n).
 
     z, dz  of each order the radial function z_n(argument) and [argument z_n]' / argument
     """
@@ -112,7 +112,8 @@ def absorbed_by_series():
     phi = np.arange(4) * np.pi / 4 + 0.1  # cos and sin squared: four are exact
     r, mu, phi = np.meshgrid(r, mu, phi, indexing="ij")
     side = r * np.sqrt(1 - mu**2)
-    return DENSITY * np.einsum("ijk,i,j->", sar_at(side * np.cos(phi), side * np.sin(phi), r * mu) * r**2, wr, wm) * np.pi / 2
+    sar = sar_at(side * np.cos(phi), side * np.sin(phi), r * mu)
+    return DENSITY * np.einsum("ijk,i,j->", sar * r**2, wr, wm) * np.pi / 2
 
 
 def absorbed_by_extinction():
@@ -143,7 +144,7 @@ def cube_average(centre, side):
 
 
 def cube_behind(x, y, face, side):
-    """Mass (kg) and power (W) in a cube about the line through x, y whose face lies at z = face, before or in the ball."""
+    """Mass (kg) and power (W) in a cube about the line through x, y whose face lies at z = face, its air left out."""
     (x, wx), (y, wy) = gauss(x - side / 2, x + side / 2, 16), gauss(y - side / 2, y + side / 2, 16)
     u, wu = gauss(0, 1, 16)
     front = np.maximum(face, -np.sqrt(RADIUS**2 - x[:, None] ** 2 - y[None] ** 2))
