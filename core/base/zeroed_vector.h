@@ -5,10 +5,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdlib>
+#include <cstddef>
 #include <cstring>
 #include <initializer_list>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -90,19 +91,22 @@ class ZeroedVector {
   friend bool operator==(const ZeroedVector& a, const ZeroedVector& b) { return std::equal(a.begin(), a.end(), b.begin(), b.end()); }
 
  private:
-  struct Free {
-    void operator()(T* values) const { std::free(values); }
+  struct Delete {
+    std::size_t bytes = 0;
+    void operator()(T* values) const { delete_zeros(values, bytes); }
   };
 
   void grow(std::size_t capacity) {
-    std::unique_ptr<T[], Free> grown(static_cast<T*>(std::calloc(capacity, sizeof(T))));  // checks the product
+    if (capacity > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(T)) throw std::bad_alloc();
+    const std::size_t bytes = capacity * sizeof(T);
+    std::unique_ptr<T[], Delete> grown(static_cast<T*>(new_zeros(bytes)), Delete{bytes});
     if (!grown) throw std::bad_alloc();
     if (size_) std::memcpy(static_cast<void*>(grown.get()), data(), size_ * sizeof(T));
     values_ = std::move(grown);
     capacity_ = capacity;
   }
 
-  std::unique_ptr<T[], Free> values_;
+  std::unique_ptr<T[], Delete> values_;
   std::size_t size_ = 0, capacity_ = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <new>
 
 #include <doctest/doctest.h>
 
@@ -18,6 +19,17 @@ TEST_CASE("zeroed vector: zeros of any length, that can be written like any othe
     for (std::int64_t i = 0; i < count; ++i) kept &= zeros[i] == (i % 4999 ? 0 : i % 60000 + 1);
     CHECK(kept);
   }
+}
+
+TEST_CASE("zeroed vector: more zeros than the machine has memory, where few are written") {
+  const std::size_t count = std::size_t{1} << 36;  // 256 GB
+  ZeroedVector<float> numbers(count);
+  numbers[0] = 1;
+  numbers[count - 1] = 2;
+  CHECK(numbers[0] == 1);
+  CHECK(numbers[count / 2] == 0);
+  CHECK(numbers[count - 1] == 2);
+  CHECK_THROWS_AS(ZeroedVector<float>(std::size_t{1} << 62), std::bad_alloc);
 }
 
 TEST_CASE("zeroed vector: what it grows by is zero, whatever stood there before") {
