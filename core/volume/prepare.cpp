@@ -15,7 +15,7 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kMostVoxels = (std::int64_t{1} << 31) - 1;
+constexpr std::int64_t kMostVoxels = std::int64_t{1} << 33;
 
 // new voxel v holds old voxel at[axis] = flipped ? size - 1 - v[from] : v[from].
 struct AxisMap {

@@ -12,7 +12,7 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kMostVoxels = (std::int64_t{1} << 31) - 1;
+constexpr std::int64_t kMostVoxels = std::int64_t{1} << 33;
 constexpr double kLargestSpacing = 1e6;  // mm: what reading a volume believes
 // Shares closer than this part of a voxel's volume are equal: they come from sums of products of lengths.
 constexpr double kTie = 1e-9;

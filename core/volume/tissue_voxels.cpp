@@ -3,10 +3,18 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <string>
+
+#include "core/base/error.h"
 
 namespace limber {
 
 namespace {
+
+// Positions are kept as 16-bit numbers, places in the list as 32-bit ones.
+constexpr int kLongest = std::numeric_limits<std::int16_t>::max();
+constexpr std::int64_t kMostPlaces = std::numeric_limits<std::int32_t>::max();
 
 // Bit x for label x of eight. Air, by far the most, is seen at a glance.
 std::uint64_t tissue_bits(const Label* row) {
@@ -21,6 +29,10 @@ std::uint64_t tissue_bits(const Label* row) {
 }  // namespace
 
 TissueVoxels::TissueVoxels(const LabelVolume& volume) : grid_size_(volume.grid.size) {
+  const int longest = std::max({grid_size_.x, grid_size_.y, grid_size_.z});
+  if (longest > kLongest)
+    throw Error("the volume is " + std::to_string(longest) + " voxels long", "along one axis",
+                "crop it to " + std::to_string(kLongest) + ", or choose a coarser spacing");
   brick_grid_ = (grid_size_ + (kBrick - 1)) / kBrick;
   brick_of_.assign(std::int64_t{brick_grid_.x} * brick_grid_.y * brick_grid_.z, -1);
   std::int64_t cell = 0;
@@ -46,6 +58,9 @@ TissueVoxels::TissueVoxels(const LabelVolume& volume) : grid_size_(volume.grid.s
         bricks_.push_back(brick);
         size_ += count;
       }
+  if (size_ > kMostPlaces)
+    throw Error("the volume has " + std::to_string(size_) + " tissue voxels", "of " + std::to_string(kMostPlaces) + " at most",
+                "crop it, or choose a coarser spacing");
 }
 
 RowSet TissueVoxels::rows() const {
