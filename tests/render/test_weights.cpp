@@ -424,7 +424,8 @@ TEST_CASE("weights: in small textures, and where the volume is drawn coarser, th
   Studio studio;
   Renderer small(80), tiny(40);
   const Image picture = picture_of(studio.renderer, scene, camera, kSize), coarse = picture_of(tiny, scene, camera, kSize);
-  CHECK(difference(picture, picture_of(small, scene, camera, kSize)).mean == 0);
+  // But for what a driver rounds otherwise in a texture of another size: a step of one colour in a pixel of 5000.
+  CHECK(difference(picture, picture_of(small, scene, camera, kSize)).mean < 2e-4);
   CHECK(tiny.parts().body(block.volume).volume->halvings() > 0);
   scene.weights.reset();
   CHECK(difference(picture, coarse).mean < 1.5 * difference(picture_of(studio.renderer, scene, camera, kSize), picture_of(tiny, scene, camera, kSize)).mean);
