@@ -2,7 +2,6 @@
 #include "editor/live_pose.h"
 
 #include <algorithm>
-#include <chrono>
 #include <new>
 #include <utility>
 
@@ -18,7 +17,6 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kMostVertices = 40'000;  // of a surface: its silhouette stays within 1 % of the volume's, its picture takes a third of the time
 constexpr double kRest = 0.3;  // s that a pose rests before a finer map is worth its time
 
 bool same_motion(const RigidTransform& a, const RigidTransform& b) { return a.rotation == b.rotation && a.translation == b.translation; }
@@ -53,7 +51,7 @@ ReadyBody make_ready(const PosedBody& body, int divisor) {
 }  // namespace
 
 bool PoseWish::operator==(const PoseWish& other) const {
-  return body == other.body && blend == other.blend && surface == other.surface && mesh == other.mesh && std::equal(motions.begin(), motions.end(), other.motions.begin(), other.motions.end(), same_motion);
+  return body == other.body && blend == other.blend && mesh == other.mesh && std::equal(motions.begin(), motions.end(), other.motions.begin(), other.motions.end(), same_motion);
 }
 
 MapMaker::MapMaker(int divisor, std::function<void()> wake) : divisor_(divisor), wake_(std::move(wake)), thread_([this] { work(); }) {}
@@ -91,7 +89,7 @@ void MapMaker::work() {
   for (std::unique_lock lock(mutex_);;) {
     asked_.wait(lock, [this] { return waiting_ || ended_; });
     if (ended_) return;
-    Made made{*std::exchange(waiting_, std::nullopt), nullptr, nullptr, ""};
+    Made made{*std::exchange(waiting_, std::nullopt), nullptr, ""};
     working_ = true;
     lock.unlock();
     try {
@@ -101,7 +99,6 @@ void MapMaker::work() {
           ready = make_ready(made.wish.body, divisor_);
         }
         made.map = ready.preview->update(made.wish.motions, made.wish.blend, made.wish.mesh);
-        if (made.wish.surface && divisor_ == 1) made.surface = std::make_shared<const PosedSurface>(posed_surface(made.wish.surface, made.wish.motions, made.wish.blend));
       };
       // After a stroke the next one may be under way, and its frames come first.
       const bool is_painted = ready.body.volume == made.wish.body.volume && ready.body.weights != made.wish.body.weights;
@@ -121,7 +118,7 @@ void MapMaker::work() {
   }
 }
 
-LivePose::LivePose(const std::function<void()>& wake) : swift_(1, wake), thorough_(2, wake), wake_(wake) {}
+LivePose::LivePose(const std::function<void()>& wake) : swift_(1, wake), thorough_(2, wake) {}
 
 // Where the method is none of blending, as the default blends.
 Blend preview_blend(const Editor& editor) { return editor.resampling.method == "fem" ? Blend::Mixed : blend_named(editor.resampling.method); }
@@ -129,43 +126,14 @@ Blend preview_blend(const Editor& editor) { return editor.resampling.method == "
 void LivePose::follow(Editor& editor) {
   if (auto made = swift_.take()) coarse_ = std::move(*made), editor.touch();
   if (auto made = thorough_.take()) fine_ = std::move(*made), editor.touch();
-  if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-    surface_ = making_.get();
-    if (!surface_.trouble.empty()) editor.messages.warn("The volume is shown while it moves: its surface could not be made", surface_.trouble);
-    editor.touch();
-  }
   const std::optional<DenseWish> dense = choose(editor);
   metrics_.follow(editor, dense, shown_ && shown_ == fine_.map);
-}
-
-// Null while it is being made, and where no picture asks for it.
-std::shared_ptr<const SkinnedSurface> LivePose::surface_of(Editor& editor, const PosedBody& body) {
-  const std::string& moving = editor.preferences.moving;
-  const render::Scene& scene = editor.views->scene;
-  if (moving == "volume" || (moving == "automatic" && !editor.views->body.picture->slow()) || !scene.looks) return nullptr;
-  LabelSet shown(65536, 0);
-  for (std::size_t label = 0; label < scene.looks->size(); ++label) shown[label] = (*scene.looks)[label].visible;
-  if (surface_.body == body && surface_.shown == shown) return surface_.surface;
-  if (!making_.valid())
-    making_ = std::async(std::launch::async, [body, shown, wake = wake_] {
-      Surface made{body, shown, nullptr, ""};
-      try {
-        made.surface = std::make_shared<const SkinnedSurface>(skinned_surface(*body.volume, TissueVoxels(*body.volume), *body.weights, shown, kMostVertices));
-      } catch (const std::bad_alloc&) {
-        made.trouble = "there is not enough memory";
-      } catch (const std::exception& error) {
-        made.trouble = error.what();
-      }
-      wake();
-      return made;
-    });
-  return nullptr;
 }
 
 // Tissue where the mesh of a solve carries it.
 void LivePose::follow(const Solve& solve, double now) {
   const SolveFeed::Seen seen = solve.feed->seen();
-  PoseWish wish{{solve.from.volume, solve.from.tissues, solve.from.weights, nullptr, nullptr, nullptr}, seen.motions, Blend::Linear, nullptr, seen.mesh};
+  PoseWish wish{{solve.from.volume, solve.from.tissues, solve.from.weights, nullptr, nullptr, nullptr}, seen.motions, Blend::Linear, seen.mesh};
   if (!(wish == wish_)) {
     wish_ = std::move(wish);
     since_ = now;
@@ -177,7 +145,6 @@ void LivePose::follow(const Solve& solve, double now) {
 // Which map is shown; returns what it stands for.
 std::optional<DenseWish> LivePose::choose(Editor& editor) {
   shown_ = nullptr;
-  shown_surface_ = nullptr;
   posed_ = false;
   trouble_.clear();
   if (const Solve* solve = watched_solve(editor)) {
@@ -191,9 +158,7 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
     trouble_ = "No weights yet";
     return {};
   }
-  PoseWish wish{{document.volume, document.tissues, document.weights, document.armature, document.seams, document.bone_map}, {}, preview_blend(editor), nullptr};
-  // No weights are seen on a surface.
-  if (!painting) wish.surface = surface_of(editor, wish.body);
+  PoseWish wish{{document.volume, document.tissues, document.weights, document.armature, document.seams, document.bone_map}, {}, preview_blend(editor)};
   const Pose pose = shown_pose(editor);
   if (!motions_of_weights(*document.weights, *document.armature, pose, wish.motions)) {
     trouble_ = "The weights belong to another rig";
@@ -210,9 +175,9 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
     return {};
   }
   posed_ = true;
-  if (coarse_.wish.body.volume == document.volume && !coarse_.wish.mesh.rest) shown_ = coarse_.map, shown_surface_ = coarse_.surface;
+  if (coarse_.wish.body.volume == document.volume && !coarse_.wish.mesh.rest) shown_ = coarse_.map;
   if (coarse_.wish == wish_) trouble_ = coarse_.trouble;
-  if (fine_.wish == wish_ && fine_.map) shown_ = fine_.map;  // of the same pose as the surface
+  if (fine_.wish == wish_ && fine_.map) shown_ = fine_.map;
   else if (editor.now < since_ + kRest) editor.wake_at(since_ + kRest);
   else if (shown_) thorough_.ask(wish_);
   if (painting) return {};

@@ -2,9 +2,6 @@
 // The volume that follows the pose. While the Pose workspace shows another pose than rest, the views read the volume
 // through the inverse map of that pose (core/deform/preview_map.h): rays, slices and whatever the pointer is over.
 //
-// Where rays take too long for a moving picture, or the user wishes so, the surface of what is visible is posed too. It is
-// made in the background, once for a volume and what is visible of it.
-//
 // Maps are made by threads of their own, always of the newest pose; one that a newer pose overtook before its turn is left
 // out. So the editor never waits for a map: the bones are where they are, the volume follows as fast as the machine can. A
 // pose that has rested for a while gets a map of half the step. A body of which only the weights are others, as after a
@@ -13,7 +10,6 @@
 
 #include <condition_variable>
 #include <functional>
-#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -23,7 +19,6 @@
 
 #include "core/bones/bone_identity.h"
 #include "core/deform/preview_map.h"
-#include "core/deform/skinned_surface.h"
 #include "editor/live_metrics.h"
 
 namespace limber::editor {
@@ -48,7 +43,6 @@ struct PoseWish {
   PosedBody body;
   std::vector<RigidTransform> motions;  // of the weights' bones
   Blend blend = Blend::DualQuaternion;
-  std::shared_ptr<const SkinnedSurface> surface;  // posed as well; null: none
   MeshPose mesh = {};  // what carries tissue in place of its bones; empty: nothing
 
   bool operator==(const PoseWish&) const;
@@ -59,7 +53,6 @@ class MapMaker {
   struct Made {
     PoseWish wish;
     std::shared_ptr<const PreviewMap> map;
-    std::shared_ptr<const PosedSurface> surface;
     std::string trouble;  // an Error's line in place of the map
   };
 
@@ -93,35 +86,21 @@ class LivePose {
   void follow(Editor& editor);
   // Of the pose that is shown, or the last one that is known; null at rest and where nothing can follow.
   const std::shared_ptr<const PreviewMap>& map() const { return shown_; }
-  // In the same pose; null where none is wanted, or not made yet.
-  const std::shared_ptr<const PosedSurface>& surface() const { return shown_surface_; }
   // Why the volume stays behind: "No weights yet"; "" where it follows, and where there is nothing to pose.
   const std::string& trouble() const { return trouble_; }
   bool posed() const { return posed_; }  // the pose on show is another than rest
   LiveMetrics& metrics() { return metrics_; }
-  bool busy() const { return swift_.busy() || thorough_.busy() || making_.valid(); }
+  bool busy() const { return swift_.busy() || thorough_.busy(); }
 
  private:
   std::optional<DenseWish> choose(Editor& editor);
   void follow(const Solve& solve, double now);
-  std::shared_ptr<const SkinnedSurface> surface_of(Editor& editor, const PosedBody& body);
 
   MapMaker swift_, thorough_;
   MapMaker::Made coarse_, fine_;  // of either
   PoseWish wish_;
   double since_ = 0;  // the editor's time when the wish came up
   std::shared_ptr<const PreviewMap> shown_;
-  std::shared_ptr<const PosedSurface> shown_surface_;
-  // The surface of a body and what is visible of it, and the next one while it is made.
-  struct Surface {
-    PosedBody body;
-    LabelSet shown;
-    std::shared_ptr<const SkinnedSurface> surface;
-    std::string trouble;  // in place of the surface
-  };
-  Surface surface_;
-  std::future<Surface> making_;
-  const std::function<void()> wake_;
   std::string trouble_;
   bool posed_ = false, warmed_up_ = false;
   LiveMetrics metrics_;

@@ -36,7 +36,6 @@ void visit(P& p, const Visit& visit) {
   visit("view", "letters", p.letters, {}, {});
   visit("view", "cross_hair", p.cross_hair, {}, {});
   visit("view", "display", p.display, {}, {});
-  visit("view", "moving", p.moving, {}, {});
   visit("undo", "limit_mb", p.undo_limit_mb, 64, 65536);
   visit("undo", "autosave_minutes", p.autosave_minutes, 0, 240);
   visit("jobs", "at_once", p.jobs_at_once, 1, 8);
@@ -102,7 +101,6 @@ Preferences preferences_from_json(const std::string& text, std::string& problem)
   }
   visit(preferences, Reader{json});
   if (preferences.theme != "light") preferences.theme = "dark";
-  if (preferences.moving != "volume" && preferences.moving != "surface") preferences.moving = "automatic";
   if (preferences.display != "xray" && preferences.display != "tissue") preferences.display = "solid";
   if (json.contains("keys")) preferences.keys = key_changes_from_json(json["keys"].dump());
   if (preferences.keymap != "maya") preferences.keymap = "blender";

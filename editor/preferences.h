@@ -24,7 +24,6 @@ struct Preferences {
   // View, as the editor starts
   bool grid = true, axes = true, scale_bar = true, letters = true, cross_hair = true;
   std::string display = "solid";  // "xray", "tissue"
-  std::string moving = "automatic";  // what is drawn of a posed body that moves: also "volume", "surface"
 
   // Undo and saving
   int undo_limit_mb = 1024;  // [64, 65536]

@@ -293,8 +293,6 @@ void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<
   const Document& document = editor.document();
   scene.posed_from_rest.clear();
   scene.pose = nullptr;
-  scene.surface = nullptr;
-  scene.moving = editor.preferences.moving == "volume" ? render::Moving::Volume : editor.preferences.moving == "surface" ? render::Moving::Surface : render::Moving::Automatic;
   if (result && document.volume) {
     scene.volume = result->volume;
     if (scene.clip.box) {
@@ -309,7 +307,6 @@ void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<
   } else if (shows_pose(editor)) {
     scene.posed_from_rest = posed_from_rest(*document.armature, shown_pose(editor));
     scene.pose = editor.live->map();
-    scene.surface = editor.live->surface();
   }
 }
 

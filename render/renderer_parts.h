@@ -18,7 +18,6 @@
 #include "render/scene.h"
 #include "render/shade_pass.h"
 #include "render/slice_pass.h"
-#include "render/surface_pass.h"
 #include "render/view.h"
 #include "render/visible_field.h"
 #include "render/volume_pass.h"
@@ -60,7 +59,6 @@ struct Renderer::Parts {
   ArmaturePass armature;
   SlicePass slice;
   WeightPass weigh;
-  SurfacePass surface;
   LinePass lines;
   std::string note;
   std::optional<UploadTime> upload_time;  // of this frame; nothing: there are no frames

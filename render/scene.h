@@ -19,7 +19,6 @@ namespace limber {
 class SkinWeights;
 class TissueVoxels;
 struct PreviewMap;
-struct PosedSurface;
 }
 
 namespace limber::render {
@@ -59,13 +58,6 @@ struct Clip {
   std::optional<std::array<glm::dvec3, 2>> plane;  // point and unit normal, world; hidden is the normal's side
 };
 
-// What is drawn of a posed body while it moves.
-enum class Moving {
-  Automatic,  // its surface, where rays take too long
-  Volume,
-  Surface,
-};
-
 // What of skin weights is shown in the tissues' place (render/weight_colours.h).
 enum class WeightDisplay {
   Active,    // the weight of one bone, exact 0 and exact 1 apart
@@ -98,8 +90,6 @@ struct CutMesh {
 struct Scene {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const PreviewMap> pose;  // of this volume: its body is drawn as the map leads; null: as the volume is
-  std::shared_ptr<const PosedSurface> surface;  // of what is visible of the body in that pose; null: there is none
-  Moving moving = Moving::Automatic;
   std::shared_ptr<const LabelLooks> looks;
   Display display = Display::Solid;
   Clip clip;

@@ -10,17 +10,15 @@
 
 #include "core/deform/preview_map.h"
 #include "render/renderer_parts.h"
-#include "render/slowness.h"
 
 namespace limber::render {
 
 namespace {
 
 constexpr double kRest = 0.1;             // s without a change before the picture is refined
-constexpr double kFrame = Slowness::kBudget;
+constexpr double kFrame = 0.028;          // s that rays may take while something moves
 constexpr double kTileBudget = 0.018;     // s of refinement in one call
 constexpr int kTile = 128;                // pixels
-constexpr int kCoarsest = 6;
 
 double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -199,9 +197,6 @@ struct View3D::Impl {
   int next_tile = 0;       // of the sample under way
   bool refines = false;    // scale 0: goes on to full resolution and averaging
   PixelRect rect;          // what the body covers, in pixels of its picture
-  Slowness rays;           // through a posed body
-  double sample_took = 0;  // s, of the sample under way
-  bool shows_surface = false;
   std::int64_t rays_followed = 0;
   int weight_changes = 0;  // of the weights' texture, as drawn
   bool has_all_weights = true;
@@ -285,23 +280,10 @@ struct View3D::Impl {
     shown_scale = scale;
   }
 
-  // Only what a surface can show: the outside, whole.
-  bool has_surface() const { return scene.pose && scene.surface && scene.display == Display::Solid && !scene.clip.box && !scene.clip.plane; }
-
-  void draw_surface(const Source& source) {
-    const ViewRays rays = rays_of(source, key.size, 0);
-    rect = VolumePass::covered(source.hull(0), rays, key.size);
-    shown[0].resize(key.size, key.places);
-    parts.surface.draw(scene.surface, *source.body->volume, rays, glm::mat3_cast(glm::conjugate(key.camera.world_from_view)), shown[0]);
-    shade(source, rays, shown, rect);
-    shown_scale = 1;
-  }
-
   // Some tiles of the sample under way; true when the picture to show has changed.
   bool refine(const Source& source) {
     const double begin = seconds();
     const ViewRays rays = rays_of(source, key.size, sample);
-    if (next_tile == 0) sample_took = 0;
     const PixelRect part = VolumePass::covered(source.hull(0), rays, key.size);
     if (next_tile == 0) start(source, rays, jittered, key.size, part);
     const glm::ivec2 tiles = (part.high - part.low + kTile - 1) / kTile;
@@ -313,11 +295,8 @@ struct View3D::Impl {
       ++next_tile;
       glFinish();
     } while (seconds() - begin < kTileBudget);
-    sample_took += seconds() - begin;
     if (next_tile < count) return false;
 
-    if (sample == 0 && source.pose) this->rays.measured(sample_took, 1);
-    shows_surface = false;
     shade(source, rays, jittered, part);
     average.resize(key.size, GL_RGBA16F);
     if (sample == 0) average.clear();
@@ -419,15 +398,12 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
     my.changed_at = now;
     my.sample = my.next_tile = 0;
     const double begin = seconds();
-    my.shows_surface = scale == 0 && my.has_surface() && (scene.moving == Moving::Surface || (scene.moving == Moving::Automatic && my.rays.slow()));
-    if (my.shows_surface) my.draw_surface(*source);
-    else my.draw_at_once(*source, scale > 0 ? scale : my.moving_scale);
-    if (scale == 0 && !my.shows_surface) {
+    my.draw_at_once(*source, scale > 0 ? scale : my.moving_scale);
+    if (scale == 0) {
       glFinish();
       // The cost goes with the number of pixels; a finer picture is tried when it would fit well.
       const double cost = seconds() - begin;
       const int at = my.moving_scale;
-      if (source->pose) my.rays.measured(cost, at);
       if (cost > kFrame) my.moving_scale = std::min(at + 1, kCoarsest);
       else if (at > 1 && cost * at * at / ((at - 1) * (at - 1)) < kFrame * 0.85) my.moving_scale = at - 1;
     }
@@ -444,8 +420,6 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
 bool View3D::complete() const { return impl_->complete(); }
 int View3D::scale() const { return impl_->shown_scale; }
 std::int64_t View3D::rays_followed() const { return impl_->rays_followed; }
-bool View3D::slow() const { return impl_->rays.slow(); }
-bool View3D::shows_surface() const { return impl_->shows_surface; }
 unsigned View3D::texture() const { return impl_->output.texture().name(); }
 Image View3D::read() const { return read_back(impl_->output, impl_->scene.transparent_background); }
 

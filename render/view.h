@@ -58,19 +58,20 @@ struct Hit {
 // A 3D picture, refined over calls: coarse while something moves, full at rest.
 class View3D {
  public:
+  // Each pixel of a moving picture shows the ray of a pixel at most two away.
+  static constexpr int kCoarsest = 5;
+
   explicit View3D(Renderer& renderer);
   ~View3D();
 
   // Draws as much as fits the budget; call again while !complete().
-  //   scale  1: full resolution; n: every n-th pixel each way. 0: chosen so that a frame takes at most ~33 ms while moving,
-  //          full resolution once the scene has rested for 100 ms
+  //   scale  1: full resolution; n: every n-th pixel each way. 0: while something moves, at most every kCoarsest-th, by
+  //          what the last pictures took, so that a frame takes about 33 ms; full resolution after a rest of 100 ms
   //   now    seconds, of any steady clock
   void draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, double now, int scale = 0);
   bool complete() const;
   int scale() const;         // of the body in the last picture; 0: there is none
   std::int64_t rays_followed() const;  // pixels of all pictures so far whose rays were followed, the covered rectangles'
-  bool slow() const;         // rays through a posed body take too long for a moving picture: a surface would be drawn
-  bool shows_surface() const;  // in place of the volume, in the last picture
   unsigned texture() const;  // RGBA8, `size` pixels, top row first when drawn with uv (0, 1) to (1, 0)
   Image read() const;        // the finished picture
 

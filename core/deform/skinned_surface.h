@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The surface of what is shown of a body, as triangles that know what they follow: it stands in for the volume where rays
-// through that take too long for a picture. The surface lies where the renderer's rays meet the body (the set of labels,
-// blurred twice by [1 2 1] / 4 along each axis, at the share that keeps a silhouette its size), as surface nets
-// (core/mesh/surface.h); a pose carries its vertices by the blend kernel. The same for any number of threads.
+// The surface of what is shown of a body, as triangles that know what they follow, for outlines of other poses. The
+// surface lies where the renderer's rays meet the body (the set of labels, blurred twice by [1 2 1] / 4 along each axis, at
+// the share that keeps a silhouette its size), as surface nets (core/mesh/surface.h); a pose carries its vertices by the
+// blend kernel. The same for any number of threads.
 #pragma once
 
 #include <cstdint>

@@ -131,16 +131,6 @@ void PreferencesDialog::draw_view(Editor& editor, Column& column) {
     }
     x += third;
   }
-  const Rect moving = labelled(editor, column, "While it moves", "What is drawn of a posed body while it is posed or plays: by itself the volume, and its surface where the volume takes too long.");
-  x = moving.low.x;
-  for (const auto& [name, label] : {std::pair("automatic", "Automatic"), std::pair("volume", "Volume"), std::pair("surface", "Surface")}) {
-    const ButtonStyle style = preferences.moving == name ? ButtonStyle::Chosen : ButtonStyle::Plain;
-    if (button(editor, label, {{x, moving.low.y}, {x + third - look.px(1), moving.high.y}}, {"", label, style})) {
-      preferences.moving = name;
-      keep_preferences(editor);
-    }
-    x += third;
-  }
   column.space(6);
   Views& views = *editor.views;
   const auto overlay = [&](const char* label, const char* sentence, bool Preferences::*kept, bool Views::*shown) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // preview_updates
 // What it costs until a new pose can be drawn (vertices, cells, the map on the card, the hull that rays start from) on the
-// procedural arm and body, and what a picture of it costs beside one of the volume at rest and beside one of its surface, as JSON. CPU seconds of the
+// procedural arm and body, and what a picture of it costs beside one of the volume at rest, as JSON. CPU seconds of the
 // whole process, medians; on two cores an update takes half of them.
 #include <sys/resource.h>
 
@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "core/deform/preview_map.h"
-#include "core/deform/skinned_surface.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/volume/phantom.h"
 #include "render/headless.h"
@@ -61,7 +60,7 @@ void measure(const Subject& subject, const char* drag, LivePreview& preview, Ren
     renderer.finish();
     return cpu_seconds() - begin;
   };
-  std::vector<double> map, card, posed, unposed, skinning, surface;
+  std::vector<double> map, card, posed, unposed;
   for (int i = 0; i < kUpdates; ++i) {
     const auto motions = posed_from_rest(subject.phantom.armature, pose_at(i));
     const double begin = cpu_seconds();
@@ -69,21 +68,14 @@ void measure(const Subject& subject, const char* drag, LivePreview& preview, Ren
     map.push_back(cpu_seconds() - begin);
     const double first = picture(scene, small);  // uploads; the second does not
     card.push_back(first - picture(scene, small));
-    const double before = cpu_seconds();
-    scene.surface = std::make_shared<const PosedSurface>(posed_surface(rest.surface->at_rest, motions, blend));
-    skinning.push_back(cpu_seconds() - before);
     if (i % 5) continue;
-    scene.moving = Moving::Surface;
-    surface.push_back(picture(scene, large, 0));  // as the editor asks for a moving picture
     posed.push_back(picture(scene, large));
     unposed.push_back(picture(rest, large));
   }
   std::printf("%s{\"subject\": \"%s\", \"step\": %d, \"drag\": \"%s\", \"blend\": \"%s\", \"map_cpu_ms\": %.3f, \"upload_cpu_ms\": %.3f, "
-              "\"update_ms_on_two_cores\": %.3f, \"picture_cpu_ms\": %.1f, \"picture_at_rest_cpu_ms\": %.1f, "
-              "\"surface_vertices\": %zu, \"surface_update_cpu_ms\": %.3f, \"surface_picture_cpu_ms\": %.1f, \"surface_of_volume\": %.3f}",
+              "\"update_ms_on_two_cores\": %.3f, \"picture_cpu_ms\": %.1f, \"picture_at_rest_cpu_ms\": %.1f}",
               is_first ? "" : ",\n ", subject.name.c_str(), subject.step, drag, blend == Blend::Linear ? "linear" : "dual quaternion", 1e3 * median(map),
-              1e3 * median(card), 500 * (median(map) + median(card)), 1e3 * median(posed), 1e3 * median(unposed),
-              rest.surface->V.size(), 1e3 * median(skinning), 1e3 * median(surface), median(surface) / median(posed));
+              1e3 * median(card), 500 * (median(map) + median(card)), 1e3 * median(posed), 1e3 * median(unposed));
   is_first = false;
 }
 
@@ -118,10 +110,6 @@ int main() {
       scene.looks = std::make_shared<const LabelLooks>(looks_of(subject.phantom.tissues));
       scene.volume = std::make_shared<const LabelVolume>(subject.phantom.volume);
       scene.grid = false;
-      LabelSet shown(65536, 0);
-      for (const Tissue& each : subject.phantom.tissues.tissues) shown[each.label] = 1;
-      const auto surface = std::make_shared<const SkinnedSurface>(skinned_surface(*scene.volume, tissue, weights, shown, 40'000));
-      scene.surface = std::make_shared<const PosedSurface>(posed_surface(surface, posed_from_rest(rig, rest_pose(rig)), Blend::Linear));
       LivePreview preview(scene.volume, subject.phantom.tissues, tissue, weights, subject.step);
       for (const Blend blend : {Blend::Linear, Blend::DualQuaternion}) {
         measure(subject, "one elbow", preview, renderer, scene, blend, [&](int i) { return turned(rig, bone, 20 + i); }, is_first);

@@ -56,26 +56,6 @@ struct LiveEditor : LimbEditor {
 
 }  // namespace
 
-TEST_CASE("live pose: by preference the surface stands in while a bone turns, of what is visible, and the volume comes back at rest") {
-  LiveEditor test;
-  test.editor->preferences.moving = "volume";
-  test.turn("X", 30);
-  CHECK_FALSE(test.editor->views->body.picture->shows_surface());
-  CHECK(!test.scene().surface);
-  test.editor->preferences.moving = "surface";
-  test.play("key Backspace\nwait-job\nkey 5\nwait-job");
-  REQUIRE(test.scene().surface);
-  test.play("key Backspace\nwait-job");
-  CHECK(test.editor->views->body.picture->shows_surface());
-  CHECK(test.scene().surface->at_rest->label[0] == 143);
-  test.play("key Return\nwait-idle");
-  CHECK_FALSE(test.editor->views->body.picture->shows_surface());
-  test.editor->preferences.moving = "volume";
-  test.turn("X", 12);
-  CHECK(!test.scene().surface);
-  CHECK_FALSE(test.editor->views->body.picture->shows_surface());
-}
-
 TEST_CASE("live pose: without a sidebar the status bar tells the change of volume") {
   LiveEditor test;
   CHECK(test.fact("text:Volume ") == "absent");

@@ -2,13 +2,11 @@
 #include <utility>
 
 #include "core/deform/preview_map.h"
-#include "core/deform/skinned_surface.h"
 #include "core/resample/resample.h"
 #include "core/rig/armature_io.h"
 #include "core/skin/heat_diffusion.h"
 #include "core/volume/phantom.h"
 #include "core/volume/volume_io.h"
-#include "render/slowness.h"
 #include "tests/render/studio.h"
 #include "tests/support/bent_tube.h"
 #include "tests/support/shared_data.h"
@@ -178,75 +176,6 @@ void check_outline(const std::shared_ptr<const LabelVolume>& volume, const Tissu
 }
 
 }  // namespace
-
-TEST_CASE("posed body: the surface that stands in while it moves has the volume's silhouette and colours, and is picked alike") {
-  Studio studio;
-  LabelSet shown(65536, 0);
-  for (const Tissue& tissue : arm().tissues.tissues) shown[tissue.label] = 1;
-  const auto at_rest = std::make_shared<const SkinnedSurface>(skinned_surface(*arm().volume, arm().tissue, arm().weights, shown, 40'000));
-  for (const double degrees : {0.0, 40.0, 90.0})
-    for (const StandardView side : {StandardView::Left, StandardView::Front}) {
-      const Pose pose = arm().bent(degrees);
-      Scene scene = arm().posed(pose, Blend::DualQuaternion);
-      const Camera camera = camera_of(arm().volume->grid, Projection::Perspective, side);
-      const Image volume = picture_of(studio.renderer, scene, camera, kSize);
-      scene.surface = std::make_shared<const PosedSurface>(posed_surface(at_rest, posed_from_rest(arm().rig, pose), Blend::DualQuaternion));
-      scene.moving = Moving::Surface;
-      View3D view(studio.renderer);
-      view.draw(scene, camera, kSize, 0);
-      CHECK(view.shows_surface());
-      const Image surface = view.read();
-      INFO(degrees, " degrees: silhouette ", silhouette_difference(surface, volume), ", colours ", colours_agree(surface, volume), ", vertices ", at_rest->V.size());
-      CHECK(silhouette_difference(surface, volume) < 0.01);
-      CHECK(colours_agree(surface, volume) > (degrees < 60 ? 0.9 : 0.85));  // less where an elbow folds
-      const auto hit = view.pick(kSize / 2);
-      View3D other(studio.renderer);
-      scene.moving = Moving::Volume;
-      other.draw(scene, camera, kSize, 0, 1);
-      CHECK_FALSE(other.shows_surface());
-      const auto same = other.pick(kSize / 2);
-      REQUIRE(hit.has_value() == same.has_value());
-      if (hit) CHECK(glm::distance(hit->point, same->point) < 2 * glm::length(arm().volume->grid.spacing));
-      // At rest the volume comes back.
-      for (double now = 1; !view.complete() && now < 500; ++now) view.draw(scene, camera, kSize, now);
-      CHECK_FALSE(view.shows_surface());
-    }
-}
-
-TEST_CASE("posed body: what a surface cannot show is left to the volume") {
-  Studio studio;
-  const auto nothing = std::make_shared<const PosedSurface>(PosedSurface{std::make_shared<const SkinnedSurface>(), {}, {}});
-  const Camera camera = camera_of(arm().volume->grid);
-  const auto shows = [&](Scene scene, bool posed) {
-    if (!posed) scene.pose = nullptr;
-    scene.surface = nothing;
-    scene.moving = Moving::Surface;
-    View3D view(studio.renderer);
-    view.draw(scene, camera, {64, 64}, 0);
-    return view.shows_surface();
-  };
-  Scene scene = arm().posed(arm().bent(40), Blend::Linear);
-  CHECK(shows(scene, true));
-  CHECK_FALSE(shows(scene, false));
-  scene.display = Display::XRay;
-  CHECK_FALSE(shows(scene, true));
-  scene.display = Display::Solid;
-  scene.clip.plane = {glm::dvec3(0), glm::dvec3(0, 0, 1)};
-  CHECK_FALSE(shows(scene, true));
-}
-
-TEST_CASE("slowness: pictures go over to a surface beyond the budget, and back only well below it") {
-  Slowness rays;
-  CHECK_FALSE(rays.slow());
-  rays.measured(0.9 * Slowness::kBudget, 2);
-  CHECK_FALSE(rays.slow());
-  rays.measured(0.5 * Slowness::kBudget, 3);  // as 1.1 of it at every second pixel
-  CHECK(rays.slow());
-  rays.measured(0.7 * Slowness::kBudget, 2);
-  CHECK(rays.slow());
-  rays.measured(0.5 * Slowness::kBudget, 2);
-  CHECK_FALSE(rays.slow());
-}
 
 TEST_CASE("posed body: at rest the picture is that of the volume itself, in every display") {
   Studio studio;
