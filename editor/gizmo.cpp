@@ -116,7 +116,7 @@ std::optional<GizmoPart> moving_part(const Gizmo& gizmo, const SeenFrom& view, f
 // The tail nearest to the pointer, else the bone under it.
 std::optional<int> joint_at(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
   const Armature& armature = *editor.document().armature;
-  const auto posed = posed_from_rest(armature, shown_pose(editor));
+  const auto posed = posed_from_rest(armature, seen_pose(editor));
   std::optional<int> found;
   double nearest = kJointHit * editor.look.scale;
   for (int bone = 0; bone < std::ssize(armature.bones); ++bone)
@@ -206,7 +206,7 @@ std::vector<DrawnBone> bones_in_slices(const Editor& editor) {
   const std::shared_ptr<const Armature> rig = posed ? editor.document().armature : shown_rig(editor);
   std::vector<DrawnBone> drawn;
   if ((!posed && editor.workspace != Workspace::Rig) || !rig || !editor.views->bones) return drawn;
-  const std::vector<RigidTransform> moved = posed ? posed_from_rest(*rig, shown_pose(editor)) : std::vector<RigidTransform>(rig->bones.size());
+  const std::vector<RigidTransform> moved = posed ? posed_from_rest(*rig, seen_pose(editor)) : std::vector<RigidTransform>(rig->bones.size());
   for (int bone = 0; bone < std::ssize(rig->bones); ++bone) drawn.push_back({bone, moved[bone] * rig->bones[bone].head, moved[bone] * rig->bones[bone].tail});
   return drawn;
 }
@@ -252,7 +252,7 @@ std::vector<Pole> poles_of(const Editor& editor) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   if (editor.workspace != Workspace::Pose || !armature || !editor.views->bones) return {};
   std::vector<Pole> poles;
-  const auto posed = posed_from_rest(*armature, shown_pose(editor));
+  const auto posed = posed_from_rest(*armature, seen_pose(editor));
   const auto& shown = editor.handling->shown_pole;
   for (const auto& [name, point] : anchors_of(editor.document()).poles)
     if (const auto bone = armature->find(name)) poles.push_back({*bone, posed[*bone] * armature->bones[*bone].head, shown.bone == name ? shown.place : point});
@@ -271,7 +271,7 @@ void draw_marks(Editor& editor, const SeenFrom& view) {
   if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !armature || !editor.views->bones) return;
   const GizmoPainter painter(editor, view);
   if (const Anchors& anchors = anchors_of(editor.document()); !anchors.pins.empty()) {
-    const auto posed = posed_from_rest(*armature, shown_pose(editor));
+    const auto posed = posed_from_rest(*armature, seen_pose(editor));
     for (const std::string& name : anchors.pins)
       if (const auto bone = armature->find(name)) painter.diamond(posed[*bone] * armature->bones[*bone].tail, kViewAccent, 12);
   }
@@ -294,7 +294,7 @@ void draw_limits(Editor& editor, const SeenFrom& view) {
   const Bone& bone = armature->bones[*chosen];
   RigidTransform carried;  // from rest
   if (posed) {
-    const Pose pose = shown_pose(editor);
+    const Pose pose = seen_pose(editor);
     carried = bone.parent < 0 ? RigidTransform{{1, 0, 0, 0}, pose.root_translation} : posed_from_rest(*armature, pose)[bone.parent];
   }
   const JointLimits& limits = bone.limits;
@@ -342,7 +342,7 @@ std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view) {
     return Gizmo{editor.tool, place, axes_of(editor.handling->space, *armature, rest_pose(*armature), *bone, view)};
   }
   if (editor.workspace != Workspace::Pose || (editor.tool != Tool::Rotate && editor.tool != Tool::Move)) return std::nullopt;
-  const Pose pose = shown_pose(editor);
+  const Pose pose = seen_pose(editor);
   const Bone& b = armature->bones[*bone];
   const bool at_head = editor.tool == Tool::Rotate || b.parent < 0;
   const glm::dvec3 place = posed_from_rest(*armature, pose)[*bone] * (at_head ? b.head : b.tail);

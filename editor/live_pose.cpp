@@ -7,6 +7,7 @@
 
 #include "core/base/background.h"
 #include "core/base/error.h"
+#include "core/resample/pose_path.h"
 #include "editor/body_seams.h"
 #include "editor/editor.h"
 #include "editor/fem_view.h"
@@ -21,9 +22,22 @@ constexpr double kRest = 0.3;  // s that a pose rests before a finer map is wort
 
 bool same_motion(const RigidTransform& a, const RigidTransform& b) { return a.rotation == b.rotation && a.translation == b.translation; }
 
+bool same_motions(const std::vector<RigidTransform>& a, const std::vector<RigidTransform>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_motion);
+}
+
+// Whether poses of one are poses of the other.
+bool same_bones(const Armature& a, const Armature& b) {
+  const auto same = [](const Bone& p, const Bone& q) {
+    return p.parent == q.parent && p.head == q.head && p.tail == q.tail;
+  };
+  return std::equal(a.bones.begin(), a.bones.end(), b.bones.begin(), b.bones.end(), same);
+}
+
 // Weights may hold their bones in another order than the rig. False when one is not in the rig.
-bool motions_of_weights(const SkinWeights& weights, const Armature& armature, const Pose& pose, std::vector<RigidTransform>& motions) {
-  const std::vector<RigidTransform> posed = posed_from_rest(armature, pose);
+//   posed  of the rig's bones
+bool motions_of_weights(const SkinWeights& weights, const Armature& armature, const std::vector<RigidTransform>& posed,
+                        std::vector<RigidTransform>& motions) {
   for (const std::string& name : weights.bones()) {
     const auto found = std::find_if(armature.bones.begin(), armature.bones.end(), [&](const Bone& bone) { return bone.name == name; });
     if (found == armature.bones.end()) return false;
@@ -48,10 +62,21 @@ ReadyBody make_ready(const PosedBody& body, int divisor) {
   return {body, std::make_unique<LivePreview>(body.volume, *body.tissues, tissue, weights, preview_step(tissue) / divisor)};
 }
 
+// Of the bones of the rig that the solve began with, as far as it has come.
+std::vector<RigidTransform> motions_of_rig(const Solve& solve, const SolveFeed::Seen& seen) {
+  const Armature& armature = *solve.from.armature;
+  std::vector<RigidTransform> motions = posed_from_rest(armature, part_of_pose(*solve.from.pose, seen.reached));
+  const auto& bones = solve.from.weights->bones();
+  for (std::size_t b = 0; b < bones.size() && b < seen.motions.size(); ++b)
+    if (const auto bone = armature.find(bones[b])) motions[static_cast<std::size_t>(*bone)] = seen.motions[b];
+  return motions;
+}
+
 }  // namespace
 
 bool PoseWish::operator==(const PoseWish& other) const {
-  return body == other.body && blend == other.blend && mesh == other.mesh && std::equal(motions.begin(), motions.end(), other.motions.begin(), other.motions.end(), same_motion);
+  return body == other.body && blend == other.blend && mesh == other.mesh && pose == other.pose &&
+         same_motions(motions, other.motions) && same_motions(rig_motions, other.rig_motions);
 }
 
 MapMaker::MapMaker(int divisor, std::function<void()> wake) : divisor_(divisor), wake_(std::move(wake)), thread_([this] { work(); }) {}
@@ -130,21 +155,31 @@ void LivePose::follow(Editor& editor) {
   metrics_.follow(editor, dense, shown_ && shown_ == fine_.map);
 }
 
+void LivePose::show(const MapMaker::Made& made) {
+  shown_ = made.map;
+  seen_ = made.wish;
+}
+
 // Tissue where the mesh of a solve carries it.
 void LivePose::follow(const Solve& solve, double now) {
   const SolveFeed::Seen seen = solve.feed->seen();
-  PoseWish wish{{solve.from.volume, solve.from.tissues, solve.from.weights, nullptr, nullptr, nullptr}, seen.motions, Blend::Linear, seen.mesh};
+  const PosedBody body{solve.from.volume, solve.from.tissues, solve.from.weights, nullptr, nullptr, nullptr};
+  PoseWish wish{body, seen.motions, Blend::Linear, seen.mesh, motions_of_rig(solve, seen)};
   if (!(wish == wish_)) {
     wish_ = std::move(wish);
     since_ = now;
   }
   swift_.ask(wish_);
-  if (coarse_.wish.mesh.rest == seen.mesh.rest) shown_ = coarse_.map, trouble_ = coarse_.trouble;
+  if (coarse_.wish.mesh.rest == seen.mesh.rest) {
+    trouble_ = coarse_.trouble;
+    if (coarse_.map) show(coarse_);
+  }
 }
 
 // Which map is shown; returns what it stands for.
 std::optional<DenseWish> LivePose::choose(Editor& editor) {
   shown_ = nullptr;
+  seen_ = {};
   posed_ = false;
   trouble_.clear();
   if (const Solve* solve = watched_solve(editor)) {
@@ -153,14 +188,19 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
   }
   const Document& document = editor.document();
   const bool painting = editor.workspace == Workspace::Skin;
-  if (!shows_pose(editor) || !document.volume || !document.tissues) return {};
+  if (!shows_pose(editor)) return {};
+  const PosedBody body{document.volume,   document.tissues, document.weights,
+                       document.armature, document.seams,   document.bone_map};
+  PoseWish wish{body, {}, preview_blend(editor)};
+  const Pose pose = wish.pose = shown_pose(editor);
+  wish.rig_motions = posed_from_rest(*document.armature, pose);
+  seen_ = wish;
+  if (!document.volume || !document.tissues) return {};
   if (!document.weights) {
     trouble_ = "No weights yet";
     return {};
   }
-  PoseWish wish{{document.volume, document.tissues, document.weights, document.armature, document.seams, document.bone_map}, {}, preview_blend(editor)};
-  const Pose pose = shown_pose(editor);
-  if (!motions_of_weights(*document.weights, *document.armature, pose, wish.motions)) {
+  if (!motions_of_weights(*document.weights, *document.armature, wish.rig_motions, wish.motions)) {
     trouble_ = "The weights belong to another rig";
     return {};
   }
@@ -175,9 +215,17 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
     return {};
   }
   posed_ = true;
-  if (coarse_.wish.body.volume == document.volume && !coarse_.wish.mesh.rest) shown_ = coarse_.map;
-  if (coarse_.wish == wish_) trouble_ = coarse_.trouble;
-  if (fine_.wish == wish_ && fine_.map) shown_ = fine_.map;
+  const PosedBody& made = coarse_.wish.body;
+  if (made == wish_.body) trouble_ = coarse_.trouble;
+  const bool is_of_rig = made.armature && same_bones(*made.armature, *document.armature);
+  if (coarse_.map && made.volume == document.volume && is_of_rig) {
+    show(coarse_);
+  } else if (trouble_.empty()) {
+    // The first map is being made, and the bones wait for it.
+    seen_.pose = rest_pose(*document.armature);
+    seen_.rig_motions.clear();
+  }
+  if (fine_.wish == wish_ && fine_.map) show(fine_);
   else if (editor.now < since_ + kRest) editor.wake_at(since_ + kRest);
   else if (shown_) thorough_.ask(wish_);
   if (painting) return {};

@@ -3,9 +3,9 @@
 // through the inverse map of that pose (core/deform/preview_map.h): rays, slices and whatever the pointer is over.
 //
 // Maps are made by threads of their own, always of the newest pose; one that a newer pose overtook before its turn is left
-// out. So the editor never waits for a map: the bones are where they are, the volume follows as fast as the machine can. A
-// pose that has rested for a while gets a map of half the step. A body of which only the weights are others, as after a
-// stroke, is made ready on what frames leave of the machine.
+// out. The editor never waits for a map. Bones are drawn in the pose of the map on show, so body and skeleton move
+// together, as fast as the machine can. A pose that has rested for a while gets a map of half the step. A body of which
+// only the weights are others, as after a stroke, is made ready on what frames leave of the machine.
 #pragma once
 
 #include <condition_variable>
@@ -44,6 +44,8 @@ struct PoseWish {
   std::vector<RigidTransform> motions;  // of the weights' bones
   Blend blend = Blend::DualQuaternion;
   MeshPose mesh = {};  // what carries tissue in place of its bones; empty: nothing
+  std::vector<RigidTransform> rig_motions = {};  // of the rig's bones, which are drawn
+  Pose pose = {};                                // of the rig; empty while a mesh carries the tissue
 
   bool operator==(const PoseWish&) const;
 };
@@ -86,6 +88,10 @@ class LivePose {
   void follow(Editor& editor);
   // Of the pose that is shown, or the last one that is known; null at rest and where nothing can follow.
   const std::shared_ptr<const PreviewMap>& map() const { return shown_; }
+  // Of the rig's bones, in the pose in which the map shows the body: an older one than the pose that is asked for while
+  // its map is being made, rest before there is any (no motions). Where no body follows, the pose that is asked for.
+  const std::vector<RigidTransform>& rig_motions() const { return seen_.rig_motions; }
+  const Pose& pose() const { return seen_.pose; }
   // Why the volume stays behind: "No weights yet"; "" where it follows, and where there is nothing to pose.
   const std::string& trouble() const { return trouble_; }
   bool posed() const { return posed_; }  // the pose on show is another than rest
@@ -95,12 +101,14 @@ class LivePose {
  private:
   std::optional<DenseWish> choose(Editor& editor);
   void follow(const Solve& solve, double now);
+  void show(const MapMaker::Made& made);
 
   MapMaker swift_, thorough_;
   MapMaker::Made coarse_, fine_;  // of either
   PoseWish wish_;
   double since_ = 0;  // the editor's time when the wish came up
   std::shared_ptr<const PreviewMap> shown_;
+  PoseWish seen_;  // what the views show
   std::string trouble_;
   bool posed_ = false, warmed_up_ = false;
   LiveMetrics metrics_;

@@ -7,6 +7,7 @@
 #include "core/rig/joint_limits.h"
 #include "core/rig/mirror.h"
 #include "editor/handling.h"
+#include "editor/live_pose.h"
 #include "editor/painting.h"
 #include "editor/project.h"
 #include "editor/skin_display.h"
@@ -20,6 +21,12 @@ Pose pose_of(const Document& document) { return document.pose ? *document.pose :
 Pose shown_pose(const Editor& editor) {
   if (editor.views->preview_pose) return *editor.views->preview_pose;
   return editor.workspace == Workspace::Skin ? test_pose(editor) : pose_of(editor.document());
+}
+
+Pose seen_pose(const Editor& editor) {
+  const Pose& seen = editor.live->pose();
+  const bool is_of_rig = seen.rotation.size() == editor.document().armature->bones.size();
+  return is_of_rig && !shown_result(editor) ? seen : shown_pose(editor);
 }
 
 std::vector<int> chosen_bones(const Editor& editor) {

@@ -13,6 +13,8 @@ namespace limber::editor {
 // At rest where the document has none. Needs a rig.
 Pose pose_of(const Document& document);
 Pose shown_pose(const Editor& editor);
+// The pose in which the last frame shows the bones, and the body where it follows them. Handles and marks stand by it.
+Pose seen_pose(const Editor& editor);
 
 // The chosen bones that hang on no other chosen one, all bones where none is chosen.
 std::vector<int> chosen_bones(const Editor& editor);

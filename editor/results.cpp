@@ -10,7 +10,6 @@
 
 #include "core/base/json_text.h"
 #include "core/report/report.h"
-#include "core/resample/pose_path.h"
 #include "editor/editor.h"
 #include "editor/fem_view.h"
 #include "editor/live_pose.h"
@@ -277,17 +276,6 @@ Document shown_document(const Editor& editor) {
 
 namespace {
 
-// Of the bones of the rig that the solve began with, as far as it has come.
-std::vector<RigidTransform> motions_of(const Solve& solve) {
-  const SolveFeed::Seen seen = solve.feed->seen();
-  const Armature& armature = *solve.from.armature;
-  std::vector<RigidTransform> motions = posed_from_rest(armature, part_of_pose(*solve.from.pose, seen.reached));
-  const auto& bones = solve.from.weights->bones();
-  for (std::size_t b = 0; b < bones.size() && b < seen.motions.size(); ++b)
-    if (const auto bone = armature.find(bones[b])) motions[static_cast<std::size_t>(*bone)] = seen.motions[b];
-  return motions;
-}
-
 // `result` null: at rest, or in the pose of the moment.
 void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<const Result>& result) {
   const Document& document = editor.document();
@@ -301,12 +289,9 @@ void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<
     }
     if (document.armature && result->from_pose && result->from_pose->rotation.size() == document.armature->bones.size())
       scene.posed_from_rest = posed_from_rest(*document.armature, *result->from_pose);
-  } else if (const Solve* solve = watched_solve(editor)) {
+  } else if (watched_solve(editor) || shows_pose(editor)) {
     scene.pose = editor.live->map();
-    if (scene.pose) scene.posed_from_rest = motions_of(*solve);
-  } else if (shows_pose(editor)) {
-    scene.posed_from_rest = posed_from_rest(*document.armature, shown_pose(editor));
-    scene.pose = editor.live->map();
+    scene.posed_from_rest = editor.live->rig_motions();
   }
 }
 

@@ -27,7 +27,7 @@ struct SeenBone {
 std::vector<SeenBone> bones_seen(const Editor& editor, const SeenFrom& view) {
   const bool posed = editor.workspace == Workspace::Pose;
   const std::shared_ptr<const Armature> rig = posed ? editor.document().armature : shown_rig(editor);
-  const auto moved = posed_from_rest(*rig, posed ? shown_pose(editor) : rest_pose(*rig));
+  const auto moved = posed_from_rest(*rig, posed ? seen_pose(editor) : rest_pose(*rig));
   std::vector<SeenBone> seen;
   for (int bone = 0; bone < std::ssize(rig->bones); ++bone) {
     SeenBone one{bone, {}};

@@ -40,7 +40,7 @@ class Blending final : public TransformTool {
   void draw(Editor& editor, const ViewPlace& place) override {
     if (place.id != view_.place.id) return;
     const int bone = bones_.front();
-    const glm::dvec3 pivot = posed_from_rest(*armature_, shown_pose(editor))[bone] * armature_->bones[bone].head;
+    const glm::dvec3 pivot = posed_from_rest(*armature_, seen_pose(editor))[bone] * armature_->bones[bone].head;
     const std::string number = (number_.typed() ? number_.text() : text_of_number("%.0f", 100 * amount_)) + " %";
     GizmoPainter(editor, view_).read_out(pivot, number, blend_.label, blend_.words, editor.look.theme.view_text2);
   }

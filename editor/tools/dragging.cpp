@@ -57,7 +57,7 @@ class Dragging final : public TransformTool {
     if (place.id != view_.place.id) return;
     const GizmoPainter painter(editor, view_);
     const Theme& theme = editor.look.theme;
-    const auto posed = posed_from_rest(*armature_, shown_pose(editor));
+    const auto posed = posed_from_rest(*armature_, seen_pose(editor));
     int bone = bone_;
     for (int i = 0; !is_root_ && i < chain_ && bone >= 0; ++i, bone = armature_->bones[bone].parent)
       painter.line(posed[bone] * armature_->bones[bone].head, posed[bone] * armature_->bones[bone].tail, kViewAccent, 2);

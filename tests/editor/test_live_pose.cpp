@@ -6,13 +6,15 @@
 #include "core/bones/bone_parts.h"
 #include "core/skin/rigid.h"
 #include "editor/editor_state.h"
+#include "editor/gizmo.h"
 #include "editor/live_pose.h"
 #include "editor/panels/change.h"
 #include "editor/posing.h"
 #include "editor/project.h"
 #include "editor/results.h"
+#include "editor/seen_from.h"
 #include "render/gl/object.h"
-#include "tests/editor/small_limb.h"
+#include "tests/editor/small_clip.h"
 
 using namespace limber;
 using namespace limber::editor;
@@ -54,6 +56,17 @@ struct LiveEditor : LimbEditor {
   }
 };
 
+// A second of a motion that bends the joint.
+void add_clip_and_play(LiveEditor& test) {
+  Document next = test.editor->document();
+  add_clip(next, clip_of(std::make_shared<const Motion>(limber::test::bending_motion(*next.armature)), "bending"));
+  commit(*test.editor, "Add clip", next);
+  play(*test.editor, 1);
+  test.play("wait 1");
+  stop_playing(*test.editor);
+  test.play("wait-job");
+}
+
 }  // namespace
 
 TEST_CASE("live pose: without a sidebar the status bar tells the change of volume") {
@@ -86,6 +99,50 @@ TEST_CASE("live pose: the volume follows while a bone is turned, is kept with Re
   CHECK(test.scene().pose);
   test.play("key Ctrl+1\nwait-job");
   CHECK(!test.scene().pose);
+}
+
+TEST_CASE("live pose: in every frame of a turn, of a motion and on the way back bones and body are in one pose") {
+  LiveEditor test;
+  int frames = 0, behind = 0;
+  double worst = 0;
+  // Called once a frame, while the scene is still that of the frame before.
+  test.editor->each_frame.push_back([&](Editor& editor) {
+    const auto& motions = test.scene().posed_from_rest;
+    if (editor.workspace != Workspace::Pose || !test.scene().armature) return true;
+    ++frames;
+    behind += seen_pose(editor) != shown_pose(editor);
+    const bool at_rest = motions.empty() || glm::angle(motions[1].rotation) < 1e-9;
+    worst = std::max(worst, test.scene().pose ? test.error() : at_rest ? 0 : INFINITY);
+    return true;
+  });
+  test.turn("X", 45);
+  for (const char digit : std::string("0918273645")) test.play(std::string("key Backspace\nkey ") + digit);
+  test.play("key Return\nwait-job");
+  add_clip_and_play(test);
+  test.play("key Ctrl+Z\nwait-job");
+  CHECK(frames > 60);
+  CHECK(behind > 10);  // so that there was a pose to wait for
+  CHECK(worst < 2);    // mm
+  test.editor->each_frame.clear();
+}
+
+TEST_CASE("live pose: handles, and what the pointer meets, stand at the bones that are seen") {
+  LiveEditor test;
+  test.turn("X", 45);
+  test.play("key Return\nwait-job");
+  Pose further = *test.editor->document().pose;
+  further.rotation[1] = glm::angleAxis(1.5, glm::dvec3(1, 0, 0));
+  show_pose(*test.editor, further);
+  CHECK(seen_pose(*test.editor) == *test.editor->document().pose);
+  const auto seen = body_seen(*test.editor);
+  REQUIRE(seen);
+  test.editor->tool = Tool::Move;
+  const auto gizmo = gizmo_in(*test.editor, *seen);
+  REQUIRE(gizmo);
+  const glm::dvec3 tail = test.editor->document().armature->bones[1].tail;
+  CHECK(glm::distance(gizmo->centre, test.scene().posed_from_rest[1] * tail) < 1e-9);
+  test.play("wait-job");
+  CHECK(seen_pose(*test.editor) == further);
 }
 
 TEST_CASE("live pose: a pose that rests is refined, and coarse again once it changes") {
