@@ -87,17 +87,29 @@ BoneDistance::BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ive
     for (int i = 0; i < std::lround(spacing[axis] / edge_); ++i) blur(mm_, lattice_.size, axis);
   for (std::int64_t i = 0; i < std::ssize(mm_); ++i)
     mm_[i] = inside[i] ? std::min(mm_[i], -least) : std::max(mm_[i], least);
+  least_ = mm_;
+  for (const std::int64_t step : {std::int64_t{1}, std::int64_t{lattice_.size.x}, std::int64_t{lattice_.size.x} * lattice_.size.y})
+    for (std::int64_t i = 0; i + step < std::ssize(least_); ++i) least_[i] = std::min(least_[i], least_[i + step]);
+}
+
+bool BoneDistance::holds(const glm::dvec3& place) const {
+  return glm::all(glm::greaterThanEqual(place, glm::dvec3(0))) &&
+         glm::all(glm::lessThan(place, glm::dvec3(lattice_.size - 1)));
+}
+
+std::optional<BoneDistance::Sample> BoneDistance::below(const glm::dvec3& point, double limit) const {
+  const glm::dvec3 place = (point - lowest_) / edge_;
+  if (!holds(place) || least_[lattice_.index(glm::ivec3(place))] >= limit) return std::nullopt;
+  return at(point);
 }
 
 std::optional<BoneDistance::Sample> BoneDistance::at(const glm::dvec3& point) const {
   const glm::dvec3 place = (point - lowest_) / edge_;
-  const glm::dvec3 floor = glm::floor(place);
-  const glm::ivec3 low(floor);
-  if (glm::any(glm::lessThan(place, glm::dvec3(0))) || glm::any(glm::greaterThanEqual(low + 1, lattice_.size)))
-    return std::nullopt;
+  if (!holds(place)) return std::nullopt;
+  const glm::ivec3 low(place);  // whole numbers below; std::floor would be a call
   const std::int64_t row = lattice_.size.x, slice = row * lattice_.size.y;
   const float* p = &mm_[lattice_.index(low)];
-  const glm::dvec3 f = place - floor;
+  const glm::dvec3 f = place - glm::dvec3(low);
   // Along x, then y, then z; differences of the same give the slope.
   const double x00 = p[0] + f.x * (p[1] - p[0]), x10 = p[row] + f.x * (p[row + 1] - p[row]);
   const double x01 = p[slice] + f.x * (p[slice + 1] - p[slice]),

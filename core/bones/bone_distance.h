@@ -31,16 +31,21 @@ class BoneDistance {
   double edge_mm() const { return edge_; }
   // Linear between lattice points; none outside of the lattice.
   std::optional<Sample> at(const glm::dvec3& point) const;
+  // The same, and none where all lattice points around are `limit` mm or further from the bone: of many points that are
+  // looked at only some can lie in it.
+  std::optional<Sample> below(const glm::dvec3& point, double limit) const;
   // How far a point lies outside of the lattice along the axis where it is most, mm; 0 in it.
   double outside(const glm::dvec3& point) const;
   // The lattice points next to the surface, on both sides, x fastest.
   std::vector<SurfacePoint> surface() const;
 
  private:
+  bool holds(const glm::dvec3& place) const;
+
   glm::dvec3 lowest_;
   double edge_;
   VoxelBox lattice_;
-  std::vector<float> mm_;
+  std::vector<float> mm_, least_;  // at each lattice point, and of the eight from it on
 };
 
 }  // namespace limber

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
+#include "core/base/pages.h"
 #include "core/base/parallel.h"
+#include "core/volume/float_lanes.h"
 
 namespace limber {
 
@@ -13,29 +16,27 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 
-// Eight neighbouring lines, voxel by voxel.
-using Eight = std::array<float, kBrick>;
+using Eight = FloatLanes<kBrick / 4>;  // eight neighbouring lines, voxel by voxel
 
 // The least of f[j] + (i - j)^2 squared_spacing over j, for eight lines at once. Air, of height zero, must bound them.
 Eight lowest_around(const Eight* f, double squared_spacing) {
   Eight lowest = *f;
   for (std::ptrdiff_t steps = 1;; ++steps) {
-    const float rise = static_cast<float>(squared_spacing * double(steps * steps));
-    int further = 0;
-    for (int l = 0; l < kBrick; ++l) further |= lowest[l] > rise;
-    if (!further) return lowest;
-    const Eight &before = f[-steps], &after = f[steps];
-    for (int l = 0; l < kBrick; ++l) {
-      const float nearer = std::min(before[l], after[l]) + rise;
-      lowest[l] = std::min(lowest[l], nearer);
-    }
+    const auto rise = static_cast<float>(squared_spacing * double(steps * steps));
+    if (!any_above(lowest, rise)) return lowest;
+    lower(lowest, f[-steps], rise);
+    lower(lowest, f[steps], rise);
   }
 }
 
 }  // namespace
 
 TissueDepth::TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing)
-    : tissue_(&tissue), depth_(tissue.bricks().size() * kBrickVoxels) {
+    : tissue_(&tissue) {
+  const std::size_t count = tissue.bricks().size() * kBrickVoxels;
+  depth_.reserve(count);
+  want_large_pages(depth_.data(), static_cast<std::int64_t>(count * sizeof(float)));
+  depth_.resize(count);
   pass_along_x(spacing.x);
   pass_across(1, spacing.y);
   pass_across(2, spacing.z);
@@ -96,26 +97,37 @@ void TissueDepth::pass_across(int axis, double spacing) {
       Eight* line = &lines[1];
       for (const int brick : column)
         for (int i = 0; i < kBrick; ++i)
-          std::copy_n(&depth_[std::int64_t{brick} * kBrickVoxels + slice * across + i * along], kBrick, (line++)->begin());
+          std::memcpy(line++, &depth_[std::int64_t{brick} * kBrickVoxels + slice * across + i * along], sizeof(Eight));
       line = &lines[1];
       for (const int brick : column)
         for (int i = 0; i < kBrick; ++i, ++line) {
           const Eight lowest = lowest_around(line, spacing * spacing);
-          std::copy_n(lowest.begin(), kBrick, &depth_[std::int64_t{brick} * kBrickVoxels + slice * across + i * along]);
+          std::memcpy(&depth_[std::int64_t{brick} * kBrickVoxels + slice * across + i * along], &lowest, sizeof(Eight));
         }
     }
   });
 }
 
 double TissueDepth::operator()(const glm::dvec3& rest) const {
-  const glm::dvec3 low = glm::floor(rest), f = rest - low;
-  const glm::ivec3 v(low);
-  double depth = 0;
-  for (int k = 0; k < 8; ++k) {
-    const glm::ivec3 corner(k & 1, k >> 1 & 1, k >> 2);
-    const double share = (corner.x ? f.x : 1 - f.x) * (corner.y ? f.y : 1 - f.y) * (corner.z ? f.z : 1 - f.z);
-    if (share > 0) depth += share * at_voxel(v + corner);
+  glm::ivec3 v(rest);
+  v -= glm::ivec3(glm::lessThan(rest, glm::dvec3(v)));  // whole numbers below; std::floor would be a call
+  std::array<float, 8> at{};
+  const glm::ivec3 in = v & 7;
+  const auto is_inside = [](const glm::ivec3& low, const glm::ivec3& end) {
+    return glm::all(glm::greaterThanEqual(low, glm::ivec3(0))) && glm::all(glm::lessThan(low, end));
+  };
+  if (is_inside(in, glm::ivec3(7)) && is_inside(v, tissue_->grid_size())) {  // the eight voxels lie in one brick
+    const int brick = tissue_->brick_at(v);
+    if (brick < 0) return 0;
+    const float* first = &depth_[std::int64_t{brick} * kBrickVoxels + in.x + 8 * in.y + 64 * in.z];
+    at = {first[0], first[1], first[8], first[9], first[64], first[65], first[72], first[73]};
+  } else {
+    for (int k = 0; k < 8; ++k) at[k] = at_voxel(v + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
   }
+  const glm::dvec3 high = rest - glm::dvec3(v), low = 1.0 - high;
+  double depth = 0;
+  for (int k = 0; k < 8; ++k)
+    depth += (k & 1 ? high.x : low.x) * (k & 2 ? high.y : low.y) * (k & 4 ? high.z : low.z) * at[k];
   return depth;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/volume/float_lanes.h"
 
 namespace limber {
 
@@ -82,6 +83,9 @@ struct CellsOfNode {
   }
 };
 
+FourFloats four(const glm::vec3& v) { return FourFloats{v.x, v.y, v.z, 0}; }
+glm::vec3 three(const FourFloats& v) { return {v[0], v[1], v[2]}; }
+
 class Minimizer {
  public:
   Minimizer(const FleshCells& cells, const PosedBones* bones, FleshContact* contact)
@@ -98,7 +102,8 @@ class Minimizer {
     last_ = outward_ = apart_ = shift_;
     is_inside_.assign(count_, 0);
     push_.assign(count_, 0);
-    for (auto* each : {&right_, &residual_, &direction_, &image_}) each->assign(count_, glm::vec3(0));
+    for (auto* each : {&right_, &residual_, &image_}) each->assign(count_, glm::vec3(0));
+    direction_.resize(count_);
     parallel_for(std::ssize(cells.nodes), kGrain, [&](std::int64_t first, std::int64_t last) {
       for (auto c = first; c < last; ++c)
         start_[c] = glm::mat3(gradient(c, [&](std::int32_t n) { return cells_.blended[n]; }));
@@ -205,8 +210,10 @@ class Minimizer {
       for (const auto& [column, entry] : block) column_.push_back(column), entry_.push_back(entry);
   }
 
-  glm::vec3 times(std::int64_t n, const std::vector<glm::vec3>& x) const {
-    glm::vec3 sum = diagonal_[n] * x[n];
+  // Of the matrix and x.
+  template <class Vector>
+  Vector times(std::int64_t n, const std::vector<Vector>& x) const {
+    Vector sum = diagonal_[n] * x[n];
     for (auto i = row_[n]; i < row_[n + 1]; ++i) sum += entry_[i] * x[column_[i]];
     return sum;
   }
@@ -276,25 +283,26 @@ class Minimizer {
   void solve() {
     double rho = sum([&](std::int64_t n) {
       residual_[n] = right_[n] - times(n, shift_);
-      direction_[n] = residual_[n] / diagonal_[n];
-      return dot(residual_[n], direction_[n]);
+      const glm::vec3 scaled = residual_[n] / diagonal_[n];
+      direction_[n] = four(scaled);
+      return dot(residual_[n], scaled);
     });
     for (int k = 0; k < kSolves && rho > 0; ++k) {
       const double curvature = sum([&](std::int64_t n) {
-        image_[n] = times(n, direction_);
-        return dot(image_[n], direction_[n]);
+        image_[n] = three(times(n, direction_));
+        return dot(image_[n], three(direction_[n]));
       });
       if (!(curvature > 0)) return;
       const auto alpha = static_cast<float>(rho / curvature);
       const double next = sum([&](std::int64_t n) {
-        shift_[n] += alpha * direction_[n];
+        shift_[n] += alpha * three(direction_[n]);
         residual_[n] -= alpha * image_[n];
         return dot(residual_[n], residual_[n] / diagonal_[n]);
       });
       const auto beta = static_cast<float>(next / rho);
       rho = next;
       parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
-        for (auto n = first; n < last; ++n) direction_[n] = residual_[n] / diagonal_[n] + beta * direction_[n];
+        for (auto n = first; n < last; ++n) direction_[n] = four(residual_[n] / diagonal_[n]) + beta * direction_[n];
       });
     }
   }
@@ -320,7 +328,8 @@ class Minimizer {
   const std::int64_t count_;
   int taken_ = 0;
   std::vector<glm::mat3> start_, pull_;                                         // by cell
-  std::vector<glm::vec3> shift_, last_, right_, residual_, direction_, image_;  // by node
+  std::vector<glm::vec3> shift_, last_, right_, residual_, image_;              // by node
+  std::vector<FourFloats> direction_;                                           // by node; it is read most
   std::vector<std::int64_t> row_;
   std::vector<std::int32_t> column_;
   std::vector<float> entry_, diagonal_;

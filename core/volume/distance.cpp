@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <mutex>
 
 #include "core/base/parallel.h"
+#include "core/volume/float_lanes.h"
 
 namespace limber {
 
@@ -15,6 +16,8 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Lines along y or z are gathered this many at a time, so that memory is read in whole cache lines.
 constexpr int kLines = 16;
+// Steps: where all seeds lie nearer, trying every place costs less than an envelope does.
+constexpr int kNear = 48;
 
 // Along x the seeds are a mask: two sweeps count steps.
 void distance_along_x(const std::uint8_t* seed, float* squared, int count, double step) {
@@ -67,29 +70,50 @@ struct Envelope {
   }
 };
 
-// All lines of `count` voxels, `stride` apart, that start at the `width` neighbouring voxels from `first`.
-void distance_along(float* first, int width, std::int64_t stride, int count, double step, Envelope& envelope,
-                    std::vector<float>& gathered, std::vector<float>& out) {
-  for (int begin = 0; begin < width; begin += kLines) {
-    const int lines = std::min(kLines, width - begin);
-    bool any = false;
-    for (int i = 0; i < count; ++i)
-      for (int l = 0; l < lines; ++l) {
-        const float value = first[begin + l + i * stride];
-        gathered[std::int64_t{l} * count + i] = value;
-        any |= value != 0 && value != kInfinity;
-      }
-    // All zero, or all infinite or zero with nothing between: only lines with both need the envelope.
-    for (int l = 0; l < lines; ++l) {
-      float* line = &gathered[std::int64_t{l} * count];
-      const bool uniform = !any && std::all_of(line, line + count, [&](float v) { return v == line[0]; });
-      if (uniform)
-        std::copy_n(line, count, &out[std::int64_t{l} * count]);
-      else
-        envelope.lower(line, &out[std::int64_t{l} * count], count, step);
+using Across = FloatLanes<kLines / 4>;  // a voxel of each of kLines lines
+
+// lines[i] becomes min over j of lines[j] + (step (i - j))^2 by trying every j; false, and `out` has no meaning, where some
+// seeds lie further than kNear steps away.
+bool lower_by_trying(const std::vector<Across>& lines, std::vector<Across>& out, int count, double step) {
+  for (int i = 0; i < count; ++i) {
+    Across lowest = lines[i];
+    for (int k = 1; k <= i || k < count - i; ++k) {
+      const auto rise = static_cast<float>(step * k * (step * k));
+      if (!any_above(lowest, rise)) break;
+      if (k > kNear) return false;
+      if (k <= i) lower(lowest, lines[i - k], rise);
+      if (k < count - i) lower(lowest, lines[i + k], rise);
     }
-    for (int i = 0; i < count; ++i)
-      for (int l = 0; l < lines; ++l) first[begin + l + i * stride] = out[std::int64_t{l} * count + i];
+    out[i] = lowest;
+  }
+  return true;
+}
+
+void lower_by_envelope(const std::vector<Across>& lines, std::vector<Across>& out, int count, double step) {
+  Envelope envelope(count);
+  std::vector<float> line(count), lowered(count);
+  for (int l = 0; l < kLines; ++l) {
+    for (int i = 0; i < count; ++i) line[i] = lines[i][l / 4][l % 4];
+    envelope.lower(line.data(), lowered.data(), count, step);
+    for (int i = 0; i < count; ++i) out[i][l / 4][l % 4] = lowered[i];
+  }
+}
+
+// All lines of `count` voxels, `stride` apart, that start at the `width` neighbouring voxels from `first`.
+void distance_along(float* first, int width, std::int64_t stride, int count, double step, std::vector<Across>& lines,
+                    std::vector<Across>& out) {
+  for (int begin = 0; begin < width; begin += kLines) {
+    const int used = std::min(kLines, width - begin);
+    bool are_constant = true;
+    for (int i = 0; i < count; ++i) {
+      const float* from = first + begin + i * stride;
+      lines[i].fill(FourFloats{} + from[0]);
+      std::memcpy(&lines[i], from, used * sizeof(float));
+      are_constant = are_constant && std::memcmp(&lines[i], &lines[0], sizeof(Across)) == 0;
+    }
+    if (are_constant) continue;
+    if (!lower_by_trying(lines, out, count, step)) lower_by_envelope(lines, out, count, step);
+    for (int i = 0; i < count; ++i) std::memcpy(first + begin + i * stride, &out[i], used * sizeof(float));
   }
 }
 }  // namespace
@@ -122,22 +146,20 @@ std::vector<float> squared_distance(const VoxelBox& box, const std::vector<std::
 
   // Along x and y: slice by slice.
   parallel_for(nz, 1, [&](std::int64_t begin, std::int64_t end) {
-    Envelope envelope(ny);
-    std::vector<float> gathered(std::int64_t{kLines} * ny), out(gathered.size());
+    std::vector<Across> lines(ny), out(ny);
     for (std::int64_t z = begin; z < end && !progress.cancelled(); ++z) {
       for (int y = 0; y < ny; ++y)
         distance_along_x(&seed[z * slice + std::int64_t{y} * nx], &squared[z * slice + std::int64_t{y} * nx], nx, spacing.x);
-      distance_along(&squared[z * slice], nx, nx, ny, spacing.y, envelope, gathered, out);
+      distance_along(&squared[z * slice], nx, nx, ny, spacing.y, lines, out);
     }
   });
   progress.update("distances", 0.6);
 
   // Along z: row by row.
   parallel_for(ny, 1, [&](std::int64_t begin, std::int64_t end) {
-    Envelope envelope(nz);
-    std::vector<float> gathered(std::int64_t{kLines} * nz), out(gathered.size());
+    std::vector<Across> lines(nz), out(nz);
     for (std::int64_t y = begin; y < end && !progress.cancelled(); ++y)
-      distance_along(&squared[y * nx], nx, slice, nz, spacing.z, envelope, gathered, out);
+      distance_along(&squared[y * nx], nx, slice, nz, spacing.z, lines, out);
   });
   progress.update("distances", 1);
   return squared;

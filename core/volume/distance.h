@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Exact Euclidean distance in a box of voxels: for every voxel, how far its centre lies from the centre of the nearest
 // seed voxel. One pass per axis; along a line the result is the lower envelope of one parabola per voxel
-// [Felzenszwalb & Huttenlocher 2012], so the cost is linear in voxels and independent of the distances.
+// [Felzenszwalb & Huttenlocher 2012], so the cost is linear in voxels. Where all seeds lie near, each voxel tries every
+// place of its line that can be nearer, several lines at a time, which costs less than the envelope.
 //
 // Squared distances are kept as floats between the passes: exact for whole-number isotropic spacings up to 4096 voxels,
 // else right to 1e-6 of the value.

@@ -161,3 +161,20 @@ TEST_CASE("least shift: a bone is pushed back to the side that it comes from, al
   CHECK(found.free);
   CHECK(found.shift.x == doctest::Approx(-12).epsilon(0.05));
 }
+
+TEST_CASE("bone distance: a point is passed over below a limit only where the distance there is no less") {
+  const glm::dvec3 spacing(1);
+  const auto voxels = voxels_of(ball({20, 20, 20}, 8), spacing, glm::dvec3(40));
+  const BoneDistance bone(spacing, voxels, {{5, 5, 5}, {31, 31, 31}});
+  int passed = 0, looked_at = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const glm::dvec3 point(3 + i % 29 * 1.237, 3 + i / 29 % 27 * 1.311, 3 + i / 783 * 1.353);
+    const double limit = i % 5 - 2.5;
+    const auto at = bone.at(point), below = bone.below(point, limit);
+    if (below) CHECK((at && at->mm == below->mm && at->slope == below->slope));
+    if (at && !below) CHECK(at->mm >= limit);
+    passed += at && !below, looked_at += below.has_value();
+  }
+  CHECK(passed > 5000);
+  CHECK(looked_at > 500);
+}

@@ -49,6 +49,23 @@ TEST_CASE("distance: equals trying every seed, at any spacing and any density of
     }
 }
 
+TEST_CASE("distance: equals trying every seed on long lines too, whose seeds lie far apart") {
+  for (const VoxelBox& box : {VoxelBox{{0, 0, 0}, {18, 150, 2}}, VoxelBox{{0, 0, 0}, {3, 2, 150}}})
+    for (const double step : {0.5, 2.0})
+      for (const unsigned key : {1u, 2u}) {
+        const auto seed = random_seeds(box, 0.003, key);
+        const auto squared = squared_distance(box, seed, glm::dvec3(2, step, step));
+        double worst = 0;
+        for (int z = 0; z < box.size.z; z += 3)
+          for (int y = 0; y < box.size.y; y += 3)
+            for (int x = 0; x < box.size.x; ++x) {
+              const double truth = nearest_by_trying_all(box, seed, glm::dvec3(2, step, step), {x, y, z});
+              worst = std::max(worst, std::abs(squared[box.index({x, y, z})] - truth) / (1 + truth));
+            }
+        CHECK(worst < 1e-6);
+      }
+}
+
 TEST_CASE("distance: is infinite without a seed, and one seed is enough") {
   const VoxelBox box{{0, 0, 0}, {4, 5, 6}};
   std::vector<std::uint8_t> seed(box.voxel_count());
