@@ -20,35 +20,33 @@ struct AirRun {
   int begin, end;  // x
 };
 
-// Runs of air of all rows, joined where they touch through faces.
+// Runs of air that have tissue of their row on both sides, joined where they touch through faces. All other air of a row
+// reaches the border of the grid.
 class AirRuns {
  public:
   explicit AirRuns(const LabelVolume& volume) : size_(volume.grid.size) {
-    first_.push_back(0);
+    rows_.reserve(std::size_t(size_.y) * size_.z + 1);
     for (int z = 0; z < size_.z; ++z)
-      for (int y = 0; y < size_.y; ++y) {
-        add_row(&volume.voxels[volume.grid.index({0, y, z})]);
-        first_.push_back(std::ssize(runs_));
-      }
+      for (int y = 0; y < size_.y; ++y) add_row(&volume.voxels[volume.grid.index({0, y, z})]);
+    rows_.push_back({std::ssize(runs_), 0, 0});
     joined_.resize(runs_.size());
     std::iota(joined_.begin(), joined_.end(), 0);
-    for (int z = 0; z < size_.z; ++z)
-      for (int y = 0; y < size_.y; ++y) {
-        if (y > 0) join_rows(row(y, z), row(y - 1, z));
-        if (z > 0) join_rows(row(y, z), row(y, z - 1));
-      }
+    is_open_.resize(runs_.size());
+    for_each_row_with_runs([&](std::int64_t here, int y, int z) {
+      if (y > 0) join_rows(here, row(y - 1, z));
+      if (z > 0) join_rows(here, row(y, z - 1));
+      open_beside_border(here, y, z);
+    });
   }
 
   std::vector<AirPocket> pockets() {
-    std::vector<bool> is_open(runs_.size());
-    for_each_run([&](std::int64_t r, int y, int z) {
-      const bool at_border = y == 0 || z == 0 || y == size_.y - 1 || z == size_.z - 1 || runs_[r].begin == 0 || runs_[r].end == size_.x;
-      if (at_border) is_open[root(r)] = true;
-    });
+    for (std::int64_t r = 0; r < std::ssize(runs_); ++r)
+      if (is_open_[r]) is_open_[root(r)] = true;
     std::map<std::int64_t, AirPocket> found;
-    for_each_run([&](std::int64_t r, int y, int z) {
-      if (is_open[root(r)]) return;
-      for (int x = runs_[r].begin; x < runs_[r].end; ++x) found[root(r)].push_back({x, y, z});
+    for_each_row_with_runs([&](std::int64_t here, int y, int z) {
+      for (std::int64_t r = rows_[here].first; r < rows_[here + 1].first; ++r)
+        if (!is_open_[root(r)])
+          for (int x = runs_[r].begin; x < runs_[r].end; ++x) found[root(r)].push_back({x, y, z});
     });
     std::vector<AirPocket> pockets;
     for (auto& [_, pocket] : found) pockets.push_back(std::move(pocket));
@@ -56,15 +54,21 @@ class AirRuns {
   }
 
  private:
+  struct Row {
+    std::int64_t first;            // run
+    int tissue_begin, tissue_end;  // x; without tissue the size of the grid, and 0
+  };
+
   std::int64_t row(int y, int z) const { return y + std::int64_t{size_.y} * z; }
 
   void add_row(const Label* labels) {
-    for (int x = end_of_tissue(labels, 0, size_.x); x < size_.x;) {
-      const int begin = x;
-      x = end_of_air(labels, x, size_.x);
-      runs_.push_back({begin, x});
-      x = end_of_tissue(labels, x, size_.x);
+    Row row{std::ssize(runs_), end_of_air(labels, 0, size_.x), 0};
+    for (int x = row.tissue_begin; x < size_.x;) {
+      const int begin = row.tissue_end = end_of_tissue(labels, x, size_.x);
+      x = end_of_air(labels, begin, size_.x);
+      if (x < size_.x) runs_.push_back({begin, x});
     }
+    rows_.push_back(row);
   }
 
   std::int64_t root(std::int64_t run) {
@@ -73,8 +77,8 @@ class AirRuns {
   }
 
   void join_rows(std::int64_t a, std::int64_t b) {
-    std::int64_t i = first_[a], k = first_[b];
-    while (i < first_[a + 1] && k < first_[b + 1]) {
+    std::int64_t i = rows_[a].first, k = rows_[b].first;
+    while (i < rows_[a + 1].first && k < rows_[b + 1].first) {
       if (std::max(runs_[i].begin, runs_[k].begin) < std::min(runs_[i].end, runs_[k].end)) {
         const std::int64_t one = root(i), other = root(k);
         joined_[std::max(one, other)] = std::min(one, other);
@@ -83,16 +87,30 @@ class AirRuns {
     }
   }
 
+  // Runs of a row that touch the border of the grid, or air that reaches it in a row beside.
+  void open_beside_border(std::int64_t here, int y, int z) {
+    const bool at_border = y == 0 || z == 0 || y == size_.y - 1 || z == size_.z - 1;
+    for (std::int64_t r = rows_[here].first; r < rows_[here + 1].first; ++r) {
+      const auto opens = [&](const Row& beside) {
+        return runs_[r].begin < beside.tissue_begin || runs_[r].end > beside.tissue_end;
+      };
+      is_open_[r] = at_border || opens(rows_[row(y - 1, z)]) || opens(rows_[row(y + 1, z)]) ||
+                    opens(rows_[row(y, z - 1)]) || opens(rows_[row(y, z + 1)]);
+    }
+  }
+
   template <class Body>
-  void for_each_run(const Body& body) {
+  void for_each_row_with_runs(const Body& body) const {
     for (int z = 0; z < size_.z; ++z)
       for (int y = 0; y < size_.y; ++y)
-        for (std::int64_t r = first_[row(y, z)]; r < first_[row(y, z) + 1]; ++r) body(r, y, z);
+        if (const std::int64_t here = row(y, z); rows_[here].first < rows_[here + 1].first) body(here, y, z);
   }
 
   glm::ivec3 size_;
+  std::vector<Row> rows_;
   std::vector<AirRun> runs_;
-  std::vector<std::int64_t> first_, joined_;
+  std::vector<std::int64_t> joined_;
+  std::vector<bool> is_open_;
 };
 
 // Which pocket at rest, of those around the rest places of a pocket's walls, holds how many voxels: their sum, each counted once.
@@ -166,8 +184,9 @@ void fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSe
 std::vector<AirPocket> air_pockets(const LabelVolume& volume) { return AirRuns(volume).pockets(); }
 
 std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point) {
-  const std::vector<AirPocket> pockets = air_pockets(posed), rest_pockets = air_pockets(rest);
+  const std::vector<AirPocket> pockets = air_pockets(posed);
   if (pockets.empty()) return {};
+  const std::vector<AirPocket> rest_pockets = air_pockets(rest);
   std::unordered_map<std::int64_t, int> pocket_at_rest;
   for (size_t p = 0; p < rest_pockets.size(); ++p)
     for (const glm::ivec3& v : rest_pockets[p]) pocket_at_rest[rest.grid.index(v)] = static_cast<int>(p);

@@ -6,6 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/volume/label_runs.h"
+
 namespace limber {
 
 namespace {
@@ -24,16 +26,11 @@ class Organs {
         parts_(connected_components(posed, nullptr, &soft)),
         has_(65536),
         box_(65536) {
-    glm::ivec3 v;
-    std::size_t at = 0;
-    for (v.z = 0; v.z < posed.grid.size.z; ++v.z)
-      for (v.y = 0; v.y < posed.grid.size.y; ++v.y)
-        for (v.x = 0; v.x < posed.grid.size.x; ++v.x, ++at)
-          if (const Label label = posed.voxels[at]) {
-            ++has_[label];
-            box_[label].low = glm::min(box_[label].low, v);
-            box_[label].high = glm::max(box_[label].high, v);
-          }
+    for_each_tissue_voxel({glm::ivec3(0), posed.grid.size - 1}, [&](const glm::ivec3& v, const Label* at) {
+      ++has_[*at];
+      box_[*at].low = glm::min(box_[*at].low, v);
+      box_[*at].high = glm::max(box_[*at].high, v);
+    });
   }
 
   std::map<Label, std::int64_t> run() {
@@ -70,6 +67,33 @@ class Organs {
            : has_[label] > most(label) ? most(label) - has_[label]
                                        : 0;
   }
+  // body(voxel, its place in the volume), x fastest.
+  template <class Body>
+  void for_each_tissue_voxel(const Box& box, const Body& body) const {
+    glm::ivec3 v;
+    for (v.z = box.low.z; v.z <= box.high.z; ++v.z)
+      for (v.y = box.low.y; v.y <= box.high.y; ++v.y) {
+        const Label* row = &posed_.voxels[posed_.grid.index({0, v.y, v.z})];
+        for (v.x = box.low.x; v.x <= box.high.x; ++v.x)
+          if (row[v.x])
+            body(v, row + v.x);
+          else
+            v.x = end_of_air(row, v.x, box.high.x + 1) - 1;
+      }
+  }
+
+  // Whether one of the voxels at the faces of v, which lies at `at`, is such a one; outside the grid there is air.
+  template <class Is>
+  bool has_beside(const glm::ivec3& v, const Label* at, const Is& is) const {
+    const glm::ivec3 size = posed_.grid.size;
+    const bool inside = glm::all(glm::greaterThan(v, glm::ivec3(0))) && glm::all(glm::lessThan(v, size - 1));
+    const std::int64_t row = size.x, slice = row * size.y;
+    if (inside)
+      return is(at[-1]) || is(at[1]) || is(at[-row]) || is(at[row]) || is(at[-slice]) || is(at[slice]);
+    return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(),
+                       [&](const glm::ivec3& step) { return is(posed_.at_or_air(v + step)); });
+  }
+
   bool is_flesh(Label label) const { return label && soft_[label] && !skin_[label]; }
   bool can_give(Label label) const { return is_flesh(label) && wanted_.contains(label) && has_[label] > least(label); }
   bool can_take(Label label) const { return is_flesh(label) && wanted_.contains(label) && has_[label] < most(label); }
@@ -97,24 +121,17 @@ class Organs {
     Box& box = box_[label];
     box.low = glm::max(box.low - int(grows), glm::ivec3(0));
     box.high = glm::min(box.high + int(grows), posed_.grid.size - 1);
-    glm::ivec3 v;
-    for (v.z = box.low.z; v.z <= box.high.z; ++v.z)
-      for (v.y = box.low.y; v.y <= box.high.y; ++v.y)
-        for (v.x = box.low.x; v.x <= box.high.x; ++v.x) {
-          const Label here = posed_.at(v);
-          if ((here == label) == grows || !is_flesh(here)) continue;
-          const bool at_border =
-              std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(), [&](const glm::ivec3& step) {
-                const Label beside = posed_.at_or_air(v + step);
-                return grows ? beside == label : beside != label && is_flesh(beside);
-              });
-          if (!at_border) continue;
-          const auto around = std::count_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
-            return posed_.at_or_air(v + step) == label;
-          });
-          const auto at = static_cast<std::uint64_t>(posed_.grid.index(v));
-          surface.push_back({static_cast<int>(around), shuffled(at), v});
-        }
+    for_each_tissue_voxel(box, [&](const glm::ivec3& v, const Label* at) {
+      if ((*at == label) == grows || !is_flesh(*at)) return;
+      const bool at_border = has_beside(v, at, [&](Label beside) {
+        return grows ? beside == label : beside != label && is_flesh(beside);
+      });
+      if (!at_border) return;
+      const auto around = std::count_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
+        return posed_.at_or_air(v + step) == label;
+      });
+      surface.push_back({static_cast<int>(around), shuffled(static_cast<std::uint64_t>(posed_.grid.index(v))), v});
+    });
     return surface;
   }
 

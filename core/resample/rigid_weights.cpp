@@ -11,10 +11,11 @@ SkinWeights with_rigid_bones(const SkinWeights& weights, const LabelVolume& volu
                              const TissueTable& tissues, const LabelSet& is_bone, const Armature& armature,
                              Progress& progress) {
   auto is_rigid = [&](std::int64_t brick) {
+    const auto& chunk = weights.chunk(brick);
+    const std::int64_t first = tissue.bricks()[brick].first;
     bool rigid = true;
-    auto influence = weights.chunk(brick).begin();
-    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
-      rigid &= (*influence++).weight[0] == kFullWeight || !is_bone[volume.at(v)];
+    tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+      if (is_bone[volume.at(v)]) rigid &= chunk[place - first].weight[0] == kFullWeight;
     });
     return rigid;
   };

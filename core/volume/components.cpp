@@ -2,6 +2,7 @@
 #include "core/volume/components.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <numeric>
 #include <utility>
@@ -21,7 +22,7 @@ int end_of_run(const Label* row, int begin, int size) {
   int x = begin;
   for (std::uint64_t word; x + 4 <= size; x += 4) {
     std::memcpy(&word, row + x, sizeof word);
-    if (word != four) break;
+    if (word != four) return x + std::countr_zero(word ^ four) / 16;
   }
   while (x < size && row[x] == row[begin]) ++x;
   return x;
@@ -110,6 +111,7 @@ Components connected_components(const LabelVolume& volume, const RowSet* in_rows
   for (int z = 0; z < size.z; ++z)
     for (int y = 0; y < size.y; ++y) {
       const std::int64_t row = y + std::int64_t{size.y} * z;
+      if (result.first_run[row] == result.first_run[row + 1]) continue;
       if (y > 0) join_rows(row, row - 1);
       if (z > 0)
         for (int k = -1; k <= 1; ++k)

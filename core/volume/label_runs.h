@@ -2,6 +2,7 @@
 // Where stretches of air and of tissue end along a row of labels, found several voxels at a time.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
 
@@ -15,6 +16,10 @@ inline int end_of_air(const Label* row, int x, int size) {
     std::memcpy(words, row + x, sizeof words);
     if (words[0] | words[1] | words[2] | words[3]) break;
   }
+  for (std::uint64_t word; x + 4 <= size; x += 4) {
+    std::memcpy(&word, row + x, sizeof word);
+    if (word) return x + std::countr_zero(word) / 16;
+  }
   while (x < size && row[x] == 0) ++x;
   return x;
 }
@@ -24,7 +29,8 @@ inline int end_of_tissue(const Label* row, int x, int size) {
   constexpr std::uint64_t kOnes = 0x0001000100010001, kHighest = kOnes << 15;
   for (std::uint64_t word; x + 4 <= size; x += 4) {
     std::memcpy(&word, row + x, sizeof word);
-    if ((word - kOnes) & ~word & kHighest) break;  // a label of them is 0
+    // The lowest of these bits is of the first label that is 0.
+    if (const std::uint64_t air = (word - kOnes) & ~word & kHighest) return x + std::countr_zero(air) / 16;
   }
   while (x < size && row[x] != 0) ++x;
   return x;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/resample/air_pockets.h"
 
+#include <algorithm>
+#include <random>
+#include <utility>
+
 #include <doctest/doctest.h>
 
 using namespace limber;
@@ -37,6 +41,35 @@ TEST_CASE("air pockets: a hollow is one, a shaft to the outside is none, and hol
   const auto pockets = air_pockets(volume);
   REQUIRE(pockets.size() == 2);
   CHECK(pockets[0].size() + pockets[1].size() == 4);
+}
+
+TEST_CASE("air pockets: in a random sponge they are the air that a flood from the border does not reach") {
+  for (const unsigned key : {1u, 2u, 3u}) {
+    std::mt19937 random(key);
+    LabelVolume volume;
+    volume.grid.size = {23, 9, 8};
+    volume.voxels = ZeroedVector<Label>(volume.grid.voxel_count());
+    for (Label& label : volume.voxels) label = random() % 100 < 65 ? 3 : 0;
+    const glm::ivec3 size = volume.grid.size;
+    LabelVolume reached{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
+    for (bool changed = true; std::exchange(changed, false);)
+      for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+          for (int x = 0; x < size.x; ++x) {
+            const glm::ivec3 v(x, y, z);
+            if (volume.at(v) || reached.at(v)) continue;
+            const bool opens = std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(), [&](const glm::ivec3& step) {
+              return !volume.grid.contains(v + step) || reached.at(v + step);
+            });
+            if (opens) reached.at(v) = 1, changed = true;
+          }
+    std::int64_t enclosed = 0, found = 0;
+    for (std::size_t i = 0; i < volume.voxels.size(); ++i) enclosed += !volume.voxels[i] && !reached.voxels[i];
+    for (const AirPocket& pocket : air_pockets(volume))
+      for (const glm::ivec3& v : pocket) found += !volume.at(v) && !reached.at(v) ? 1 : 1000;
+    CHECK(enclosed > 0);
+    CHECK(found == enclosed);
+  }
 }
 
 TEST_CASE("air pockets: what the pose closed is filled with flesh, what was there stays, and what grew shrinks to what it was") {
