@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/deform/claims.h"
+#include "core/volume/label_pages.h"
 
 namespace limber {
 
@@ -221,10 +222,11 @@ void RigidBones::find_pieces() {
   const LabelVolume& volume = lattice_->volume();
   for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
     std::map<int, VoxelRange> ranges;
-    auto influence = weights_->chunk(brick).begin();
-    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
-      const int bone = (*influence++).bone[0];
+    const auto& chunk = weights_->chunk(brick);
+    const std::int64_t first = tissue.bricks()[brick].first;
+    tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
       if (!(*is_bone_)[volume.at(v)]) return;
+      const int bone = chunk[place - first].bone[0];
       auto [range, is_new] = ranges.try_emplace(bone, VoxelRange{v, v});
       range->second = {glm::min(range->second.low, v), glm::max(range->second.high, v)};
     });
@@ -271,14 +273,15 @@ int RigidBones::owner(const glm::ivec3& voxel) const {
 LabelVolume RigidBones::numbered() const {
   const LabelVolume& volume = lattice_->volume();
   LabelVolume result{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
+  want_large_pages(result);
   const TissueVoxels& tissue = lattice_->tissue();
   for (std::int64_t last = -1; const Piece& piece : pieces_) {
     if (piece.brick == last) continue;
     last = piece.brick;
-    auto influence = weights_->chunk(last).begin();
-    tissue.for_each(last, last + 1, [&](std::int64_t, const glm::ivec3& v) {
-      if ((*is_bone_)[volume.at(v)]) result.at(v) = static_cast<Label>((*influence).bone[0] + 1);
-      ++influence;
+    const auto& chunk = weights_->chunk(last);
+    const std::int64_t first = tissue.bricks()[last].first;
+    tissue.for_each(last, last + 1, [&](std::int64_t place, const glm::ivec3& v) {
+      if ((*is_bone_)[volume.at(v)]) result.at(v) = static_cast<Label>(chunk[place - first].bone[0] + 1);
     });
   }
   return result;

@@ -46,6 +46,7 @@ struct InverseMap {
     row_used[voxel.y - range.low.y + std::int64_t{range.high.y - range.low.y + 1} * (voxel.z - range.low.z)] = 1;
   }
   std::int64_t count() const { return std::ssize(cell); }
+  bool is_covered(std::int64_t i) const { return (cell[i] != kNoCell) | (bone[i] != kNoBone); }
   std::int64_t index(const glm::ivec3& voxel) const {
     const glm::ivec3 v = voxel - range.low, size = range.high - range.low + 1;
     return v.x + std::int64_t{size.x} * (v.y + std::int64_t{size.y} * v.z);

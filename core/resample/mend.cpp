@@ -225,7 +225,7 @@ class Mending {
   //                stretched ran there, and fell between the voxels' centres
   std::optional<Bridge> shortest_bridge(Label label, int part, bool along_trace) {
     const int own = joined(part), longest = along_trace ? kLongestTrace : kLongestBridge;
-    std::unordered_map<std::int64_t, std::int64_t> came_from;  // of voxels outside the part
+    std::unordered_map<std::int64_t, std::int64_t> came_from;  // of voxels outside the part, those that cannot be taken too
     std::vector<glm::ivec3> layer = voxels_of(own);
     const size_t own_voxels = layer.size();
     for (int length = 0; length <= longest && !layer.empty(); ++length) {
@@ -248,9 +248,8 @@ class Mending {
               layer.push_back(to);
             else if (same_rest_part(label, came_from, to))
               return path(came_from, label, to, component);
-          } else if (length < longest && !came_from.contains(at) && can_take(to, label) &&
-                     (!along_trace || comes_from_beside(to, label))) {
-            came_from[at] = posed_.grid.index(from);
+          } else if (length < longest && came_from.try_emplace(at, posed_.grid.index(from)).second &&
+                     can_take(to, label) && (!along_trace || comes_from_beside(to, label))) {
             next.push_back(to);
           }
         }

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <map>
 #include <optional>
-#include <unordered_map>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -17,14 +16,17 @@
 #include "core/resample/mend.h"
 #include "core/resample/organ_volumes.h"
 #include "core/resample/posed_skin.h"
+#include "core/resample/rest_points.h"
 #include "core/resample/skin_at_rest.h"
 #include "core/resample/tissue_volumes.h"
+#include "core/volume/label_pages.h"
 
 namespace limber {
 
 namespace {
 
-constexpr glm::ivec3 kTile{64, 64, 32};  // output voxels: 3 MB of map a thread
+constexpr glm::ivec3 kTile = RestPoints::kTile;  // output voxels: 3 MB of map a thread
+constexpr std::int64_t kMostRest = 4 << 20;      // rest points that are kept: 48 MB
 constexpr int kReach = 8;                // voxels: as far as soft tissue is looked for where a joint opens between bones
 
 constexpr double kMostSure = 0.8;        // of memberships: a voxel that is surer of its tissue keeps it
@@ -57,22 +59,33 @@ struct SoftBorders {
   std::vector<BorderMove> moves;
 };
 
+// How many rest points are kept: of a limb all, where the pose makes it no larger than by a quarter; of a large body none.
+std::int64_t room_for_rest(const TissueVoxels& tissue) {
+  const std::int64_t room = tissue.size() + tissue.size() / 4;
+  return room <= kMostRest ? room : 0;
+}
+
 // Everything a tile needs to know, and where it writes.
 class PosedVoxels {
  public:
   PosedVoxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed)
       : volume_(body.volume), labels_(body.labels), lattice_(body.lattice), bones_(body.bones), tets_(body.tets), depth_(body.depth),
-        settings_(settings), output_(body.output), mends_(body.mends), posed_(posed), sampler_(volume_),
+        settings_(settings), output_(body.output), mends_(body.mends), posed_(posed),
+        rest_points_(output_.range, mends_ ? room_for_rest(body.lattice.tissue()) : 0,
+                     [this](InverseMap& map, const VoxelRange& range) { fill(map, range); }),
+        sampler_(volume_),
         world_from_rest_(world_from_voxel(volume_.grid)) {
     posed.volume.grid = output_.grid;
     const std::int64_t voxels = output_.grid.voxel_count();
     posed.volume.voxels.resize(voxels);
+    want_large_pages(posed.volume);
     rows_.resize(std::int64_t{output_.grid.size.y} * output_.grid.size.z);
     bone_rows_ = rows_;
     flesh_ = labels_.soft;
     for (size_t label = 0; label < flesh_.size(); ++label) flesh_[label] = labels_.soft[label] && !labels_.skin[label];
     if (mends_) skin_.emplace(volume_, body.lattice.tissue(), *depth_, labels_.soft, labels_.skin);
     if (mends_) posed_bones_ = {output_.grid, ZeroedVector<Label>(voxels)};
+    want_large_pages(posed_bones_);
     if (settings.displacement) posed.displacement.resize(voxels);
     if (settings.jacobian) posed.jacobian.resize(voxels);
     if (settings.overlap) posed.overlap.resize(voxels);
@@ -123,7 +136,7 @@ class PosedVoxels {
     const std::int64_t kept =
         keep_bone_volumes(posed_.volume, posed_bones_, volume_, rest_bones, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
     const auto rest_point = [&](const glm::ivec3& voxel) {
-      return posed_bones_.at(voxel) ? of_bone(voxel) : rest_of_soft(voxel);
+      return posed_bones_.at(voxel) ? of_bone(voxel) : rest_points_.at(voxel);
     };
     const std::int64_t closed = close_skin(posed_.volume, under_skin_, flesh_);
     posed_.report.mended_voxels =
@@ -158,29 +171,6 @@ class PosedVoxels {
     write(map, counts);
     add(counts);
     if (own) posed_.volume.at(voxel) = volume_.at(*own);
-  }
-
-  // The rest point of a voxel of the output, of the map alone. Where many are asked for those around them soon are as well.
-  glm::dvec3 rest_of_soft(const glm::ivec3& voxel) {
-    constexpr int kBlock = 8, kMany = 3;
-    const glm::ivec3 block = voxel / kBlock;
-    RestBlock& known = rest_blocks_[output_.grid.index(block * kBlock)];
-    if (known.rest.empty() && known.asked++ < kMany) return glm::dvec3(rest_in({output_.range.low + voxel, output_.range.low + voxel})[0]);
-    const glm::ivec3 low = output_.range.low + block * kBlock, high = glm::min(low + kBlock - 1, output_.range.high);
-    const glm::ivec3 in = voxel - block * kBlock, size = high - low + 1;
-    if (known.rest.empty()) known.rest = rest_in({low, high});
-    return glm::dvec3(known.rest[in.x + std::size_t(size.x) * (in.y + std::size_t(size.y) * in.z)]);
-  }
-
-  // x fastest; 0 where there is no tissue.
-  std::vector<glm::vec3> rest_in(const VoxelRange& range) const {
-    InverseMap map;
-    fill(map, range);
-    const glm::ivec3 size = range.high - range.low + 1;
-    std::vector<glm::vec3> rest(std::size_t(size.x) * size.y * size.z, glm::vec3(0));
-    for (std::size_t i = 0; i < map.rest.size(); ++i)
-      if (is_covered(map, static_cast<std::int64_t>(i))) rest[i] = map.rest[i];
-    return rest;
   }
 
   void carry_fields(const Origins& origins) {
@@ -234,7 +224,7 @@ class PosedVoxels {
     for (v.z = range.low.z; v.z <= range.high.z; ++v.z)
       for (v.y = range.low.y; v.y <= range.high.y; ++v.y)
         for (v.x = range.low.x; v.x <= range.high.x; ++v.x, ++i) {
-          if (!is_covered(map, i) || map.bone[i] != InverseMap::kNoBone) continue;
+          if (!map.is_covered(i) || map.bone[i] != InverseMap::kNoBone) continue;
           const glm::ivec3 voxel = v - output_.range.low;
           const Label label = posed_.volume.at(voxel), own = volume_.voxels[map.cell[i]];
           if (label == 0 || !labels_.soft[label]) continue;
@@ -300,7 +290,9 @@ class PosedVoxels {
   void run_tile(const VoxelRange& range, TileCounts& counts) {
     thread_local InverseMap map;
     map.has_volume_ratio = settings_.jacobian;
-    if (fill(map, range) || settings_.grey) write(map, counts);
+    if (!fill(map, range)) return;
+    write(map, counts);
+    if (mends_) rest_points_.keep(map);
   }
 
   // False where no tissue reaches.
@@ -336,7 +328,7 @@ class PosedVoxels {
         const std::int64_t row = output_.grid.index(glm::ivec3(0, v.y, v.z) - output_.range.low);
         std::int64_t i = map_row * length;
         for (v.x = map.range.low.x; v.x <= map.range.high.x; ++v.x, ++i) {
-          const bool covered = is_covered(map, i);
+          const bool covered = map.is_covered(i);
           if (settings_.grey) posed_.grey.voxels[row + v.x] = covered ? moved_grey(map.rest[i]) : still_grey(v);
           if (covered) counts.row_has_bone[map_row] |= write_voxel(map, i, v, row + v.x, counts);
         }
@@ -358,17 +350,13 @@ class PosedVoxels {
     return map.bone[i] != InverseMap::kNoBone || labels_.bone[label];
   }
 
-  static bool is_covered(const InverseMap& map, std::int64_t i) {
-    return map.cell[i] != InverseMap::kNoCell || map.bone[i] != InverseMap::kNoBone;
-  }
-
   // Whether a voxel at one of its faces is air, or lies in another tile.
   static bool may_touch_air(const InverseMap& map, std::int64_t i, const glm::ivec3& v) {
     const glm::ivec3 size = map.range.high - map.range.low + 1;
     std::int64_t stride = 1;
     for (int axis = 0; axis < 3; stride *= size[axis++]) {
       if (v[axis] == map.range.low[axis] || v[axis] == map.range.high[axis]) return true;
-      if (!is_covered(map, i - stride) || !is_covered(map, i + stride)) return true;
+      if (!map.is_covered(i - stride) || !map.is_covered(i + stride)) return true;
     }
     return false;
   }
@@ -459,11 +447,7 @@ class PosedVoxels {
   Posed& posed_;
   std::optional<SkinAtRest> skin_;
   LabelSet flesh_;  // soft tissues but skin
-  struct RestBlock {
-    int asked = 0;
-    std::vector<glm::vec3> rest;  // once many were asked for
-  };
-  std::unordered_map<std::int64_t, RestBlock> rest_blocks_;  // by their lowest voxels
+  RestPoints rest_points_;  // of the map alone
   std::vector<UnderSkin> under_skin_;
   std::vector<InnerSkin> inner_skin_;
   RowSet rows_, bone_rows_;  // of the output that hold tissue, and bone

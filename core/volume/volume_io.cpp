@@ -12,6 +12,7 @@
 #include "core/volume/dicom.h"
 #include "core/volume/header_text.h"
 #include "core/volume/label_decoder.h"
+#include "core/volume/label_pages.h"
 #include "core/volume/neighbour_changes.h"
 #include "core/volume/voxel_source.h"
 
@@ -97,6 +98,7 @@ VolumeFile read_volume(const Path& path, Progress& progress) {
   LabelDecoder decoder;
   auto& voxels = file.volume.voxels;
   voxels.resize(static_cast<std::size_t>(header.grid.voxel_count()));
+  want_large_pages(file.volume);
   for_chunks(opened, progress, [&](const void* chunk, std::size_t count, std::int64_t first) {
     const std::size_t voxel_bytes = static_cast<std::size_t>(size_of(header.voxel_type));
     for (std::size_t done = 0; done < count; done += kPageVoxels) {
