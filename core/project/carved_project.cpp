@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/project/bytes.h"
+#include "core/base/bytes.h"
 #include "core/project/document_layout.h"
 
 namespace limber {

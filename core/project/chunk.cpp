@@ -8,7 +8,7 @@
 #include <zstd.h>
 
 #include "core/base/file.h"
-#include "core/project/bytes.h"
+#include "core/base/bytes.h"
 
 namespace limber {
 

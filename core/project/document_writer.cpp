@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "core/base/parallel.h"
-#include "core/project/bytes.h"
+#include "core/base/bytes.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
 #include "core/project/seams_codec.h"

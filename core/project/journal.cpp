@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
-#include "core/project/bytes.h"
+#include "core/base/bytes.h"
 #include "core/project/carved_chunks.h"
 #include "core/project/read_at.h"
 

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "core/project/bytes.h"
+#include "core/base/bytes.h"
 #include "core/volume/label_volume.h"
 #include "core/volume/seams.h"
 

@@ -20,7 +20,6 @@
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <sched.h>
-#include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -28,8 +27,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json_text.h"
-
-extern char** environ;
+#include "core/base/spawn.h"
 
 namespace limber {
 
@@ -94,29 +92,8 @@ class Process {
   Process(const Path& program, const std::vector<std::string>& arguments, const Pipe& out, const Pipe& err) {
     std::vector<std::string> words{"limber"};
     words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&files, out.write_end, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&files, err.write_end, STDERR_FILENO);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t none, defaults;
-    sigemptyset(&none);
-    sigemptyset(&defaults);
-    for (int signal : {SIGINT, SIGTERM, SIGPIPE, SIGHUP}) sigaddset(&defaults, signal);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setsigdefault(&attributes, &defaults);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-    const int failure = ::posix_spawn(&id_, program.c_str(), &files, &attributes, argv.data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&files);
-    if (failure != 0) throw Error("a worker cannot be started", program.string(), std::strerror(failure));
+    const Streams streams{.out = out.write_end, .err = err.write_end};
+    id_ = spawn(program, std::move(words), streams, Environment::Same, "a worker");
   }
   ~Process() {
     if (ended_) return;

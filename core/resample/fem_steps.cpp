@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/fem/tissue_model.h"
-#include "core/project/bytes.h"
+#include "core/base/bytes.h"
 
 namespace limber {
 

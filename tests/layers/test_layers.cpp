@@ -64,7 +64,7 @@ const std::vector<Door> kDoors = {
     {"zstd", {"zstd"}, {"core/project/"}},
     {"CLI11", {"CLI/"}, {"core/cmd/", "editor/main.cpp", "editor/commands/", "tests/core/cmd/test_files_apart.cpp"}},
     {"Expat", {"expat"}, {"core/rig/bender_armature.cpp"}},
-    {"OpenSSL", {"openssl/"}, {"core/base/file.cpp"}},
+    {"OpenSSL", {"openssl/"}, {"core/base/sha256.cpp"}},
     {"GLFW", {"GLFW/"}, {"editor/window.cpp"}},
     {"libpng", {"png"}, {"render/image_io.cpp"}},
     {"FreeType", {"ft2build", "freetype"}, {"editor/"}},

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
-#include "core/project/bytes.h"
+#include "core/base/bytes.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
 #include "core/project/seams_codec.h"

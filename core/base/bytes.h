@@ -14,7 +14,7 @@
 
 namespace limber {
 
-static_assert(std::endian::native == std::endian::little, "project files are little-endian");
+static_assert(std::endian::native == std::endian::little, "files and messages are little-endian");
 
 class ByteWriter {
  public:
