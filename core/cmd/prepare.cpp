@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber prepare IN -o OUT [--orient CODE] [--flip x|y|z] [--merge A=B ...] [--spacing MM] [--drop-specks N] [--crop]
 //        [--pad N] [--close-skin inward|outward [--skin-label L]] [--statistics CSV] [--tissues T] [--seams SEAMS.nrrd --rig RIG]
+#include "core/volume/grey_image.h"
 #include "core/volume/prepare.h"
 
 #include <algorithm>
@@ -153,6 +154,7 @@ void prepare(const Options& options) {
   TissueTable user;
   if (!options.tissues.empty()) user = read_tissue_table(options.tissues);
   TissueTable tissues = merge_tissue_tables(file.tissues, options.tissues.empty() ? nullptr : &user);
+  require_labels(file.volume, tissues, options.in);
 
   LabelVolume& volume = file.volume;
   if (!options.orientation.empty()) volume = reorient(volume, options.orientation);

@@ -9,6 +9,7 @@
 #include "core/cmd/pose_options.h"
 #include "core/report/dice.h"
 #include "core/rig/armature_io.h"
+#include "core/volume/grey_image.h"
 #include "core/volume/vector_volume_io.h"
 #include "core/volume/volume_io.h"
 
@@ -92,6 +93,8 @@ void run(const Options& options) {
   }
   renumber(after, before.tissues);
   const TissueTable tissues = merge_tissue_tables(before.tissues, user ? &*user : nullptr);
+  require_labels(before.volume, tissues, options.before);
+  require_labels(after.volume, merge_tissue_tables(after.tissues, user ? &*user : nullptr), options.after);
   report.seconds.read = total.seconds();
   for (const VolumeFile* file : {&before, &after})
     note(report, file->warnings);

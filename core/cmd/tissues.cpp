@@ -9,6 +9,7 @@
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
 #include "core/cmd/tissue_options.h"
+#include "core/volume/grey_image.h"
 #include "core/volume/header_text.h"
 #include "core/volume/tissue_rows.h"
 
@@ -81,6 +82,7 @@ void list_tissues(const Options& options) {
     const VolumeFile file = read_volume(options.volume, progress);
     warn(file.warnings);
     tissues = tissues_of(file, options.material.tissues);
+    require_labels(file.volume, tissues, options.volume);
   }
   const TissueMaterials found = tissue_materials(tissues, table, *options.material.frequency);
   if (!options.output.empty()) write_file_atomically(options.output, csv_of(found));

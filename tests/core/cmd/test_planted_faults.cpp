@@ -229,6 +229,9 @@ TEST_CASE("planted faults: a grey image in place of labels is refused before any
       {"fit-rig", grey, "--template", "arm", "-o", folder / "out.json"},
       {"surfaces", grey, "-o", folder / "out.obj"},
       {"convert", grey, folder / "out.stl"},
+      {"prepare", grey, "--pad", "1", "-o", folder / "out.nrrd"},
+      {"tissues", grey, "--frequency", "900e6", "-o", folder / "out.csv"},
+      {"report", grey, grey, "--json"},
       {"project", folder / "out.limber", "create", grey}};
   for (const auto& command : commands) {
     const auto run = run_limber(command);
