@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <sstream>
+#include <vector>
 
 #include <dlfcn.h>
 #include <unistd.h>
@@ -11,13 +12,31 @@ namespace limber {
 
 namespace fs = std::filesystem;
 
-void* open_module(const std::string& name) {
+namespace {
+// Where what belongs to the program lies: beside it, or in ../lib/limber from there.
+std::vector<Path> own_folders() {
   std::error_code error;
   const Path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  if (error) return nullptr;
-  for (const Path& place : {folder, folder / "../lib/limber"})
-    if (void* module = ::dlopen((place / (name + ".so")).c_str(), RTLD_NOW | RTLD_LOCAL)) return module;
+  if (error) return {};
+  return {folder, folder / "../lib/limber"};
+}
+
+bool is_program(const Path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) && ::access(path.c_str(), X_OK) == 0;
+}
+}  // namespace
+
+void* open_module(const std::string& name) {
+  for (const Path& folder : own_folders())
+    if (void* module = ::dlopen((folder / (name + ".so")).c_str(), RTLD_NOW | RTLD_LOCAL)) return module;
   return nullptr;
+}
+
+std::optional<Path> find_own_program(const std::string& name) {
+  for (const Path& folder : own_folders())
+    if (is_program(folder / name)) return folder / name;
+  return std::nullopt;
 }
 
 std::optional<Path> find_program(const std::string& name) {
@@ -25,9 +44,7 @@ std::optional<Path> find_program(const std::string& name) {
   std::istringstream folders(path ? path : "/usr/bin:/bin");
   for (std::string folder; std::getline(folders, folder, ':');) {
     const Path program = Path(folder) / name;
-    std::error_code error;
-    if (program.is_absolute() && fs::is_regular_file(program, error) && ::access(program.c_str(), X_OK) == 0)
-      return program;
+    if (program.is_absolute() && is_program(program)) return program;
   }
   return std::nullopt;
 }

@@ -15,6 +15,10 @@ namespace limber {
 // It stays open until the program ends.
 void* open_module(const std::string& name);
 
+// The program NAME in the same two places, which is part of Limber and no command. Nothing where neither holds it, as
+// in another program that uses Limber as a library.
+std::optional<Path> find_own_program(const std::string& name);
+
 // The program of that name in the first folder of PATH that has it; folders that are not named from the root are passed
 // over.
 std::optional<Path> find_program(const std::string& name);

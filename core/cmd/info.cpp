@@ -13,6 +13,7 @@
 #include "core/project/project_io.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/volume_io.h"
+#include "core/volume/volume_reader.h"
 
 namespace limber::cmd {
 
@@ -25,6 +26,12 @@ Json as_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 Json as_json(double value) {
   if (value == std::floor(value) && std::abs(value) < 9e15) return static_cast<std::int64_t>(value);
   return value;
+}
+
+// What such files are parsed by, and what keeps it from doing harm.
+Json describe_reader() {
+  const Protection reader = reader_protection();
+  return {{"own_process", reader.own_process}, {"system_calls_filtered", reader.system_calls}, {"landlock", reader.landlock}};
 }
 
 Json describe_volume(const Path& path) {
@@ -41,7 +48,8 @@ Json describe_volume(const Path& path) {
                {"direction", direction},
                {"type", summary.type.voxel_type},
                {"format", summary.type.format},
-               {"compressed", summary.type.compressed}};
+               {"compressed", summary.type.compressed},
+               {"reader", describe_reader()}};
   if (summary.looks_grey) json["grey"] = true;
   json["minimum"] = as_json(summary.minimum);
   json["maximum"] = as_json(summary.maximum);

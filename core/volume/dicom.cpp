@@ -8,12 +8,10 @@
 
 #include <dlfcn.h>
 
-#include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/base/module.h"
 #include "core/volume/dicom_codec.h"
 #include "core/volume/header_text.h"
-#include "core/volume/voxel_stream.h"
 
 namespace limber {
 
@@ -30,6 +28,7 @@ constexpr std::int64_t kCodecMost = 4000;
 constexpr std::size_t kCodecMemory = 64 << 20;
 
 struct Slice {
+  std::size_t index = 0;  // of the volume's files
   Path path;
   std::string series;
   int rows = 0, columns = 0;
@@ -49,7 +48,7 @@ struct Codec {
   decltype(&limber_dicom_elements) elements;
   decltype(&limber_dicom_pixels) pixels;
 };
-const Codec& codec(const Path& path) {
+const Codec& loaded_codec() {
   static const Codec loaded = [] {
     void* module = open_module("limber_dicom");
     Codec functions{nullptr, nullptr};
@@ -58,6 +57,11 @@ const Codec& codec(const Path& path) {
     functions.pixels = reinterpret_cast<decltype(&limber_dicom_pixels)>(::dlsym(module, "limber_dicom_pixels"));
     return functions;
   }();
+  return loaded;
+}
+
+const Codec& codec(const Path& path) {
+  const Codec& loaded = loaded_codec();
   if (!loaded.elements || !loaded.pixels)
     throw Error("DICOM cannot be read, limber_dicom.so is missing or damaged", path.string(), "install Limber again, or give NRRD, MetaImage or NIfTI");
   return loaded;
@@ -77,50 +81,26 @@ bool is_plain(const PlainFile& file) {
 }
 
 // Before anything is allocated for them.
-void check_pixels_fit(const Path& path, std::int64_t bytes) {
-  const PlainFile file(path);
+void check_pixels_fit(const PlainFile& file, const Path& path, std::int64_t bytes) {
   if (bytes > file.size() * (is_plain(file) ? 1 : kCodecMost))
     throw Error("the pixels of the DICOM image are missing or damaged", path.string(), "export the series again");
 }
 
-ChildLimits limits_of(const Path& path, std::size_t pixel_bytes) {
-  ChildLimits limits;
-  limits.memory_bytes = kCodecMemory + 4 * static_cast<std::size_t>(PlainFile(path).size()) + 16 * pixel_bytes;
-  return limits;
+std::size_t memory_for(const PlainFile& file, std::size_t pixel_bytes) {
+  return kCodecMemory + 4 * static_cast<std::size_t>(file.size()) + 16 * pixel_bytes;
 }
 
 // The elements that describe an image, as text or as a 16-bit number.
 class Elements {
-  // An element as it comes from the child, its bytes behind it.
-  struct Head {
-    std::uint16_t group, element;
-    std::uint32_t size;
-  };
-  static constexpr std::size_t kLongest = 1024;          // of what is asked for below
-  static constexpr std::size_t kMostElements = 4 << 20;  // bytes of a whole header
+  static constexpr std::size_t kLongest = 1024;  // of what is asked for below
 
  public:
-  explicit Elements(const Path& path) {
-    const Codec& library = codec(path);
-    const auto sent = run_in_child(
-        [&](const Send& send) {
-          const auto pass_on = [](void* context, std::uint16_t group, std::uint16_t element, const char* bytes, std::size_t size) {
-            if (size > kLongest) return;
-            const Head head{group, element, static_cast<std::uint32_t>(size)};
-            const Send& send_on = *static_cast<const Send*>(context);
-            send_on(&head, sizeof head);
-            send_on(bytes, size);
-          };
-          return library.elements(path.c_str(), pass_on, const_cast<Send*>(&send)) == 0;
-        },
-        kMostElements, limits_of(path, 0)).sent;
-    if (!sent) throw Error("the DICOM header is damaged", path.string(), "export the series again");
-    for (std::size_t at = 0; at + sizeof(Head) <= sent->size();) {
-      Head head;
-      std::memcpy(&head, sent->data() + at, sizeof head);
-      values_[{head.group, head.element}] = sent->substr(at + sizeof head, head.size);
-      at += sizeof head + head.size;
-    }
+  Elements(const PlainFile& file, const Path& path) {
+    const auto keep = [](void* context, std::uint16_t group, std::uint16_t element, const char* bytes, std::size_t size) {
+      if (size <= kLongest) static_cast<Elements*>(context)->values_[{group, element}].assign(bytes, size);
+    };
+    if (codec(path).elements(file.descriptor(), keep, this) != 0)
+      throw Error("the DICOM header is damaged", path.string(), "export the series again");
   }
 
   std::string text(std::uint16_t group, std::uint16_t element) const {
@@ -156,10 +136,14 @@ std::optional<VoxelType> type_of(int bits, bool is_signed) {
   return std::nullopt;
 }
 
-Slice read_slice_header(const Path& path) {
-  const Elements elements(path);
+Slice read_slice_header(VolumeFiles& files, std::size_t index) {
+  const Path& path = files.location().headers[index];
+  const PlainFile file = files.open_header(index);
+  files.expect_memory(memory_for(file, 0));
+  const Elements elements(file, path);
 
   Slice slice;
+  slice.index = index;
   slice.path = path;
   slice.series = elements.text(0x0020, 0x000e);
   slice.rows = elements.word(0x0028, 0x0010).value_or(0);
@@ -171,7 +155,7 @@ Slice read_slice_header(const Path& path) {
   const auto type = type_of(elements.word(0x0028, 0x0100).value_or(0), elements.word(0x0028, 0x0103).value_or(0) == 1);
   if (!type) throw Error("the DICOM image has voxels that are not of 8, 16 or 32 bits", path.string(), "export it with 16 bits");
   slice.type = *type;
-  check_pixels_fit(path, slice.bytes());
+  check_pixels_fit(file, path, slice.bytes());
 
   if (const auto p = elements.numbers(0x0020, 0x0032, 3); !p.empty()) {
     slice.position = {p[0], p[1], p[2]};
@@ -192,26 +176,14 @@ Slice read_slice_header(const Path& path) {
   return slice;
 }
 
-std::vector<Path> dicom_files(const Path& folder) {
-  std::vector<Path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    std::error_code error;
-    if (!entry.is_regular_file(error) || !is_dicom_file(entry.path())) continue;
-    if (files.size() == kMostFiles) throw Error("the folder holds more than 100 000 DICOM files", folder.string(), "keep one series in it");
-    files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 // One series, in order along its normal.
-std::vector<Slice> read_series(const Path& folder) {
+std::vector<Slice> read_series(VolumeFiles& files) {
+  const Path& folder = files.location().path;
   std::map<std::string, std::vector<Slice>> by_series;
-  for (const Path& file : dicom_files(folder)) {
-    Slice slice = read_slice_header(file);
+  for (std::size_t i = 0; i < files.location().headers.size(); ++i) {
+    Slice slice = read_slice_header(files, i);
     by_series[slice.series].push_back(std::move(slice));
   }
-  if (by_series.empty()) throw Error("the folder holds no DICOM image", folder.string(), "name a volume file, or a folder with one series");
   if (by_series.size() > 1) {
     std::string counts;
     for (const auto& [uid, slices] : by_series) counts += (counts.empty() ? "" : ", ") + std::to_string(slices.size());
@@ -254,7 +226,8 @@ glm::dvec3 slice_step(const std::vector<Slice>& slices, const Path& path) {
 
 class DicomSource final : public VoxelSource {
  public:
-  DicomSource(std::vector<Slice> slices, bool scale) : slices_(std::move(slices)), scale_(scale) {}
+  DicomSource(std::shared_ptr<VolumeFiles> files, std::vector<Slice> slices, bool scale)
+      : files_(std::move(files)), slices_(std::move(slices)), scale_(scale) {}
 
   void read(void* to, std::size_t bytes) override {
     auto* out = static_cast<char*>(to);
@@ -272,19 +245,12 @@ class DicomSource final : public VoxelSource {
  private:
   void decode_next() {
     const Slice& slice = slices_.at(next_++);
-    const auto damaged = [&] { return Error("the pixels of the DICOM image are missing or damaged", slice.path.string(), "export the series again"); };
     const auto bytes = static_cast<std::size_t>(slice.bytes());
-    const Codec& library = codec(slice.path);
-    const auto sent = run_in_child(
-        [&](const Send& send) {
-          const auto pixels = std::make_unique_for_overwrite<char[]>(bytes);  // touched only by what there is
-          if (library.pixels(slice.path.c_str(), pixels.get(), bytes) != 0) return false;
-          send(pixels.get(), bytes);
-          return true;
-        },
-        bytes, limits_of(slice.path, bytes)).sent;
-    if (!sent || sent->size() != bytes) throw damaged();
-    buffer_.assign(sent->begin(), sent->end());
+    const PlainFile file = files_->open_header(slice.index);
+    files_->expect_memory(memory_for(file, bytes));
+    buffer_.resize(bytes);
+    if (codec(slice.path).pixels(file.descriptor(), buffer_.data(), bytes) != 0)
+      throw Error("the pixels of the DICOM image are missing or damaged", slice.path.string(), "export the series again");
     if (scale_) to_float(slice);
     place_ = 0;
   }
@@ -302,13 +268,15 @@ class DicomSource final : public VoxelSource {
     buffer_ = std::move(scaled);
   }
 
+  std::shared_ptr<VolumeFiles> files_;
   std::vector<Slice> slices_;
   bool scale_;
   std::vector<char> buffer_;
   std::size_t place_ = 0, next_ = 0;
 };
 
-OpenedVolume open_slices(std::vector<Slice> slices, const Path& path) {
+OpenedVolume open_slices(std::shared_ptr<VolumeFiles> files, std::vector<Slice> slices) {
+  const Path& path = files->location().path;
   check_alike(slices, path);
   const Slice& first = slices.front();
   const bool same_scale = std::all_of(slices.begin(), slices.end(), [&](const Slice& s) { return s.slope == first.slope && s.intercept == first.intercept; });
@@ -324,7 +292,7 @@ OpenedVolume open_slices(std::vector<Slice> slices, const Path& path) {
     if (!(spacing > 0)) throw Error("the spacing is " + text_of(spacing) + " mm", first.path.string(), "spacing must be positive; export the series again");
   glm::dmat3 columns(first.along_row * first.spacing.x, first.along_column * first.spacing.y, slice_step(slices, path));
   header.grid = checked_grid(grid_from_columns(sizes, columns, first.position), path.string(), header.warnings);
-  return {header, std::make_unique<DicomSource>(std::move(slices), !same_scale)};
+  return {header, std::make_unique<DicomSource>(std::move(files), std::move(slices), !same_scale)};
 }
 }  // namespace
 
@@ -346,13 +314,25 @@ bool is_dicom_folder(const Path& path) {
   return false;
 }
 
-OpenedVolume open_dicom(const Path& path) {
-  std::vector<Slice> slices;
-  if (fs::is_directory(path))
-    slices = read_series(path);
-  else
-    slices.push_back(read_slice_header(path));
-  return open_slices(std::move(slices), path);
+std::vector<Path> dicom_files(const Path& folder) {
+  std::vector<Path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    std::error_code error;
+    if (!entry.is_regular_file(error) || !is_dicom_file(entry.path())) continue;
+    if (files.size() == kMostFiles) throw Error("the folder holds more than 100 000 DICOM files", folder.string(), "keep one series in it");
+    files.push_back(entry.path());
+  }
+  if (files.empty())
+    throw Error("the folder holds no DICOM image", folder.string(), "name a volume file, or a folder with one series");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+bool load_dicom_library() { return loaded_codec().elements != nullptr; }
+
+OpenedVolume open_dicom(std::shared_ptr<VolumeFiles> files) {
+  std::vector<Slice> slices = read_series(*files);
+  return open_slices(std::move(files), std::move(slices));
 }
 
 }  // namespace limber

@@ -185,8 +185,7 @@ TissueTable segments_of(const KeyValues& keys, const std::string& where) {
     Tissue tissue;
     tissue.file_value = *label;
     if (const auto* name = get("Name")) tissue.name = *name;
-    tissue.kind = tissue_kind_from_name(tissue.name);
-    apply_kind_defaults(tissue);
+    tissue.colour.x = std::numeric_limits<float>::quiet_NaN();  // open_volume() gives it one where the file does not
     if (const auto* colour = get("Color"))
       if (const auto rgb = numbers_of<double>(*colour); rgb && rgb->size() == 3)
         for (int i = 0; i < 3; ++i) tissue.colour[i] = static_cast<float>(std::clamp((*rgb)[i], 0.0, 1.0));
@@ -433,8 +432,6 @@ class NrrdReader {
 bool looks_like_nrrd_header(std::string_view bytes) {
   return bytes.size() >= 8 && bytes.substr(0, 7) == "NRRD000" && bytes[7] >= '1' && bytes[7] <= '5';
 }
-
-KeyValues parse_nrrd_keys(std::string_view bytes, const std::string& where) { return split_header(bytes, where).keys; }
 
 VolumeHeader parse_nrrd_header(std::string_view bytes, const std::string& where) {
   if (!looks_like_nrrd_header(bytes)) throw Error("this is no NRRD file", where, "it should begin with NRRD0001 to NRRD0005");

@@ -16,7 +16,4 @@ bool looks_like_nrrd_header(std::string_view bytes);
 //   throws Error for anything but one scalar volume of 1 to 3 axes that is described without contradiction
 VolumeHeader parse_nrrd_header(std::string_view bytes, const std::string& where);
 
-// Only the `key:=value` lines.
-KeyValues parse_nrrd_keys(std::string_view bytes, const std::string& where);
-
 }  // namespace limber

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include <array>
-
+#include <algorithm>
+#include <cmath>
 
 #include "core/base/deflate.h"
 #include "core/base/error.h"
+#include "core/base/module.h"
 #include "core/volume/dicom.h"
 #include "core/volume/header_text.h"
 #include "core/volume/meta_header.h"
 #include "core/volume/nifti_header.h"
 #include "core/volume/nrrd_header.h"
+#include "core/volume/vector_header.h"
 #include "core/volume/virtual_family.h"
 #include "core/volume/volume_files.h"
+#include "core/volume/volume_io.h"
+#include "core/volume/volume_reader.h"
 #include "core/volume/voxel_stream.h"
 
 namespace limber {
@@ -53,14 +57,8 @@ std::string inflated_start(std::string_view packed, std::size_t most) {
 
 bool ends(const Path& path, std::string_view end) { return lower_case(path.filename().string()).ends_with(end); }
 
-// NAME.hdr for NAME.img and NAME.img.gz.
-Path nifti_header_path(const Path& path) {
-  Path stem = path;
-  if (ends(stem, ".gz")) stem.replace_extension();
-  return stem.replace_extension(".hdr");
-}
-
-VolumeHeader read_nifti(const Path& path, const PlainFile& file, const std::string& bytes) {
+VolumeHeader read_nifti(VolumeFiles& files, const PlainFile& file, const std::string& bytes) {
+  const Path& path = files.location().headers.front();
   const bool packed = is_gzip(bytes);
   const std::string start = packed ? inflated_start(bytes, kNiftiHeaderBytes) : bytes;
   NiftiHeader nifti = parse_nifti_header(start, packed ? std::nullopt : std::optional(file.size()), path.string());
@@ -70,8 +68,7 @@ VolumeHeader read_nifti(const Path& path, const PlainFile& file, const std::stri
     Path image = path.filename();
     if (ends(image, ".gz")) image.replace_extension();
     image.replace_extension(".img");
-    std::error_code error;
-    if (!fs::exists(path.parent_path() / image, error) && fs::exists(path.parent_path() / (image.string() + ".gz"), error)) image += ".gz";
+    if (!files.has_data(image.string()) && files.has_data(image.string() + ".gz")) image += ".gz";
     header.data_names = {image.string()};
     data_packed = ends(image, ".gz");
   }
@@ -82,51 +79,70 @@ VolumeHeader read_nifti(const Path& path, const PlainFile& file, const std::stri
   return std::move(header);
 }
 
-VolumeHeader read_virtual_family(const Path& text_path) {
-  const Path raw_name = text_path.filename().replace_extension(".raw");
-  std::error_code error;
-  const auto raw_bytes = fs::file_size(text_path.parent_path() / raw_name, error);
-  if (error) throw Error("the voxel file " + in_quotes(raw_name.string()) + " is missing", text_path.string(), "put it beside the .txt");
-  VolumeHeader header = parse_virtual_family(read_file(text_path, kLargestHeader), static_cast<std::int64_t>(raw_bytes), text_path.string());
-  header.data_names = {raw_name.string()};
+VolumeHeader read_virtual_family(VolumeFiles& files, const PlainFile& text) {
+  const Path& path = files.location().headers.front();
+  const std::string raw_name = path.filename().replace_extension(".raw").string();
+  if (!files.has_data(raw_name))
+    throw Error("the voxel file " + in_quotes(raw_name) + " is missing", path.string(), "put it beside the .txt");
+  if (text.size() > kLargestHeader)
+    throw Error("the text is too long for a header", path.string(), "export the volume again");
+  const std::int64_t raw_bytes = files.open_data(raw_name).size();
+  VolumeHeader header = parse_virtual_family(first_bytes(text, kLargestHeader), raw_bytes, path.string());
+  header.data_names = {raw_name};
   return header;
 }
 
-struct Found {
-  VolumeHeader header;
-  Path path;  // what data names stand beside
-};
-
-Found read_header(const Path& given) {
-  Path path = given;
-  if (ends(path, ".img") || ends(path, ".img.gz")) path = nifti_header_path(path);
-  if (ends(path, ".raw")) path.replace_extension(".txt");
-  std::error_code error;
-  if (!fs::exists(path, error))
-    throw Error(path == given ? "there is no such file" : "the header " + in_quotes(path.filename().string()) + " is missing", given.string(),
-                path == given ? "check the name" : "put it beside the data");
-
+VolumeHeader read_header(VolumeFiles& files, Holding holding) {
+  const Path& path = files.location().headers.front();
   const std::string where = path.string();
-  const PlainFile file(path);
+  const PlainFile file = files.open_header(0);
   if (file.size() == 0) throw Error("the file is empty", where, "export or download it again");
   const std::string bytes = header_bytes(file);
-  if (looks_like_nrrd_header(bytes) || ends(path, ".nrrd") || ends(path, ".nhdr")) return {parse_nrrd_header(bytes, where), path};
-  if (ends(path, ".nii") || ends(path, ".nii.gz") || ends(path, ".hdr") || ends(path, ".hdr.gz") || looks_like_nifti_header(bytes))
-    return {read_nifti(path, file, bytes), path};
-  if (ends(path, ".mha") || ends(path, ".mhd") || looks_like_meta_header(bytes)) return {parse_meta_header(bytes, where), path};
-  if (ends(path, ".txt") && looks_like_virtual_family(bytes)) return {read_virtual_family(path), path};
-  throw Error("this is no volume that can be read", where, "use NRRD, MetaImage, NIfTI, DICOM or Virtual Family RAW with its .txt");
+  if (holding == Holding::Vectors) return parse_vector_header(bytes, where);
+  if (looks_like_nrrd_header(bytes) || ends(path, ".nrrd") || ends(path, ".nhdr")) return parse_nrrd_header(bytes, where);
+  const bool named_nifti = ends(path, ".nii") || ends(path, ".nii.gz") || ends(path, ".hdr") || ends(path, ".hdr.gz");
+  if (named_nifti || looks_like_nifti_header(bytes)) return read_nifti(files, file, bytes);
+  if (ends(path, ".mha") || ends(path, ".mhd") || looks_like_meta_header(bytes)) return parse_meta_header(bytes, where);
+  if (ends(path, ".txt") && looks_like_virtual_family(bytes)) return read_virtual_family(files, file);
+  throw Error("this is no volume that can be read", where,
+              "use NRRD, MetaImage, NIfTI, DICOM or Virtual Family RAW with its .txt");
+}
+
+// What the parsers leave to the program, which has the table of tissues: the kind that a name says, and what goes with
+// it. A colour that the file does not say is no number.
+void complete(TissueTable& named) {
+  for (Tissue& tissue : named.tissues) {
+    const glm::vec3 colour = tissue.colour;
+    tissue.kind = tissue_kind_from_name(tissue.name);
+    apply_kind_defaults(tissue);
+    if (!std::isnan(colour.x)) tissue.colour = colour;
+  }
+}
+
+OpenedVolume open_as_can_be(const Path& path, Progress& progress, Holding holding) {
+  VolumeLocation location = locate_volume(path);
+  if (const auto program = find_own_program(kReaderName))
+    return open_in_reader(location, holding, progress, {.program = *program});
+  if (location.is_dicom)
+    throw Error("DICOM cannot be read, limber_reader is missing", path.string(),
+                "install Limber again, or give NRRD, MetaImage or NIfTI");
+  return open_volume_here(std::make_shared<LocalFiles>(std::move(location)), holding);
 }
 }  // namespace
 
-OpenedVolume open_volume(const Path& path, Holding holding) {
-  std::error_code error;
-  if (fs::is_directory(path, error) || is_dicom_file(path)) return open_dicom(path);
-  Found found = read_header(path);
-  if (holding == Holding::Volume && found.header.keys.contains(kWeightsKey))
-    throw Error("the file holds weights, not a volume", path.string(), "give it as --weights");
-  OpenedVolume opened{std::move(found.header), nullptr};
-  opened.voxels = std::make_unique<VoxelStream>(found.path, opened.header);
+OpenedVolume open_volume_here(std::shared_ptr<VolumeFiles> files, Holding holding) {
+  if (files->location().is_dicom) return open_dicom(std::move(files));
+  OpenedVolume opened{read_header(*files, holding), nullptr};
+  if (holding == Holding::Header) return opened;
+  if (holding == Holding::Volume && opened.header.keys.contains(kWeightsKey))
+    throw Error("the file holds weights, not a volume", files->location().path.string(), "give it as --weights");
+  opened.voxels = std::make_unique<VoxelStream>(std::move(files), opened.header);
+  return opened;
+}
+
+OpenedVolume open_volume(const Path& path, Progress& progress, Holding holding) {
+  OpenedVolume opened = open_as_can_be(path, progress, holding);
+  complete(opened.header.named);
   return opened;
 }
 
@@ -135,20 +151,22 @@ std::vector<Path> files_of_volume(const Path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error) || is_dicom_file(path)) return files;
   try {
-    const Found found = read_header(path);
-    files.push_back(found.path);
-    for (const std::string& name : found.header.data_names) files.push_back(found.path.parent_path() / name);
+    const OpenedVolume opened = open_volume(path, no_progress(), Holding::Header);
+    const Path header = locate_volume(path).headers.front();
+    files.push_back(header);
+    for (const std::string& name : opened.header.data_names) files.push_back(header.parent_path() / name);
   } catch (const Error&) {
     // Whoever reads the volume says what is wrong with it.
   }
   return files;
 }
 
-KeyValues read_nrrd_keys(const Path& path) {
+bool is_weights_path(const Path& path) {
   std::error_code error;
-  if (!fs::is_regular_file(path, error)) return {};
+  if (!ends(path, ".nrrd") || !fs::is_regular_file(path, error)) return false;
   const std::string bytes = header_bytes(PlainFile(path));
-  return looks_like_nrrd_header(bytes) ? parse_nrrd_keys(bytes, path.string()) : KeyValues{};
+  const std::size_t end = std::min(bytes.find("\n\n"), bytes.find("\n\r\n"));
+  return looks_like_nrrd_header(bytes) && bytes.find(std::string("\n") + kWeightsKey + ":=") < end;
 }
 
 bool is_virtual_family(const Path& text_path) {

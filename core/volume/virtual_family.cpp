@@ -24,8 +24,6 @@ std::optional<Tissue> tissue_of(const std::vector<std::string_view>& words, std:
   tissue.file_value = *value;
   const auto name_start = static_cast<std::size_t>(words[4].data() - line.data());
   tissue.name = trimmed(line.substr(name_start));
-  tissue.kind = tissue_kind_from_name(tissue.name);
-  apply_kind_defaults(tissue);
   for (int i = 0; i < 3; ++i) {
     const auto part = number_of<double>(words[static_cast<std::size_t>(i) + 1]);
     if (!part || !std::isfinite(*part)) return std::nullopt;

@@ -90,7 +90,7 @@ const char* const kNoTissue = "every voxel is air (0)";
 }  // namespace
 
 VolumeFile read_volume(const Path& path, Progress& progress) {
-  OpenedVolume opened = open_volume(path);
+  OpenedVolume opened = open_volume(path, progress);
   const VolumeHeader& header = opened.header;
   check_memory(header.grid, sizeof(Label), path);
 
@@ -121,7 +121,7 @@ VolumeFile read_volume(const Path& path, Progress& progress) {
 }
 
 GreyVolume read_grey_volume(const Path& path, Progress& progress) {
-  OpenedVolume opened = open_volume(path);
+  OpenedVolume opened = open_volume(path, progress);
   const VolumeHeader& header = opened.header;
   check_memory(header.grid, sizeof(float), path);
 
@@ -182,10 +182,8 @@ VolumeSummary summarize_volume(const Path& path) {
   return summary;
 }
 
-bool is_weights_path(const Path& path) { return lower_case(path.extension().string()) == ".nrrd" && read_nrrd_keys(path).contains(kWeightsKey); }
-
 WeightsSummary summarize_weights(const Path& path) {
-  const OpenedVolume opened = open_volume(path, Holding::Weights);
+  const OpenedVolume opened = open_volume(path, no_progress(), Holding::Weights);
   const auto bones = opened.header.keys.find(kWeightsKey);
   if (bones == opened.header.keys.end()) throw Error("the file holds no weights", path.string(), "make them with `limber weights`");
   return {bones->second, opened.header.grid.size.y};

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "core/base/file.h"
+#include "core/base/progress.h"
 #include "core/volume/volume_header.h"
+#include "core/volume/volume_location.h"
 
 namespace limber {
 
@@ -16,7 +18,8 @@ class VoxelSource {
  public:
   virtual ~VoxelSource() = default;
 
-  // Exactly `bytes` more bytes of voxels, in the header's byte order. Throws Error when the data end before or are damaged.
+  // Exactly `bytes` more bytes of voxels, in the header's byte order. Throws Error when the data end before or are
+  // damaged.
   virtual void read(void* to, std::size_t bytes) = 0;
 
   // To be called after the last voxel: verifies checksums, and tells of data beyond the promise and of wrong header
@@ -26,19 +29,23 @@ class VoxelSource {
 
 struct OpenedVolume {
   VolumeHeader header;
-  std::unique_ptr<VoxelSource> voxels;
+  std::unique_ptr<VoxelSource> voxels;  // null where only the header is wanted
 };
 
 // The key that marks an NRRD file as weights.
 constexpr const char* kWeightsKey = "limber_bones";
-enum class Holding { Volume, Weights };
 
-// Reads and checks the header, by content and extension, and opens the data. Throws Error, also for weights where a
-// volume is wanted.
-OpenedVolume open_volume(const Path& path, Holding holding = Holding::Volume);
+// What a file is taken for. Vectors: a displacement field, given as a volume three times as long in x. Header: whatever
+// it holds, but nothing of its voxels.
+enum class Holding : std::uint8_t { Volume, Weights, Vectors, Header };
 
-// `key:=value` lines of an NRRD file, without any other check; none for another file.
-KeyValues read_nrrd_keys(const Path& path);
+// Reads and checks the header, by content and extension, and opens the data. The file is parsed by a process without
+// rights (volume_reader.h), or here where there is none. Throws Error, also for weights where a volume is wanted.
+OpenedVolume open_volume(const Path& path, Progress& progress = no_progress(), Holding holding = Holding::Volume);
+
+// The same by this process itself.
+OpenedVolume open_volume_here(std::shared_ptr<VolumeFiles> files, Holding holding);
+
 bool is_virtual_family(const Path& text_path);
 
 }  // namespace limber

@@ -1,49 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/volume/voxel_stream.h"
 
+#include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 
 #include <bzlib.h>
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "core/base/deflate.h"
 #include "core/base/error.h"
 #include "core/volume/header_text.h"
 
 namespace limber {
-
-namespace fs = std::filesystem;
-
-PlainFile::PlainFile(const Path& path) {
-  // Without O_NONBLOCK a pipe would hang here.
-  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor_ < 0) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
-  struct stat status{};
-  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
-    ::close(descriptor_);
-    throw Error("this is not a plain file", path.string(), "name a file on disk");
-  }
-  size_ = status.st_size;
-}
-
-PlainFile::~PlainFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-std::size_t PlainFile::read_at(std::int64_t offset, void* to, std::size_t bytes) const {
-  std::size_t done = 0;
-  while (done < bytes) {
-    const ssize_t got = ::pread(descriptor_, static_cast<char*>(to) + done, bytes - done, offset + static_cast<std::int64_t>(done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) break;
-    done += static_cast<std::size_t>(got);
-  }
-  return done;
-}
 
 namespace {
 constexpr std::size_t kChunk = 1 << 16;
@@ -309,27 +277,6 @@ std::unique_ptr<Decoder> make_decoder(ByteSource& source, const VolumeHeader& he
   return nullptr;
 }
 
-// The data file, only if it lies in the header's folder once every link is followed.
-Path checked_data_path(const Path& header_path, const std::string& name) {
-  const Path relative(name);
-  const auto outside = [&] {
-    return Error("the data file " + in_quotes(name) + " lies outside the header's folder", header_path.string(),
-                 "put it beside the header and name it without a path");
-  };
-  if (relative.is_absolute() || name.find('\0') != std::string::npos) throw outside();
-  for (const auto& part : relative)
-    if (part == "..") throw outside();
-  const Path folder = header_path.has_parent_path() ? header_path.parent_path() : Path(".");
-  const Path path = folder / relative;
-  std::error_code error;
-  const Path real = fs::canonical(path, error);
-  if (error) throw Error("the data file " + in_quotes(name) + " is missing", header_path.string(), "put it beside the header");
-  const Path real_folder = fs::canonical(folder, error);
-  const auto [folder_end, ignored] = std::mismatch(real_folder.begin(), real_folder.end(), real.begin(), real.end());
-  if (error || folder_end != real_folder.end()) throw outside();
-  return path;
-}
-
 void go_to_data(ByteSource& source, const VolumeHeader& header, std::int64_t raw_bytes) {
   if (header.byte_skip < 0) {
     source.go_to(std::max<std::int64_t>(0, source.size() - raw_bytes));
@@ -365,19 +312,26 @@ void check_room(const ByteSource& source, const VolumeHeader& header, std::int64
 }  // namespace
 
 struct VoxelStream::Sources {
+  std::shared_ptr<VolumeFiles> files;
   const VolumeHeader header;
-  std::vector<Path> paths;
   std::int64_t bytes_each = 0;
-  std::size_t current = 0;
-  std::int64_t left = 0;  // of the current file
+  std::int64_t current = 0;  // of the data files
+  std::int64_t left = 0;     // of the current file
   std::unique_ptr<ByteSource> source;
   std::unique_ptr<Decoder> decoder;
   std::int64_t data_start = 0;
   std::vector<std::string> warnings;
 
+  std::int64_t count() const { return std::max<std::int64_t>(1, std::ssize(header.data_names)); }
   void open() {
     decoder.reset();
-    source = std::make_unique<ByteSource>(PlainFile(paths[current]), paths[current].string());
+    const VolumeLocation& location = files->location();
+    if (header.data_names.empty()) {
+      source = std::make_unique<ByteSource>(files->open_header(0), location.headers.front().string());
+    } else {
+      const std::string& name = header.data_names[static_cast<std::size_t>(current)];
+      source = std::make_unique<ByteSource>(files->open_data(name), (location.folder() / name).string());
+    }
     go_to_data(*source, header, bytes_each);
     check_room(*source, header, bytes_each);
     data_start = source->place();
@@ -405,14 +359,15 @@ struct VoxelStream::Sources {
   }
 };
 
-VoxelStream::VoxelStream(const Path& path, const VolumeHeader& header) : sources_(new Sources{header, {}, 0, 0, 0, {}, {}, 0, {}}) {
-  for (const auto& name : header.data_names) sources_->paths.push_back(checked_data_path(path, name));
-  if (sources_->paths.empty()) sources_->paths.push_back(path);
-  const std::int64_t bytes = header.grid.voxel_count() * size_of(header.voxel_type);
-  const auto files = static_cast<std::int64_t>(sources_->paths.size());
-  if (header.grid.voxel_count() % files != 0)
-    throw Error("the voxels cannot be shared evenly by " + std::to_string(files) + " data files", path.string(), "list one file a slice");
-  sources_->bytes_each = bytes / files;
+VoxelStream::VoxelStream(std::shared_ptr<VolumeFiles> files, const VolumeHeader& header)
+    : sources_(new Sources{std::move(files), header, 0, 0, 0, {}, {}, 0, {}}) {
+  VolumeFiles& from = *sources_->files;
+  from.check_data(header.data_names);
+  const std::int64_t bytes = header.grid.voxel_count() * size_of(header.voxel_type), count = sources_->count();
+  if (header.grid.voxel_count() % count != 0)
+    throw Error("the voxels cannot be shared evenly by " + std::to_string(count) + " data files",
+                from.location().headers.front().string(), "list one file a slice");
+  sources_->bytes_each = bytes / count;
   sources_->open();
 }
 
@@ -425,7 +380,7 @@ void VoxelStream::read(void* to, std::size_t bytes) {
     if (s.left == 0) {
       s.close();
       ++s.current;
-      if (s.current == s.paths.size()) throw Error("more voxels were asked for than promised", s.source->where(), kExportAgain);
+      if (s.current == s.count()) throw Error("more voxels were asked for than promised", s.source->where(), kExportAgain);
       s.open();
     }
     const std::size_t now = static_cast<std::size_t>(std::min<std::int64_t>(static_cast<std::int64_t>(bytes), s.left));

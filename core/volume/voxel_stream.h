@@ -15,10 +15,10 @@ namespace limber {
 
 class VoxelStream final : public VoxelSource {
  public:
-  // Opens the data files. They must be plain files inside the header's folder (no links out of it), and large enough
-  // to hold what is promised: raw data to the byte, encoded data by the most their encoding can pack.
-  //   path  the header's own file          throws Error naming the data file
-  VoxelStream(const Path& path, const VolumeHeader& header);
+  // Opens the data files, one after the other. They must be plain files inside the header's folder (no links out of it),
+  // and large enough to hold what is promised: raw data to the byte, encoded data by the most their encoding can pack.
+  //   throws Error naming the data file
+  VoxelStream(std::shared_ptr<VolumeFiles> files, const VolumeHeader& header);
   ~VoxelStream() override;
 
   void read(void* to, std::size_t bytes) override;
@@ -27,24 +27,6 @@ class VoxelStream final : public VoxelSource {
  private:
   struct Sources;
   std::unique_ptr<Sources> sources_;
-};
-
-// Opens only what is a plain file and says its size. Throws Error.
-class PlainFile {
- public:
-  explicit PlainFile(const Path& path);
-  ~PlainFile();
-  PlainFile(PlainFile&& other) noexcept : descriptor_(other.descriptor_), size_(other.size_) { other.descriptor_ = -1; }
-  PlainFile(const PlainFile&) = delete;
-  PlainFile& operator=(const PlainFile&) = delete;
-
-  std::int64_t size() const { return size_; }
-  // Bytes from `offset`, fewer only at the file's end.
-  std::size_t read_at(std::int64_t offset, void* to, std::size_t bytes) const;
-
- private:
-  int descriptor_ = -1;
-  std::int64_t size_ = 0;
 };
 
 }  // namespace limber

@@ -15,6 +15,6 @@ TEST_CASE("dicom: a file with the mark and little behind it, on which the librar
   for (const std::string& rest : {std::string("001"), std::string(), std::string(64, '\0'), std::string("\x02\0\0\0UL\x04\0", 8)}) {
     std::ofstream(folder / "a.dcm", std::ios::binary) << std::string(128, '\f') << "DICM" << rest;
     REQUIRE(is_dicom_file(folder / "a.dcm"));
-    CHECK_THROWS_AS(open_dicom(folder / "a.dcm"), Error);
+    CHECK_THROWS_AS(open_volume(folder / "a.dcm"), Error);
   }
 }
