@@ -2,6 +2,7 @@
 #include "core/base/spawn.h"
 
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 
 #include <fcntl.h>
@@ -62,7 +63,11 @@ pid_t spawn(const Path& program, std::vector<std::string> words, const Streams& 
   settings.place(streams.err, STDERR_FILENO);
   settings.set_signals_and_group();
   pid_t process = -1;
-  char* nothing[] = {nullptr};
+  // Where this program was told to find its libraries, the other one finds them too.
+  std::string libraries = "LD_LIBRARY_PATH=";
+  const char* said = std::getenv("LD_LIBRARY_PATH");
+  if (said) libraries += said;
+  char* nothing[] = {said ? libraries.data() : nullptr, nullptr};
   const int failure = ::posix_spawn(&process, program.c_str(), &settings.files, &settings.attributes, argv.data(),
                                     environment == Environment::Same ? environ : nothing);
   if (failure != 0) throw Error(what + " cannot be started", program.string(), std::strerror(failure));

@@ -30,6 +30,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kAskMilliseconds = 20;                 // whether the user has cancelled
 constexpr int kPipeBytes = 1 << 20;                  // as much as a usual kernel grants
 constexpr std::uint64_t kLongestMessage = 64 << 20;  // of a header with all its keys
+constexpr int kNotLoaded = 127;                      // what the system's loader says of a program without its libraries
 constexpr const char* kHarmful = "it is damaged, or made to do harm; export or download it again";
 
 class Descriptor {
@@ -249,6 +250,9 @@ class Conversation {
     if (signal == SIGKILL)
       return {"the file's reader was ended by the system, most likely for lack of memory", parsed_,
               "close other programs and try again"};
+    if (signal == 0 && WEXITSTATUS(status) == kNotLoaded)
+      return {"the reader of volumes cannot be started", settings_.program.string(),
+              "a library that it needs is missing; install Limber again"};
     if (signal == SIGXCPU) return {"the file made its reader take too much processor time", parsed_, kHarmful};
     if (signal != 0)
       return {"the file made its reader crash (" + std::string(::strsignal(signal)) + ")", parsed_, kHarmful};

@@ -174,6 +174,23 @@ TEST_CASE("volume reader: one that crashes, leaves or says what it must not is o
   CHECK(outcome("nothing bad") == "");
 }
 
+TEST_CASE("volume reader: one that lacks a library is not blamed on the file, and libraries are sought where they were") {
+  const TemporaryFolder folder;
+  const Path path = bad_volume(folder, "nothing bad"), program = folder / "reader";
+  const auto said = [&](const std::string& script) {
+    write(program, "#!/bin/sh\n" + script);
+    fs::permissions(program, fs::perms::owner_all);
+    const ReaderSettings settings{program};
+    return told([&] { return open_in_reader(locate_volume(path), Holding::Volume, no_progress(), settings); });
+  };
+  CHECK(said("exit 127").find("the reader of volumes cannot be started: " + program.string()) != std::string::npos);
+  const char* before = std::getenv("LD_LIBRARY_PATH");
+  const std::string kept = before ? before : "";
+  ::setenv("LD_LIBRARY_PATH", "/libraries/of/limber", 1);
+  CHECK(said("[ \"$LD_LIBRARY_PATH\" = /libraries/of/limber ] && exit 9").find("exit code 9") != std::string::npos);
+  before ? ::setenv("LD_LIBRARY_PATH", kept.c_str(), 1) : ::unsetenv("LD_LIBRARY_PATH");
+}
+
 TEST_CASE("volume reader: one that spins, waits or takes memory is ended") {
   CHECK(outcome("spin", {.busy_seconds = 0.3}).find("kept its reader busy") != std::string::npos);
   CHECK(outcome("silence", {.silent_seconds = 0.3}).find("has said nothing") != std::string::npos);
