@@ -23,38 +23,6 @@ struct Vertex {
   glm::vec4 colour;
 };
 
-const char* const kVertex = R"(
-layout(location = 0) in vec2 pixel;
-layout(location = 1) in float depth_in;
-layout(location = 2) in vec3 local_in;   // x, y, reach
-layout(location = 3) in vec4 colour_in;
-uniform vec2 u_size;
-out float depth;
-out vec3 local;
-out vec4 tint;
-void main() {
-  depth = depth_in;
-  local = local_in;
-  tint = colour_in;
-  gl_Position = vec4(pixel.x / u_size.x * 2.0 - 1.0, 1.0 - pixel.y / u_size.y * 2.0, 0.0, 1.0);
-}
-)";
-
-const char* const kFragment = R"(
-in float depth;
-in vec3 local;
-in vec4 tint;
-uniform sampler2D u_depth;
-uniform vec2 u_size;
-uniform bool u_hidden_by_body;
-layout(location = 0) out vec4 colour;
-void main() {
-  float alpha = tint.a * clamp(local.z + 0.5 - length(local.xy), 0.0, 1.0);
-  if (u_hidden_by_body && depth > textureLod(u_depth, gl_FragCoord.xy / u_size, 0.0).r) alpha *= 0.45;
-  colour = vec4(tint.rgb * alpha, alpha);
-}
-)";
-
 const glm::vec3 kFill = glm::vec3(0xC4, 0xCA, 0xD4) / 255.0f, kEdge = glm::vec3(0x14, 0x16, 0x1A) / 255.0f;
 const glm::vec3 kSelected = glm::vec3(0xFF, 0x9F, 0x2E) / 255.0f, kActive = glm::vec3(0xFF, 0xD0, 0x8A) / 255.0f;
 constexpr float kBehindEdge = 0.35f;  // strength of edges on the far side
@@ -196,7 +164,7 @@ bool drawn(const Scene& scene) { return scene.armature && scene.bone_shape != Bo
 
 }  // namespace
 
-ArmaturePass::ArmaturePass() : program_("armature", kVertex, kFragment), array_(gl::VertexArray::create()), vertices_(gl::Buffer::create()) {
+ArmaturePass::ArmaturePass() : program_("bones.vert", "bones.frag"), array_(gl::VertexArray::create()), vertices_(gl::Buffer::create()) {
   glBindVertexArray(array_.name());
   glBindBuffer(GL_ARRAY_BUFFER, vertices_.name());
   const auto attribute = [](GLuint index, GLint count, size_t offset) {

@@ -9,75 +9,6 @@ namespace limber::render {
 
 namespace {
 
-// A gradient from the top down. Its steps are one in 255: half a step of ordered noise hides them.
-const char* const kBackground = R"(
-in vec2 ndc;
-uniform vec3 u_top, u_bottom;
-layout(location = 0) out vec4 colour;
-void main() {
-  ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
-  int order = ((cell.x ^ cell.y) & 1) * 8 + (cell.x & 1) * 4 + ((cell.x >> 1 ^ cell.y >> 1) & 1) * 2 + (cell.x >> 1);
-  colour = vec4(mix(u_bottom, u_top, ndc.y * 0.5 + 0.5) + (float(order) - 7.5) / (16.0 * 255.0), 1.0);
-}
-)";
-
-const char* const kBody = R"(
-in vec2 ndc;
-uniform sampler2D u_picture;
-layout(location = 0) out vec4 colour;
-void main() { colour = textureLod(u_picture, ndc * 0.5 + 0.5, 0.0); }
-)";
-
-const char* const kOutline = R"(
-in vec2 ndc;
-uniform usampler2D u_label;
-uniform uint u_outlined;
-uniform vec2 u_scale;       // buffer pixels a picture pixel
-uniform float u_line;       // picture pixels a line's pixel
-layout(location = 0) out vec4 colour;
-bool shows(vec2 pixel) { return texelFetch(u_label, clamp(ivec2(pixel * u_scale), ivec2(0), textureSize(u_label, 0) - 1), 0).r == u_outlined; }
-void main() {
-  vec2 at = gl_FragCoord.xy;
-  float share = 0.0;
-  for (int y = -2; y <= 2; ++y)
-    for (int x = -2; x <= 2; ++x) share += shows(at + vec2(x, y) * u_line) ? 1.0 : 0.0;
-  // Strongest where half of the neighbourhood shows the tissue.
-  float edge = clamp(1.6 - abs(share - 12.5) / 12.5 * 1.8, 0.0, 1.0);
-  if (share == 0.0 || share == 25.0) edge = 0.0;
-  colour = vec4(vec3(1.0, 0.624, 0.18) * edge, edge);
-}
-)";
-
-const char* const kGridVertex = R"(
-uniform mat4 u_clip;
-uniform vec3 u_middle;
-uniform float u_reach;
-out vec2 place;
-void main() {
-  place = vec2((gl_VertexID & 1) * 2 - 1, (gl_VertexID >> 1) * 2 - 1) * u_reach;
-  gl_Position = u_clip * vec4(u_middle + vec3(place, 0.0), 1.0);
-}
-)";
-
-const char* const kGridFragment = R"(
-in vec2 place;
-uniform vec2 u_offset;   // of the middle from the nearest line
-uniform float u_reach, u_step, u_line;
-layout(location = 0) out vec4 colour;
-float line(vec2 at, float width) {
-  vec2 slope = max(fwidth(at), vec2(1e-6));
-  vec2 near = abs(fract(at - 0.5) - 0.5) / slope;
-  vec2 strength = clamp(width * u_line - near + 0.5, 0.0, 1.0) * clamp(0.7 - slope * 2.0, 0.0, 1.0);
-  return max(strength.x, strength.y);
-}
-void main() {
-  vec2 at = (place + u_offset) / u_step;
-  float fade = clamp(1.0 - length(place) / u_reach, 0.0, 1.0);
-  float alpha = max(line(at, 0.6) * 0.16, line(at * 0.2, 0.7) * 0.20) * fade;
-  colour = vec4(vec3(0.75, 0.79, 0.85) * alpha, alpha);
-}
-)";
-
 glm::vec3 rgb(unsigned hex) { return glm::vec3(hex >> 16 & 255, hex >> 8 & 255, hex & 255) / 255.0f; }
 
 void blend_premultiplied() {
@@ -88,10 +19,10 @@ void blend_premultiplied() {
 }  // namespace
 
 ComposePass::ComposePass()
-    : background_("background", gl::kWholePicture, kBackground),
-      grid_("grid", kGridVertex, kGridFragment),
-      body_("body", gl::kWholePicture, kBody),
-      outline_("outline", gl::kWholePicture, kOutline),
+    : background_(gl::kWholePicture, "background.frag"),
+      grid_("grid.vert", "grid.frag"),
+      body_(gl::kWholePicture, "copy.frag"),
+      outline_(gl::kWholePicture, "outline.frag"),
       nothing_(gl::VertexArray::create()) {}
 
 void ComposePass::cover(const glm::ivec2& size, const PixelRect& rect) {

@@ -9,40 +9,6 @@ namespace limber::render {
 
 namespace {
 
-const char* const kVertex = R"(
-layout(location = 0) in vec3 from;
-layout(location = 1) in vec3 to;
-uniform mat4 u_clip;
-uniform vec3 u_ahead;
-uniform vec2 u_size;
-uniform float u_reach;
-out float depth, across;
-void main() {
-  vec4 a = u_clip * vec4(from, 1.0), b = u_clip * vec4(to, 1.0);
-  vec2 first = a.xy / a.w * u_size * 0.5, last = b.xy / b.w * u_size * 0.5, along = last - first;
-  along = length(along) > 1e-4 ? normalize(along) : vec2(1.0, 0.0);
-  bool end = (gl_VertexID & 1) == 1;
-  across = (gl_VertexID < 2 ? -1.0 : 1.0) * (u_reach + 1.0);
-  depth = dot(end ? to : from, u_ahead);
-  vec2 pixel = (end ? last + 0.5 * along : first - 0.5 * along) + across * vec2(-along.y, along.x);
-  gl_Position = a.w > 0.0 && b.w > 0.0 ? vec4(pixel / (u_size * 0.5), 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
-}
-)";
-
-const char* const kFragment = R"(
-in float depth, across;
-uniform sampler2D u_depth;
-uniform vec2 u_size;
-uniform float u_reach, u_off;
-uniform vec4 u_colour;
-layout(location = 0) out vec4 colour;
-void main() {
-  if (u_off > 0.0 && abs(depth - textureLod(u_depth, gl_FragCoord.xy / u_size, 0.0).r) > u_off) discard;
-  float alpha = u_colour.a * clamp(u_reach + 0.5 - abs(across), 0.0, 1.0);
-  colour = vec4(u_colour.rgb * alpha, alpha);
-}
-)";
-
 }  // namespace
 
 std::vector<Segment> lines_on_cuts(const CutMesh& mesh, const Clip& clip, const Grid& grid) {
@@ -66,7 +32,7 @@ std::vector<Segment> lines_on_cuts(const CutMesh& mesh, const Clip& clip, const 
   return all;
 }
 
-LinePass::LinePass() : program_("lines", kVertex, kFragment), array_(gl::VertexArray::create()), ends_(gl::Buffer::create()) {
+LinePass::LinePass() : program_("line.vert", "line.frag"), array_(gl::VertexArray::create()), ends_(gl::Buffer::create()) {
   glBindVertexArray(array_.name());
   glBindBuffer(GL_ARRAY_BUFFER, ends_.name());
   for (const GLuint end : {0u, 1u}) {

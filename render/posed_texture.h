@@ -26,7 +26,7 @@ class PosedTexture {
   void upload(const std::shared_ptr<const PreviewMap>& map, int largest_texture);
   const std::shared_ptr<const PreviewMap>& map() const { return map_; }
 
-  // What kPosedFunctions read; returns the next free unit.
+  // The uniforms of shaders/posed.glsl; returns the next free unit.
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
 
  private:
@@ -54,9 +54,5 @@ class PosedHull {
   std::shared_ptr<const PreviewMap> map_;
   int revision_ = 0;  // of the field
 };
-
-// vec3 rest_of(vec3 posed), both in padded coordinates; kNowhere outside the map. For whoever walks from cube to cube: vec3
-// node_of(vec3 posed), Sheet sheet_at(vec3 node, uint cube), vec3 rest_on(Sheet sheet, vec3 node).
-extern const char* const kPosedFunctions;
 
 }  // namespace limber::render

@@ -7,10 +7,6 @@
 
 namespace limber::render {
 
-const char* const kRayUniforms = R"(
-uniform vec3 u_base, u_base_x, u_base_y, u_toward, u_toward_x, u_toward_y;
-)";
-
 AffineTransform padded_from_world(const Grid& grid) {
   AffineTransform transform = voxel_from_world(grid);
   transform.offset += kPad + 0.5;

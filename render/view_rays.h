@@ -32,8 +32,7 @@ AffineTransform padded_from_world(const Grid& grid);
 ViewRays view_rays(const Camera& camera, const Grid& grid, const glm::ivec2& size, const glm::dvec2& jitter, const glm::vec3& low,
                    const glm::vec3& high);
 
-// u_base, u_base_x, .., u_toward_y
+// The uniforms of shaders/rays.glsl.
 void set_rays(gl::Program& program, const ViewRays& rays);
-extern const char* const kRayUniforms;
 
 }  // namespace limber::render

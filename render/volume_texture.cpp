@@ -11,6 +11,8 @@ namespace limber::render {
 
 namespace {
 
+constexpr int kBlockShift = 5;
+
 constexpr Format3D kLabels = {GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, false};
 constexpr int kMostHalvings = 3;
 
@@ -125,27 +127,9 @@ bool VolumeTexture::upload(const LabelVolume& volume) {
 
 int VolumeTexture::bind(gl::Program& program, int first) const { return bind_atlases(program, "u_labels", atlases_, first); }
 
-std::string atlas_functions(int atlases) {
-  const auto each = [&](const char* before, const char* after) {
-    std::string text;
-    for (int a = 0; a < atlases; ++a) text += before + std::to_string(a) + after;
-    return text;
-  };
-  // Which atlas to read is told by the index's last channel, counted from 1; the first needs no test when it is alone.
-  const auto choose = [&](const std::string& read) {
-    std::string text;
-    for (int a = 0; a < atlases; ++a) {
-      std::string line = "  return " + read + ";\n";
-      line.replace(line.find('@'), 1, std::to_string(a));
-      text += a + 1 < atlases ? "  if (atlas == " + std::to_string(a + 1) + "u)" + line : line;
-    }
-    return text;
-  };
-  return each("uniform sampler3D u_field", ";\n") + each("uniform usampler3D u_labels", ";\n") +
-         "uniform vec3 u_texel;\n"
-         "float field_texel(uint atlas, ivec3 at) {\n" + choose("texelFetch(u_field@, at, 0).r") + "}\n"
-         "float field_at(uint atlas, vec3 at) {\n" + choose("textureLod(u_field@, at * u_texel, 0.0).r") + "}\n"
-         "uint label_at(uint atlas, ivec3 at) {\n" + choose("texelFetch(u_labels@, at, 0).r") + "}\n";
+std::string atlas_defines(int atlases) {
+  static_assert(kBlock == 1 << kBlockShift && kMostAtlases == 4);  // as shaders/atlases.glsl has it
+  return gl::define("ATLASES", atlases) + gl::define("SLOT", kSlot) + gl::define("APRON", kApron) + gl::define("BLOCK", kBlock) + gl::define("BLOCK_SHIFT", kBlockShift);
 }
 
 }  // namespace limber::render

@@ -61,7 +61,7 @@ bool upload_index(const gl::Texture& texture, const BlockLayout& layout, const s
 // u_NAME0 .. for each of the textures; returns the next free unit.
 int bind_atlases(gl::Program& program, const std::string& name, const std::vector<gl::Texture>& atlases, int first);
 
-// "#define ATLASES n", and the functions that read them: field_texel, field_at, label_at.
-std::string atlas_functions(int atlases);
+// The definitions that shaders/atlases.glsl and shaders/weights.glsl need.
+std::string atlas_defines(int atlases);
 
 }  // namespace limber::render

@@ -9,29 +9,13 @@ namespace limber::render {
 
 namespace {
 
-const char* const kWeights = R"(
-uniform usampler2D u_place;
-uniform float u_place_step;
-uniform vec3 u_shift;  // of what is read voxel by voxel
-layout(location = 0) out vec4 colour;
-void main() {
-  uvec4 place = texelFetch(u_place, ivec2(gl_FragCoord.xy), 0);
-  vec3 p = vec3(place.xyz) * u_place_step;
-#ifdef VOXELS
-  p += u_shift;
-#endif
-  vec4 shown = weight_colour(weights_at(p));
-  colour = place.w == 0u ? vec4(0.0) : shown;
-}
-)";
-
 }  // namespace
 
 WeightPass::WeightPass() : nothing_(gl::VertexArray::create()) {}
 
 void WeightPass::draw(const VolumeTexture& volume, const WeightTexture& weights, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect) {
   auto& program = programs_[{volume.layout().atlases, weights.reading()}];
-  if (!program) program = std::make_unique<gl::Program>("weights", gl::kWholePicture, weight_functions(volume.layout().atlases, weights.reading()) + kWeights);
+  if (!program) program = std::make_unique<gl::Program>(gl::kWholePicture, "weights.frag", weight_defines(volume.layout().atlases, weights.reading()));
   glBindFramebuffer(GL_FRAMEBUFFER, buffer.weight_target.name());
   glViewport(0, 0, buffer.size().x, buffer.size().y);
   glEnable(GL_SCISSOR_TEST);

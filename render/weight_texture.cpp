@@ -354,52 +354,12 @@ WeightReading reading_of(WeightDisplay display) {
   return display == WeightDisplay::Active ? WeightReading::Ramp : display == WeightDisplay::Mixed || display == WeightDisplay::Field ? WeightReading::Filtered : WeightReading::Voxels;
 }
 
-std::string weight_functions(int atlases, WeightReading reading) {
-  const auto choose = [&](const std::string& read) {
-    std::string text;
-    for (int a = 0; a < atlases; ++a) {
-      std::string line = "  return " + read + ";\n";
-      line.replace(line.find('@'), 1, std::to_string(a));
-      text += a + 1 < atlases ? "  if (atlas == " + std::to_string(a + 1) + "u)" + line : line;
-    }
-    return text;
-  };
-  std::string text = reading == WeightReading::Ramp ? "#define RAMP\n" : reading == WeightReading::Filtered ? "#define FILTERED\n" : "#define VOXELS\n";
-  for (int a = 0; a < atlases; ++a) text += "uniform sampler3D u_weights" + std::to_string(a) + ";\n";
-  text += "uniform usampler3D u_weight_index;\nuniform vec3 u_weight_texel;\nuniform ivec3 u_weight_blocks;\nuniform int u_weight_region;\n"
-          "vec4 weights_filtered(uint atlas, vec3 at) {\n" + choose("textureLod(u_weights@, at * u_weight_texel, 0.0)") + "}\n"
-          "vec4 weights_fetched(uint atlas, ivec3 at) {\n" + choose("texelFetch(u_weights@, at, 0)") + "}\n"
-          "const float kSlotSize = " + std::to_string(kSlot) + ".0, kBlockSize = " + std::to_string(kBlock) + ".0, kApronSize = " + std::to_string(kApron) + ".0;\n"
-          "vec3 weight_ramp(float weight) {\n  float at = clamp(weight, 0.0, 1.0) * 6.0;\n  vec3 colour = " + hex_vec3(kWeightRamp[0]) + ";\n";
-  for (std::size_t step = 0; step + 1 < kWeightRamp.size(); ++step)
-    text += "  colour += " + hex_vec3(kWeightRamp[step + 1] - kWeightRamp[step]) + " * clamp(at - " + std::to_string(step) + ".0, 0.0, 1.0);\n";
-  text += "  return colour;\n}\nconst vec3 kExactZero = " + hex_vec3(kExactZero) + ", kExactOne = " + hex_vec3(kExactOne) + ";\n";
-  return text + R"(
-vec4 weights_at(vec3 p) {
-  ivec3 block = clamp(ivec3(floor(p / kBlockSize)), ivec3(0), u_weight_blocks - 1);
-  uvec4 entry = texelFetch(u_weight_index, block, 0);
-  vec3 at = clamp(p - vec3(block) * kBlockSize, vec3(0.0), vec3(kBlockSize) - 1e-3) + vec3(entry.xyz) * kSlotSize + kApronSize;
-#ifdef VOXELS
-  vec4 texel = weights_fetched(entry.w, ivec3(at));
-#else
-  vec4 texel = weights_filtered(entry.w, at);
-#endif
-  return entry.w == 0u ? vec4(0.0) : texel;
-}
-
-vec4 weight_colour(vec4 texel) {
-  vec3 read = texel.rgb / max(texel.a, 1e-3);  // what is filtered counts tissue alone
-#ifdef RAMP
-  vec3 colour = read.g > 0.5 ? kExactZero : read.b > 0.5 ? kExactOne : weight_ramp(read.r);
-  float range = 1.0 + step(0.25, read.r) + step(0.5, read.r) + step(0.75, read.r);
-#else
-  vec3 colour = read;
-  const float range = 1.0;
-#endif
-  if (u_weight_region != 0 && texel.a > 0.75) colour = mix(vec3(dot(colour, vec3(0.3, 0.6, 0.1))), colour, 0.35) * 0.55;  // outside of it
-  return texel.a < 0.004 ? vec4(0.0) : vec4(colour, range / 255.0);
-}
-)";
+std::string weight_defines(int atlases, WeightReading reading) {
+  const char* const name = reading == WeightReading::Ramp ? "RAMP" : reading == WeightReading::Filtered ? "FILTERED" : "VOXELS";
+  std::string ramp;
+  for (const glm::vec3& colour : kWeightRamp) ramp += (ramp.empty() ? "" : ", ") + hex_vec3(colour);
+  return atlas_defines(atlases) + gl::define(name) + gl::define("RAMP_COLOURS", ramp) +
+         gl::define("EXACT_ZERO", hex_vec3(kExactZero)) + gl::define("EXACT_ONE", hex_vec3(kExactOne));
 }
 
 }  // namespace limber::render

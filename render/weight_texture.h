@@ -74,7 +74,7 @@ class WeightTexture {
   std::int64_t bytes() const { return bytes_; }
 
   WeightReading reading() const { return reading_of(shown_->display); }
-  // What weight_functions() read; returns the next free unit.
+  // The uniforms of shaders/weights.glsl; returns the next free unit.
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
 
   // What is to be uploaded of a slot, and its texels.
@@ -112,9 +112,7 @@ class WeightTexture {
   std::int64_t texels_uploaded_ = 0, bytes_ = 0;
 };
 
-// vec4 weights_at(vec3 p): the texel at a place in padded coordinates, filtered or of the voxel; zeros in air. vec4
-// weight_colour(vec4 texel): the last channel is 0 without tissue, else the active bone's range between contours, 1 to 4, in
-// 255. Defines RAMP, FILTERED or VOXELS.
-std::string weight_functions(int atlases, WeightReading reading);
+// The definitions that shaders/weights.glsl needs, those of atlas_defines() among them.
+std::string weight_defines(int atlases, WeightReading reading);
 
 }  // namespace limber::render

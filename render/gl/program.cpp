@@ -7,16 +7,9 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "core/base/error.h"
+#include "render/gl/shader_source.h"
 
 namespace limber::render::gl {
-
-const char* const kWholePicture = R"(
-out vec2 ndc;
-void main() {
-  ndc = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  gl_Position = vec4(ndc, 1.0, 1.0);
-}
-)";
 
 namespace {
 
@@ -55,12 +48,15 @@ void compile(const Shader& shader, const std::string& name, const std::string& s
 
 }  // namespace
 
-Program::Program(const std::string& name, const std::string& vertex, const std::string& fragment, const std::string& defines)
+std::string define(const std::string& name, const std::string& value) { return "#define " + name + " " + value + "\n"; }
+std::string define(const std::string& name, int value) { return define(name, std::to_string(value)); }
+std::string define(const std::string& name) { return define(name, ""); }
+
+Program::Program(const std::string& vertex_file, const std::string& fragment_file, const std::string& defines)
     : program_(Object<Kind::Program>::create()) {
-  const std::string head = "#version 330 core\n" + defines + "\n";
   const Shader vertex_shader(GL_VERTEX_SHADER), fragment_shader(GL_FRAGMENT_SHADER);
-  compile(vertex_shader, name + ", vertex", head + vertex);
-  compile(fragment_shader, name + ", fragment", head + fragment);
+  compile(vertex_shader, vertex_file, shader_source(vertex_file, defines));
+  compile(fragment_shader, fragment_file, shader_source(fragment_file, defines));
   glAttachShader(program_.name(), vertex_shader.name());
   glAttachShader(program_.name(), fragment_shader.name());
   glLinkProgram(program_.name());
@@ -72,7 +68,7 @@ Program::Program(const std::string& name, const std::string& vertex, const std::
   glGetProgramiv(program_.name(), GL_INFO_LOG_LENGTH, &length);
   std::vector<char> log(static_cast<size_t>(length) + 1);
   glGetProgramInfoLog(program_.name(), length, nullptr, log.data());
-  refuse(name, "link", std::move(log));
+  refuse(vertex_file + " and " + fragment_file, "link", std::move(log));
 }
 
 void Program::use() const { glUseProgram(program_.name()); }

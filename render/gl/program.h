@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A linked shader program. Shaders are GLSL 3.30; `#version` is put in front here.
+// A linked shader program, made of files of render/shaders.
 #pragma once
 
 #include <string>
@@ -11,10 +11,16 @@
 
 namespace limber::render::gl {
 
+// A line that defines a name for the preprocessor of GLSL.
+std::string define(const std::string& name);
+std::string define(const std::string& name, int value);
+std::string define(const std::string& name, const std::string& value);
+
 class Program {
  public:
-  // Throws Error with the compiler's first lines. `name` is for that message; `defines` stand before both shaders.
-  Program(const std::string& name, const std::string& vertex, const std::string& fragment, const std::string& defines = "");
+  // Compiles and links two files ("march.frag"). `defines`, lines made by define(), stand before both. Throws Error with the
+  // compiler's first lines.
+  Program(const std::string& vertex_file, const std::string& fragment_file, const std::string& defines = "");
 
   void use() const;
   // Of the program in use. A uniform that the compiler dropped is ignored.
@@ -38,8 +44,7 @@ class Program {
   std::unordered_map<std::string, int> locations_;
 };
 
-// The vertex shader that covers the picture with one triangle (three vertices, no attributes), at the far plane.
-// Gives `ndc`, -1 to 1.
-extern const char* const kWholePicture;
+// The vertex shader that covers the picture with one triangle (three vertices, no attributes).
+inline const char* const kWholePicture = "whole_picture.vert";
 
 }  // namespace limber::render::gl

@@ -1,0 +1,12 @@
+# Writes OUT, a source file with the text of every file of FOLDER (render/gl/shader_source.h).
+file(GLOB shaders ${FOLDER}/*.glsl ${FOLDER}/*.vert ${FOLDER}/*.frag)
+list(SORT shaders)
+set(source "#include \"render/gl/shader_source.h\"\n\nnamespace limber::render::gl {\n\n")
+string(APPEND source "const std::vector<ShaderFile>& shader_files() {\n  static const std::vector<ShaderFile> files = {\n")
+foreach(shader ${shaders})
+  get_filename_component(name ${shader} NAME)
+  file(READ ${shader} text)
+  string(APPEND source "{\"${name}\", R\"glsl(${text})glsl\"},\n")
+endforeach()
+string(APPEND source "  };\n  return files;\n}\n\n}  // namespace limber::render::gl\n")
+file(WRITE ${OUT} "${source}")

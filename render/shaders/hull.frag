@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The greatest of each channel is kept: the nearest front face, negated, and the farthest back face.
+in float depth;
+uniform bool u_front_is_clockwise;
+layout(location = 0) out vec2 range;
+void main() { range = gl_FrontFacing != u_front_is_clockwise ? vec2(-depth, -1e30) : vec2(-1e30, depth); }

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Lights what the rays found, in the tissues' own colours, in those of skin weights, or as an X-ray ghost.
+#include "rays.glsl"
+#ifdef POSED
+#include "posed.glsl"
+#endif
+
+in vec2 ndc;
+uniform sampler2D u_depth, u_normal;
+uniform usampler2D u_label, u_looks;
+uniform sampler3D u_occupancy;
+uniform vec3 u_occupancy_texel;
+uniform mat3 u_padded_from_view;   // directions, scaled so that a unit normal moves one brick
+uniform uint u_layer;
+layout(location = 0) out vec4 colour;
+
+const vec3 kKey = vec3(-0.428, 0.556, 0.713);
+const float kFold = 0.7;  // how open the crease of a fold is
+
+// How open the place is: 1 on a flat or bulging surface, less in a crease.
+float openness(float depth, vec3 normal) {
+  vec3 p = u_base + ndc.x * u_base_x + ndc.y * u_base_y + depth * (u_toward + ndc.x * u_toward_x + ndc.y * u_toward_y);
+  vec3 out_of = u_padded_from_view * normal;
+#ifdef POSED
+  // Both at rest; the direction as the map turns it, from what lies just inside.
+  vec3 rest = rest_of(p);
+  vec3 turned = (rest - rest_of(p - 0.35 * out_of)) / 0.35;
+  if (length(turned) > 4.0 * length(out_of)) return kFold;  // across one
+  out_of = turned * min(1.0, 1.5 * length(out_of) / max(length(turned), 1e-3));
+  p = rest;
+#endif
+  float near = textureLod(u_occupancy, (p + out_of * 1.25) * u_occupancy_texel, 0.0).r;
+  float far = textureLod(u_occupancy, (p + out_of * 3.0) * u_occupancy_texel, 0.0).r;
+  return 1.0 - clamp(1.5 * (near - 0.14) + 0.8 * far, 0.0, 0.75);
+}
+
+vec3 lit(vec3 albedo, vec3 normal, float open) {
+  float toward = clamp(normal.z, 0.0, 1.0);
+  float key = clamp(dot(normal, kKey) * 0.86 + 0.14, 0.0, 1.0);
+  float sky = 0.5 + 0.5 * normal.y;
+  float half_way = clamp(dot(normal, normalize(kKey + vec3(0, 0, 1))), 0.0, 1.0);
+  float gloss = half_way * half_way;
+  gloss *= gloss; gloss *= gloss; gloss *= gloss;
+  float rim = (1.0 - toward) * (1.0 - toward);
+  // Light that leaves flesh again is warmer in the shade.
+  vec3 shade = mix(vec3(0.55, 0.42, 0.38), vec3(1.0), open);
+  vec3 light = (0.92 * key * vec3(1.0, 0.975, 0.945) + mix(0.06, 0.18, sky) * vec3(0.95, 0.97, 1.03)) * shade * open * (0.72 + 0.28 * toward);
+  return albedo * (light + 0.06 * rim * sky) + 0.04 * gloss * open;
+}
+
+#ifdef WEIGHTS
+uniform sampler2D u_weight;
+uniform usampler2D u_place;
+uniform int u_lines;      // 0 none, 1 between ranges of the weight, 2 between colours
+uniform vec2 u_joined;    // steps of the place that pixels side by side on one surface are apart, at most: so many, and so many by their size
+const float kLine = 0.55;
+
+// Whether a line may run between what the two show.
+bool differs(vec4 weight, vec4 other) { return other.a != 0.0 && (u_lines == 1 ? other.a != weight.a : other.rgb != weight.rgb); }
+
+// Whether the pixels lie on one surface.
+bool joined(ivec2 at, ivec2 beside) {
+  vec3 apart = vec3(texelFetch(u_place, at, 0).xyz) - vec3(texelFetch(u_place, beside, 0).xyz);
+  float most = u_joined.x + u_joined.y * length(u_base_x + texelFetch(u_depth, at, 0).r * u_toward_x);
+  return dot(apart, apart) < most * most;
+}
+
+vec3 colour_of(ivec2 at, vec3 tissue) {
+  vec4 weight = texelFetch(u_weight, at, 0);
+  ivec2 last = textureSize(u_weight, 0) - 1, right = min(at + ivec2(1, 0), last), above = min(at + ivec2(0, 1), last);
+  bool to_right = differs(weight, texelFetch(u_weight, right, 0)), to_above = differs(weight, texelFetch(u_weight, above, 0));
+  bool line = u_lines != 0 && ((to_right && joined(at, right)) || (to_above && joined(at, above)));
+  return weight.a == 0.0 ? tissue : weight.rgb * (line ? kLine : 1.0);
+}
+#endif
+
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  vec4 normal = texelFetch(u_normal, at, 0);
+  uint label = texelFetch(u_label, at, 0).r;
+  uvec4 look = texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0);
+  vec3 srgb = vec3(look.rgb) / 255.0;
+#ifdef WEIGHTS
+  srgb = colour_of(at, srgb);
+#endif
+  bool cap = normal.a > 0.7;
+  float alpha = normal.a == 0.0 || (look.a & 7u) > u_layer + 1u ? 0.0 : 1.0;
+#ifdef GHOST
+  float steep = clamp(1.0 - abs(normal.z * 2.0 - 1.0), 0.0, 1.0);
+  // A cut through flesh stays see-through.
+  alpha *= cap ? 0.30 : 0.10 + 0.62 * steep * steep * steep;
+  vec3 rgb = cap ? srgb : vec3(0.624, 0.722, 0.839);
+#else
+  alpha *= float(look.a >> 3) / 255.0;
+  vec3 n = normalize(normal.xyz * 2.0 - 1.0);
+  vec3 rgb = cap ? srgb : sqrt(clamp(lit(srgb * srgb, n, normal.a > 0.5 ? kFold : openness(texelFetch(u_depth, at, 0).r, n)), 0.0, 1.0));
+#endif
+  colour = vec4(rgb * alpha, alpha);
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The label index stays with the field that rays use, since only it says which blocks are there; a slice needs every block.
+#include "atlases.glsl"
+#ifdef POSED
+#include "posed.glsl"
+#endif
+#ifdef WEIGHTS
+#include "weights.glsl"
+#endif
+
+in vec2 ndc;
+uniform usampler3D u_index;
+uniform usampler2D u_looks;
+uniform vec3 u_middle, u_right, u_down;   // padded coordinates; a pixel right, a pixel down
+uniform vec3 u_high;
+uniform vec2 u_size;
+uniform bool u_outline;
+uniform uint u_outlined;
+layout(location = 0) out vec4 colour;
+
+#ifdef WEIGHTS
+uniform float u_contours;
+const float kContour = 0.55, kTissueBorder = 0.86;
+#endif
+
+vec3 place_of(vec2 pixel) {
+  vec3 p = u_middle + pixel.x * u_right + pixel.y * u_down;
+#ifdef POSED
+  p = rest_of(p);
+#endif
+  return p;
+}
+
+uint label_at_place(vec3 p) {
+  if (any(lessThan(p, vec3(0.0))) || any(greaterThanEqual(p, u_high))) return 0u;
+  uvec4 entry = texelFetch(u_index, ivec3(p) / BLOCK, 0);
+  if (entry.w == 0u) return 0u;
+  return label_at(entry.w, ivec3(p) % BLOCK + ivec3(entry.xyz) * SLOT + APRON);
+}
+
+uvec4 look_of(uint label) { return texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0); }
+
+#ifdef WEIGHTS
+// How much of the pixel lines cover.
+float contour(vec4 texel, vec3 right, vec3 below) {
+#ifdef RAMP
+  float level = texel.r / max(texel.a, 1e-3);
+  vec2 slope = abs(vec2(dFdx(level), dFdy(level)));
+  float off = min(min(abs(level - 0.25), abs(level - 0.5)), abs(level - 0.75));
+  // A steep one is a fold or the border of the tissue.
+  return texel.a > 0.0 && all(lessThan(slope, vec2(0.3))) ? clamp(1.1 - off / max(length(slope), 1e-4), 0.0, 1.0) : 0.0;
+#elif defined(VOXELS)
+  vec4 to_right = weights_at(right), to_below = weights_at(below);
+  return (to_right.a > 0.0 && to_right != texel) || (to_below.a > 0.0 && to_below != texel) ? 1.0 : 0.0;
+#else
+  return 0.0;
+#endif
+}
+#endif
+
+void main() {
+  vec2 pixel = vec2(gl_FragCoord.x - u_size.x * 0.5, u_size.y * 0.5 - gl_FragCoord.y);
+  vec3 p = place_of(pixel), p_right = place_of(pixel + vec2(1, 0)), p_below = place_of(pixel + vec2(0, 1));
+  uint label = label_at_place(p);
+  uvec4 look = look_of(label);
+  bool seen = (look.a & 7u) != 0u;
+  float alpha = seen ? 1.0 : 0.0;
+  uint right = label_at_place(p_right), below = label_at_place(p_below);
+  bool border = right != label || below != label;
+  if (u_outline) {
+    // The border belongs to whichever side is seen.
+    if (!seen && border) look = look_of((look_of(right).a & 7u) != 0u ? right : below);
+    alpha = border && (look.a & 7u) != 0u ? 1.0 : seen ? 0.10 : 0.0;
+  }
+  vec3 rgb = vec3(look.rgb) / 255.0;
+#ifdef WEIGHTS
+  vec4 texel = weights_at(p);
+  float line = u_contours * contour(texel, p_right, p_below);
+  if (seen && !(u_outline && border)) {
+    vec4 weight = weight_colour(texel);
+    if (weight.a > 0.0) {
+      rgb = weight.rgb * (border ? kTissueBorder : 1.0) * mix(1.0, kContour, line);
+      alpha = 1.0;
+    }
+  }
+#endif
+  if (u_outlined != 0u && border && (label == u_outlined || right == u_outlined || below == u_outlined)) { rgb = vec3(1.0, 0.624, 0.18); alpha = 1.0; }
+  colour = vec4(rgb * alpha, alpha);
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Turns the position that each pixel shows into the colour of the skin weights there.
+#include "weights.glsl"
+
+uniform usampler2D u_place;
+uniform float u_place_step;
+uniform vec3 u_shift;  // of what is read voxel by voxel
+layout(location = 0) out vec4 colour;
+void main() {
+  uvec4 place = texelFetch(u_place, ivec2(gl_FragCoord.xy), 0);
+  vec3 p = vec3(place.xyz) * u_place_step;
+#ifdef VOXELS
+  p += u_shift;
+#endif
+  vec4 shown = weight_colour(weights_at(p));
+  colour = place.w == 0u ? vec4(0.0) : shown;
+}
