@@ -96,7 +96,7 @@ Renderer::~Renderer() = default;
 void Renderer::begin_frame(double upload_seconds) {
   parts_->upload_time = UploadTime{std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(upload_seconds))};
 }
-void Renderer::average_at_rest(int pictures) { parts_->pictures_at_rest = std::max(1, pictures); }
+void Renderer::average_at_rest(int pictures) { parts_->pictures_at_rest = std::max(0, pictures); }
 void Renderer::finish() { glFinish(); }
 const std::string& Renderer::note() const { return parts_->note; }
 

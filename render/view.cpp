@@ -399,7 +399,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
     my.sample = my.next_tile = 0;
     const double begin = seconds();
     my.draw_at_once(*source, scale > 0 ? scale : my.moving_scale);
-    if (scale == 0) {
+    if (scale == 0 && my.parts.pictures_at_rest > 0) {
       glFinish();
       // The cost goes with the number of pixels; a finer picture is tried when it would fit well.
       const double cost = seconds() - begin;

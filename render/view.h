@@ -34,7 +34,8 @@ class Renderer {
   // altogether, and are not complete while some wait. Without frames each draw brings all.
   void begin_frame(double upload_seconds);
 
-  // How many pictures are averaged at rest, at least one; six unless it is called. Fewer are sooner complete, and less smooth.
+  // How many pictures are averaged at rest; six unless it is called. Fewer are sooner complete, and less smooth. With 0 a
+  // picture at rest stays one of every third pixel: for tests of all that is not a picture.
   void average_at_rest(int pictures);
 
   // Waits until everything drawn so far is done, for whoever measures.

@@ -53,7 +53,7 @@ struct SmallEditor {
   explicit SmallEditor(const glm::ivec2& size = {1024, 640}, const editor::Preferences& preferences = {}, bool with_body = true)
       : host(editor::open_offscreen(size)), editor(std::make_unique<editor::Editor>(*host, preferences)), player(*editor, *host) {
     editor->workers_yield = false;  // other tests run beside this one
-    editor->views->renderer.average_at_rest(1);
+    editor->views->renderer.average_at_rest(0);
     player.step();
     if (!with_body) return;
     editor->history.reset(small_body(), "Open ball");
@@ -62,6 +62,11 @@ struct SmallEditor {
     player.settle();
   }
 
+  // For tests that look at pictures, or compare what was painted through two of them.
+  void draw_finely() {
+    editor->views->renderer.average_at_rest(1);
+    player.settle();
+  }
   void play(const std::string& script) { player.play(script); }
   std::string fact(const std::string& name) const { return editor::fact(*editor, name); }
 

@@ -220,6 +220,7 @@ TEST_CASE("replay: the same script gives the same document and the same picture"
   render::Image picture[2];
   for (int i = 0; i < 2; ++i) {
     SmallEditor test({1280, 720});
+    test.draw_finely();
     test.play(script);
     hash[i] = test.fact("document");
     picture[i] = test.host->picture();

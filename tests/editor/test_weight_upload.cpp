@@ -23,6 +23,7 @@ struct LargeEditor : LimbEditor {
     next.weights = weights_of(*volume, 450);
     editor->history.reset(next, "Open block");
     editor->preferences.reduce_motion = true;
+    draw_finely();
     frame_all(*editor, false);
     play("key N\nkey Ctrl+2\nkey Num1\nwait-idle");
   }

@@ -192,7 +192,7 @@ TEST_CASE("posed body: at rest the picture is that of the volume itself, in ever
 }
 
 TEST_CASE("posed body: a bent elbow has the outline of the dense map, from any side, by both methods") {
-  for (const auto& [linear, degrees] : {std::pair{true, 45.0}, std::pair{true, 60.0}, std::pair{false, 60.0}, std::pair{false, 90.0}}) {
+  for (const auto& [linear, degrees] : {std::pair{true, 60.0}, std::pair{false, 90.0}}) {
     CAPTURE(linear);
     CAPTURE(degrees);
     check_outline(arm().volume, arm().tissues, arm().rig, arm().tissue, arm().weights, arm().bent(degrees), linear);

@@ -43,7 +43,7 @@ TEST_CASE("child process: a crash, an exception, a failure or too many bytes are
   CHECK(run_in_child([](const Send&) { return true; }, 0) == "");
 }
 
-TEST_CASE("child process: the reason of a failure is told") {
+TEST_CASE("child process: the reason of a failure is told" * doctest::test_suite("slow")) {
   const auto why = [](const std::function<bool(const Send&)>& work, const ChildLimits& limits = {}) {
     const ChildAnswer answer = run_in_child(work, 10, limits);
     CHECK_FALSE(answer.sent);

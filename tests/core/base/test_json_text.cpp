@@ -36,7 +36,8 @@ TEST_CASE("JSON text: what is nested too deeply or names a key twice has a probl
                     "the JSON is nested more than 64 levels deep: rig.json: correct the file");
 }
 
-TEST_CASE("JSON text: every command refuses a file that is nested a million deep, and a key that is there twice") {
+TEST_CASE("JSON text: every command refuses a file that is nested a million deep, and a key that is there twice"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Phantom phantom = make_arm_phantom(10);
   write_volume(phantom.volume, folder / "volume.nrrd", phantom.tissues);

@@ -222,7 +222,8 @@ TEST_CASE("bone parts: a volume that is all bone, or has none, is no trouble") {
   CHECK(split_bones(body.volume, TissueVoxels(body.volume), body.tissues, body.armature).parts.empty());
 }
 
-TEST_CASE("bone parts: on a whole arm with one bone label, every true bone lies on one rig bone") {
+TEST_CASE("bone parts: on a whole arm with one bone label, every true bone lies on one rig bone"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/arm_shoulder_1mm_tissue.mha");
   const VolumeFile file = read_volume(shared_path("data/bp3d/arm_shoulder_1mm_tissue.mha"));
   const VolumeFile truth = read_volume(shared_path("data/bp3d/arm_shoulder_1mm.nrrd"));

@@ -98,7 +98,8 @@ TEST_CASE("command chain: the rest pose gives the input back, and report sees no
   CHECK(report["tissues"].size() > 5);
 }
 
-TEST_CASE("resample: --frames writes one volume and report for each frame, as --frame does, and refuses what would overwrite itself") {
+TEST_CASE("resample: --frames writes one volume and report for each frame, as --frame does, and refuses what would overwrite itself"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const auto posed = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words = {"resample", arm.volume, "--rig", arm.rig, "--tissues", arm.tissues, "--motion", arm.motion, "--method", "dqs"};
@@ -189,7 +190,8 @@ TEST_CASE("fit-joint: a rig is written whose forearm turns freely") {
   CHECK(info_of(rig)["bones"].size() == info_of(arm.rig)["bones"].size());
 }
 
-TEST_CASE("convert: volumes go through every format and come back bit for bit, rigs and motions keep bones and frames") {
+TEST_CASE("convert: volumes go through every format and come back bit for bit, rigs and motions keep bones and frames"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const std::string back = arm.folder / "back.nrrd";
   const auto original = info_of(arm.volume);

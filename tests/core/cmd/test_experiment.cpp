@@ -71,7 +71,8 @@ std::size_t count(const std::string& text, const std::string& of) {
 
 }  // namespace
 
-TEST_CASE("experiment: a study gives tables and one self-contained page, and killed after a random cell and taken up again the same") {
+TEST_CASE("experiment: a study gives tables and one self-contained page, and killed after a random cell and taken up again the same"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", whole = folder / "whole", killed = folder / "killed";
   describe(study, R"(["lbs", "dqs", "fem"])");
@@ -143,7 +144,8 @@ TEST_CASE("experiment: a study gives tables and one self-contained page, and kil
   CHECK(read_file(one / "posed.nrrd") == before);
 }
 
-TEST_CASE("experiment: masses made exact are a technique of their own, and SAR that was computed of the cells is a figure of the page") {
+TEST_CASE("experiment: masses made exact are a technique of their own, and SAR that was computed of the cells is a figure of the page"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", out = folder / "out";
   describe(study, R"(["lbs"])");
@@ -186,7 +188,8 @@ TEST_CASE("experiment: masses made exact are a technique of their own, and SAR t
   }
 }
 
-TEST_CASE("experiment: shards compute each their own cells, and a run without one collects them") {
+TEST_CASE("experiment: shards compute each their own cells, and a run without one collects them"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", out = folder / "out";
   describe(study, R"(["lbs", "dqs"])");
@@ -209,7 +212,8 @@ TEST_CASE("experiment: shards compute each their own cells, and a run without on
   CHECK(count(more.err, ": done") == 2);
 }
 
-TEST_CASE("experiment: a cancel leaves done cells and nothing half-written, and what cannot be is one clear line") {
+TEST_CASE("experiment: a cancel leaves done cells and nothing half-written, and what cannot be is one clear line"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", out = folder / "out";
   describe(study, R"(["lbs", "dqs"])");

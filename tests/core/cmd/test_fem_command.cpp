@@ -168,7 +168,8 @@ TEST_CASE("fem command: writes volume, report and mesh, tells angle, iteration, 
   CHECK(read_file(arm.folder / "job.nrrd") == read_file(arm.folder / "out.nrrd"));
 }
 
-TEST_CASE("fem command: Ctrl-C ends a solve within a tenth of a second and leaves nothing behind") {
+TEST_CASE("fem command: Ctrl-C ends a solve within a tenth of a second and leaves nothing behind"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const auto words = [&] {
     auto all = arm.words("resample", {"--weights", arm.folder / "w.nrrd", "--method", "fem", "--contact", "--flex", "Forearm=80", "-o", arm.folder / "out.nrrd"});

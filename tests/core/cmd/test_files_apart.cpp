@@ -69,7 +69,8 @@ void check_refused(const Files& files, const Words& words, const char* sentence)
 
 }  // namespace
 
-TEST_CASE("command files: an output that is also an input is refused by every command, and nothing is changed") {
+TEST_CASE("command files: an output that is also an input is refused by every command, and nothing is changed"
+          * doctest::test_suite("slow")) {
   const Files files;
   const Words resample{"resample", "@volume.nrrd", "--rig", "@rig.json", "--flex", "Forearm=20", "--method", "lbs"};
   const auto with = [](Words words, const Words& more) {

@@ -49,7 +49,8 @@ struct Arm {
 
 TEST_CASE(
     "glide: bones that would enter each other come apart where nothing is said, and the report says which joints "
-    "glide") {
+    "glide"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const auto stays = arm.posed({"--flex", "Forearm=100", "--glide", "off"}),
              glides = arm.posed({"--flex", "Forearm=100"});
@@ -67,7 +68,8 @@ TEST_CASE(
   for (const auto& bone : glides["bones"]) CHECK(bone["rigid_residual_mm"].get<double>() < 0.01);
 }
 
-TEST_CASE("glide: where no bones meet, the result is the same to the byte with and without") {
+TEST_CASE("glide: where no bones meet, the result is the same to the byte with and without"
+          * doctest::test_suite("slow")) {
   const Arm arm(0);
   for (const char* method : {"mix", "lbs", "dqs"}) {
     const auto glides = arm.posed({"--flex", "Forearm=60", "--method", method});
@@ -78,7 +80,8 @@ TEST_CASE("glide: where no bones meet, the result is the same to the byte with a
   }
 }
 
-TEST_CASE("glide: a pose file lets no bone go further than a voxel, and says what overlaps still") {
+TEST_CASE("glide: a pose file lets no bone go further than a voxel, and says what overlaps still"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   std::ofstream(arm.folder / "pose.json") << R"({"bones": {"Forearm": {"axis": [1, 0, 0], "degrees": -100}}})";
   const auto by_file = arm.posed({"--pose", arm.folder / "pose.json"});
@@ -95,7 +98,8 @@ TEST_CASE("glide: a pose file lets no bone go further than a voxel, and says wha
   CHECK(run.err.find("--fit-joints") == std::string::npos);
 }
 
-TEST_CASE("glide: jobs say it as the command line does, and what is no way to glide is refused") {
+TEST_CASE("glide: jobs say it as the command line does, and what is no way to glide is refused"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   arm.posed({"--flex", "Forearm=100", "--glide", "off"});
   const std::string stays = read_file(arm.out);
@@ -117,7 +121,7 @@ TEST_CASE("glide: jobs say it as the command line does, and what is no way to gl
   }
 }
 
-TEST_CASE("glide: the results are the same bytes for any number of threads") {
+TEST_CASE("glide: the results are the same bytes for any number of threads" * doctest::test_suite("slow")) {
   const Arm arm;
   std::vector<std::string> bytes;
   for (const char* threads : {"1", "2", "4"}) {

@@ -8,7 +8,8 @@
 
 using namespace limber::test;
 
-TEST_CASE("user guide: every point that is a command runs, one after the other, in an empty folder") {
+TEST_CASE("user guide: every point that is a command runs, one after the other, in an empty folder"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   std::ifstream guide(LIMBER_SOURCE_DIR "/assets/docs/guide.md");
   int commands = 0;

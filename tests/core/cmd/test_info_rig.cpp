@@ -62,7 +62,7 @@ TEST_CASE("info: rigs and motions tell their bones, joints and frames") {
   }
 }
 
-TEST_CASE("fk: a rig at rest shows its heads and no rotation, a motion its own axes") {
+TEST_CASE("fk: a rig at rest shows its heads and no rotation, a motion its own axes" * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body.armature.json");
   const std::string rig = test::shared_path("data/bp3d/body.armature.json").string(), bvh = test::shared_path("data/bvh/cmu_01_01.bvh").string();
   const auto rest = nlohmann::json::parse(test::run_limber({"fk", rig, "--json"}).out);

@@ -208,7 +208,8 @@ TEST_CASE("planted faults: labels whose sides are swapped are caught") {
   check_caught(resample(folder, {}), folder, "left and right are swapped");
 }
 
-TEST_CASE("planted faults: a grey image in place of labels is refused before anything is written") {
+TEST_CASE("planted faults: a grey image in place of labels is refused before anything is written"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   Figure figure = block_figure();
   write_figure(figure, folder.path());
@@ -337,7 +338,8 @@ TEST_CASE("strict: gates that nobody could check say so, and never pass") {
       }
 }
 
-TEST_CASE("good cases: bodies built in code, at rest and in small poses, pass every gate of the body") {
+TEST_CASE("good cases: bodies built in code, at rest and in small poses, pass every gate of the body"
+          * doctest::test_suite("slow")) {
   struct Case {
     std::string body;  // arm, body: the phantoms; figure, block arm
     std::vector<std::string> flex;
@@ -383,7 +385,8 @@ TEST_CASE("good cases: bodies built in code, at rest and in small poses, pass ev
   }
 }
 
-TEST_CASE("good cases: real bodies at rest and with bent elbows pass every gate of the body") {
+TEST_CASE("good cases: real bodies at rest and with bent elbows pass every gate of the body"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body_3mm_structures.nii.gz");
   struct Case {
     const char *volume, *rig, *tissues;

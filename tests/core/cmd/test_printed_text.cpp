@@ -63,7 +63,8 @@ TEST_CASE("printed text: control characters and broken UTF-8 are made visible, l
   CHECK(cmd::one_line("a\nb\tc\rd\x1b") == "a b c d?");
 }
 
-TEST_CASE("printed text: names from files give no orders to the terminal, and JSON keeps them whole") {
+TEST_CASE("printed text: names from files give no orders to the terminal, and JSON keeps them whole"
+          * doctest::test_suite("slow")) {
   const HostileArm arm;
   const std::string volume = arm.folder / "volume.nrrd", rig = arm.folder / "rig.json",
                     tissues = arm.folder / "tissues.json";
@@ -100,7 +101,8 @@ TEST_CASE("printed text: names from files give no orders to the terminal, and JS
   CHECK(json["joints"][0]["name"].get<std::string>().ends_with(kHostile));
 }
 
-TEST_CASE("printed text: a full disk or a closed stdout is told, and no command says that it is done") {
+TEST_CASE("printed text: a full disk or a closed stdout is told, and no command says that it is done"
+          * doctest::test_suite("slow")) {
   const HostileArm arm;
   const std::string program = LIMBER_PROGRAM, folder = arm.folder.path().string() + "/";
   for (const std::string& words : std::vector<std::string>{

@@ -42,7 +42,8 @@ std::string without_seams(std::string weights) {
 
 }  // namespace
 
-TEST_CASE("project command: what create puts in, inspect and info tell and export gives back") {
+TEST_CASE("project command: what create puts in, inspect and info tell and export gives back"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   make_arm(folder);
   const auto inspected = project(folder, {"--json"});
@@ -68,7 +69,7 @@ TEST_CASE("project command: what create puts in, inspect and info tell and expor
   REQUIRE(project(folder, {"export", "motion", "-o", folder / "again.bvh"}).exit_code == 0);
 }
 
-TEST_CASE("project command: seams and a bone map are kept, told and given back") {
+TEST_CASE("project command: seams and a bone map are kept, told and given back" * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   make_arm(folder);
   const LabelVolume volume = read_volume(folder / "volume.nrrd").volume;
@@ -103,7 +104,8 @@ TEST_CASE("project command: seams and a bone map are kept, told and given back")
   CHECK(run_limber({"project", folder / "arm.limber", "export", "seams", "-o", folder / "none.nrrd"}).exit_code == 1);
 }
 
-TEST_CASE("project command: recover writes the edits that a crash left, or what is whole of a damaged project") {
+TEST_CASE("project command: recover writes the edits that a crash left, or what is whole of a damaged project"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   make_arm(folder);
   {
@@ -134,7 +136,8 @@ TEST_CASE("project command: recover writes the edits that a crash left, or what 
   CHECK(run_limber({"project", folder / "saved.limber", "verify"}).exit_code == 0);
 }
 
-TEST_CASE("project command: what cannot be done is refused in one line and writes nothing") {
+TEST_CASE("project command: what cannot be done is refused in one line and writes nothing"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   make_arm(folder);
   std::ofstream(folder / "text.limber") << "hello";

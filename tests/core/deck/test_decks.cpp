@@ -91,7 +91,8 @@ TEST_CASE("decks: a volume with other axes is turned, and stays where it is in t
   CHECK(warnings.size() == 1);
 }
 
-TEST_CASE("convert: simulation decks are read back by h5py and numpy, voxel for voxel") {
+TEST_CASE("convert: simulation decks are read back by h5py and numpy, voxel for voxel"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
   const std::string volume = folder / "volume.nrrd", tissues = folder / "tissues.json", nifti = folder / "v.nii.gz", csv = folder / "t.csv";

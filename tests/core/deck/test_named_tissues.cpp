@@ -72,12 +72,14 @@ TEST_CASE("convert: every class of TotalSegmentator's other tasks goes to openEM
   check_leaves(names_of(total_segmentator_sub_tasks()));
 }
 
-TEST_CASE("convert: every organ of ICRP 110 and of the Visible Human goes to openEMS, gprMax and ICRP slices") {
+TEST_CASE("convert: every organ of ICRP 110 and of the Visible Human goes to openEMS, gprMax and ICRP slices"
+          * doctest::test_suite("slow")) {
   check_leaves(names_of(icrp_110_organs()));
   check_leaves(names_of(visible_human_tissues()));
 }
 
-TEST_CASE("convert: every structure of BodyParts3D and the SPL knee goes to openEMS, gprMax and ICRP slices") {
+TEST_CASE("convert: every structure of BodyParts3D and the SPL knee goes to openEMS, gprMax and ICRP slices"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body_structures.labels.json");
   for (const char* table : {"data/bp3d/body_structures.labels.json", "data/spl/knee.ctbl"}) {
     std::vector<std::string> names;

@@ -154,7 +154,8 @@ TEST_CASE("preview: after a pose that cannot be shown the next one is right agai
   CHECK(same(*preview.update(motions, Blend::Linear), *fresh.update(motions, Blend::Linear)));
 }
 
-TEST_CASE("preview: an arm bent by 60 degrees is mapped as by the dense lattice, away from folds to a tenth of a voxel") {
+TEST_CASE("preview: an arm bent by 60 degrees is mapped as by the dense lattice, away from folds to a tenth of a voxel"
+          * doctest::test_suite("slow")) {
   const Sitter& arm = arm_sitter();
   const auto motions = arm.motions(flexed(arm, "Forearm", 60));
   for (const Blend blend : {Blend::Linear, Blend::DualQuaternion}) {
@@ -193,7 +194,8 @@ TEST_CASE("preview: an arm bent by 60 degrees is mapped as by the dense lattice,
   }
 }
 
-TEST_CASE("preview: bones stay stiff: nineteen voxels of twenty are read within half a millimetre of where their bone carries them") {
+TEST_CASE("preview: bones stay stiff: nineteen voxels of twenty are read within half a millimetre of where their bone carries them"
+          * doctest::test_suite("slow")) {
   const Sitter& arm = arm_sitter();
   const auto motions = arm.motions(flexed(arm, "Forearm", 60));
   const AffineTransform to_world = world_from_voxel(arm.volume->grid), to_voxel = voxel_from_world(arm.volume->grid);
@@ -242,7 +244,8 @@ Sitter fork_sitter(int gap) {
 
 }  // namespace
 
-TEST_CASE("preview: what lies on both sides of a narrow gap moves apart, and nothing is drawn between") {
+TEST_CASE("preview: what lies on both sides of a narrow gap moves apart, and nothing is drawn between"
+          * doctest::test_suite("slow")) {
   for (const int step : {4, 8})
     for (const int gap : {1, 2, 3, 5}) {
       CAPTURE(step);

@@ -193,7 +193,8 @@ TEST_CASE("contact: of two ways to one place each is watched by itself") {
   CHECK(form.largest_step(below, above - below, 1).length < 1);
 }
 
-TEST_CASE("contact: what is known of one way serves the next, and is all that there is to know of it") {
+TEST_CASE("contact: what is known of one way serves the next, and is all that there is to know of it"
+          * doctest::test_suite("slow")) {
   const TwoBoxes boxes(1);
   const int count = int(boxes.rest.rows());
   ContactForm form(boxes.F, boxes.rest, boxes.free());

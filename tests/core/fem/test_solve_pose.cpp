@@ -115,7 +115,8 @@ TEST_CASE("solve pose: from a neighbouring pose it ends where it ends from rest"
   CHECK((further.V - far.V).rowwise().norm().maxCoeff() < 0.001);
 }
 
-TEST_CASE("solve pose: flesh that waits goes with its bone until then, and the shape is the same in the end") {
+TEST_CASE("solve pose: flesh that waits goes with its bone until then, and the shape is the same in the end"
+          * doctest::test_suite("slow")) {
   const BarModel bar;
   FemModel waits = bar.fem;
   for (int v = 0; v < int(waits.mesh.V.rows()); ++v)

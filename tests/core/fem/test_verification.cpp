@@ -128,7 +128,8 @@ TEST_CASE("verification: a patch of tets held by its skin in an affine shape tak
   }
 }
 
-TEST_CASE("verification: blowing up a thick incompressible tube takes the pressure on paper, with patches") {
+TEST_CASE("verification: blowing up a thick incompressible tube takes the pressure on paper, with patches"
+          * doctest::test_suite("slow")) {
   const TetMesh mesh = thick_cylinder(1, 2, 0.1, 10, 80, 1);
   for (const auto& [a, pressure] : {std::pair{1.1, .131562}, {1.25, .275712}, {1.5, .428228}}) {
     INFO("inner radius ", a);
@@ -141,7 +142,8 @@ TEST_CASE("verification: blowing up a thick incompressible tube takes the pressu
   CHECK(std::abs(without / .131562 - 1) > 2 * std::abs(pressure_at(mesh, .499, 1, 1.1, 8, true) / .131562 - 1));
 }
 
-TEST_CASE("verification: blowing up a thick incompressible sphere takes the pressure on paper, with patches, plain tets lock") {
+TEST_CASE("verification: blowing up a thick incompressible sphere takes the pressure on paper, with patches, plain tets lock"
+          * doctest::test_suite("slow")) {
   const TetMesh mesh = thick_sphere_eighth(1, 2, 12, 8);
   for (const auto& [a, pressure] : {std::pair{1.1, .287155}, {1.25, .551869}, {1.5, .755433}}) {
     INFO("inner radius ", a);

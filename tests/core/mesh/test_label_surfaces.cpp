@@ -147,7 +147,8 @@ TEST_CASE("label surfaces: outside is outside on a mirrored grid, too, and spaci
   CHECK(least == doctest::Approx(100 - 4.5));
 }
 
-TEST_CASE("surfaces command: one OBJ with groups that share vertices, one glTF with a named node each, STL and PLY a file a tissue, watertight for VTK") {
+TEST_CASE("surfaces command: one OBJ with groups that share vertices, one glTF with a named node each, STL and PLY a file a tissue, watertight for VTK"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
   const std::string volume = folder / "volume.nrrd", tissues = folder / "tissues.json", nifti = folder / "v.nii.gz";

@@ -132,7 +132,8 @@ TEST_CASE("mesh tissue: TetGen fills the same surface where it is asked to") {
   check_quality(quality_of(result, regions));
 }
 
-TEST_CASE("mesh tissue: where TetGen crashes, hangs or fails the lattice's own tets stand, and that is said") {
+TEST_CASE("mesh tissue: where TetGen crashes, hangs or fails the lattice's own tets stand, and that is said"
+          * doctest::test_suite("slow")) {
   const LabelVolume regions = ball();
   const auto with = [&](double seconds, std::function<void()> at_start) {
     const SharedCount calls;
@@ -185,7 +186,7 @@ TEST_CASE("mesh tissue: a cancel is heard") {
 }
 
 // LIMBER_RANDOM_BODIES=300 asks for more than there is time for in a usual run.
-TEST_CASE("mesh tissue: random bodies are meshed, whatever they are") {
+TEST_CASE("mesh tissue: random bodies are meshed, whatever they are" * doctest::test_suite("slow")) {
   const char* asked = std::getenv("LIMBER_RANDOM_BODIES");
   const unsigned count = asked ? unsigned(std::atoi(asked)) : 60;
   int by_tetgen = 0, fell_back = 0;
@@ -229,7 +230,8 @@ TEST_CASE("mesh tissue: the quality of a mesh with a fault is seen") {
   CHECK(find_fault(twice, volumes) != "");
 }
 
-TEST_CASE("mesh tissue: the procedural arm and body are meshed well, the arm also finer at its elbow") {
+TEST_CASE("mesh tissue: the procedural arm and body are meshed well, the arm also finer at its elbow"
+          * doctest::test_suite("slow")) {
   const Phantom arm = make_arm_phantom();
   const Regions of_arm = regions_of(arm.volume, arm.tissues, arm.armature);
   check_body(of_arm, "procedural arm");
@@ -242,7 +244,8 @@ TEST_CASE("mesh tissue: the procedural arm and body are meshed well, the arm als
   check_body(regions_of(body.volume, body.tissues, body.armature), "procedural body", {.spacing_mm = 12});
 }
 
-TEST_CASE("mesh tissue: the Visible Man's arm is meshed well at 12, 8 and 6 mm, and finer at its elbow") {
+TEST_CASE("mesh tissue: the Visible Man's arm is meshed well at 12, 8 and 6 mm, and finer at its elbow"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   VolumeFile file = read_volume(test::shared_path("data/bender/man-arm-2mm.mha"));
   const Armature rig = read_armature(test::shared_path("data/bender/man-arm-2mm-armature.vtk"));
@@ -252,7 +255,8 @@ TEST_CASE("mesh tissue: the Visible Man's arm is meshed well at 12, 8 and 6 mm, 
     if (bone.name == "Forearm") check_body(regions, "Visible Man's arm, finer at the elbow", {.fine_around = {bone.head}});
 }
 
-TEST_CASE("mesh tissue: arm and shoulder, two whole bodies and a knee from scans are meshed well") {
+TEST_CASE("mesh tissue: arm and shoulder, two whole bodies and a knee from scans are meshed well"
+          * doctest::test_suite("slow")) {
   struct Case {
     const char *name, *volume, *rig, *tissues;
     double spacing_mm;

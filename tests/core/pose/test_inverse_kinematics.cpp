@@ -105,7 +105,8 @@ TEST_CASE("inverse kinematics: targets that a legal pose has are reached, and no
   CHECK(worst < 1e-6);
 }
 
-TEST_CASE("inverse kinematics: what lies out of reach comes as near as it can, and is said") {
+TEST_CASE("inverse kinematics: what lies out of reach comes as near as it can, and is said"
+          * doctest::test_suite("slow")) {
   Chance chance(2);
   double furthest = 0;
   int said = 0;
@@ -147,7 +148,8 @@ TEST_CASE("inverse kinematics: out of reach within limits, a small step of the t
   CHECK(jumps <= steps / 50);
 }
 
-TEST_CASE("inverse kinematics: out of reach within limits, no pose near the one found comes nearer") {
+TEST_CASE("inverse kinematics: out of reach within limits, no pose near the one found comes nearer"
+          * doctest::test_suite("slow")) {
   Chance chance(4);
   int reached = 0, nearer = 0, slow = 0;
   constexpr int kTargets = 10000;

@@ -73,7 +73,8 @@ TEST_CASE("edit script: run by another test, to be killed" * doctest::skip()) {
   run_edit_script(Path(folder) / "a.limber", {.edits_folder = Path(folder) / "state"}, script);
 }
 
-TEST_CASE("kill: killed at any moment, a project opens whole, with all edits but at most the last second's") {
+TEST_CASE("kill: killed at any moment, a project opens whole, with all edits but at most the last second's"
+          * doctest::test_suite("slow")) {
   const int kills = static_cast<int>(number_from("LIMBER_KILLS", 12));
   const double pause = number_from("LIMBER_KILL_PAUSE", 0.003);
   std::mt19937 random(4);

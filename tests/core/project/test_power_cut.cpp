@@ -43,7 +43,8 @@ void make_project(const TemporaryFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("power cut: whatever the disk lost of what was not synced, a project opens whole with every edit that was kept") {
+TEST_CASE("power cut: whatever the disk lost of what was not synced, a project opens whole with every edit that was kept"
+          * doctest::test_suite("slow")) {
   const char* wanted = std::getenv("LIMBER_POWER_CUTS");
   const int cuts = wanted ? std::atoi(wanted) : 20;
   std::mt19937 random(9);

@@ -159,7 +159,8 @@ TEST_CASE("worker: a crash, a kill and a failure without a word become clear mes
   CHECK_THROWS_AS(run_worker("job.json", quiet, {.program = "/no/such/program"}), Error);
 }
 
-TEST_CASE("worker: one that is frozen is said not to answer, not to have a few seconds left, and is ended by a limit") {
+TEST_CASE("worker: one that is frozen is said not to answer, not to have a few seconds left, and is ended by a limit"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   write_job(folder, "0.8");
   std::vector<WorkerProgress> told;
@@ -189,7 +190,8 @@ TEST_CASE("worker: one that is frozen is said not to answer, not to have a few s
   CHECK_FALSE(alive(folder / "pid"));
 }
 
-TEST_CASE("worker: one that answers again is shown as before, and a slow one that works is not ended") {
+TEST_CASE("worker: one that answers again is shown as before, and a slow one that works is not ended"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   std::vector<std::string> stages;
   Progress quiet;
@@ -209,7 +211,8 @@ sleep 0.1)";
   CHECK(message_of(folder, waits, {.silence_limit = 0.5}).starts_with("the worker stopped answering"));
 }
 
-TEST_CASE("worker: a job that someone listens to tells every second what it has taken of the processor") {
+TEST_CASE("worker: a job that someone listens to tells every second what it has taken of the processor"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   write_job(folder, "0.8");
   const std::string job = std::string(LIMBER_PROGRAM) + " job " + (folder / "job.json").string() + " --progress json";
@@ -264,7 +267,8 @@ TEST_CASE("worker: a cancel ends it within a moment, also when it does not liste
   CHECK(::waitpid(-1, nullptr, WNOHANG) == -1);  // nothing unburied
 }
 
-TEST_CASE("worker: a cancel does not wait until a busy machine has time to end one that yields") {
+TEST_CASE("worker: a cancel does not wait until a busy machine has time to end one that yields"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   write_job(folder, "0.8");
   std::atomic<bool> over = false;

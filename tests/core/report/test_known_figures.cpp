@@ -124,7 +124,8 @@ TEST_CASE("known figures: a torn-off piece is one more component, a hole inside 
   CHECK(dice[7] == 0);
 }
 
-TEST_CASE("known figures: numpy and scipy find the same voxels, pieces, surface, enclosed air, Dice and bone residuals") {
+TEST_CASE("known figures: numpy and scipy find the same voxels, pieces, surface, enclosed air, Dice and bone residuals"
+          * doctest::test_suite("slow")) {
   if (test::run_program("/usr/bin/python3", {"-c", "import scipy.ndimage, scipy.spatial"}).exit_code != 0) {
     MESSAGE("SKIPPED: /usr/bin/python3 has no scipy (Debian's python3-scipy)");
     return;

@@ -87,7 +87,8 @@ void fill(LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high, La
 }
 }  // namespace
 
-TEST_CASE("metrics: voxels, components, surface and enclosed air equal what flooding voxel by voxel finds") {
+TEST_CASE("metrics: voxels, components, surface and enclosed air equal what flooding voxel by voxel finds"
+          * doctest::test_suite("slow")) {
   for (const glm::ivec3 size : {glm::ivec3(17, 13, 11), glm::ivec3(1, 1, 1), glm::ivec3(1, 30, 5), glm::ivec3(40, 3, 9)})
     for (const double air : {0.05, 0.3, 0.7, 0.95})
       for (const int labels : {1, 3}) {

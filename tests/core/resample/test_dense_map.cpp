@@ -108,7 +108,8 @@ struct Arm {
 
 }  // namespace
 
-TEST_CASE("dense map: the labels read through it are those that `limber resample` writes, bit for bit, but for the voxels that it says it mended") {
+TEST_CASE("dense map: the labels read through it are those that `limber resample` writes, bit for bit, but for the voxels that it says it mended"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const Pose pose = arm.bent();
   for (const auto& [method, name, blend] : {std::tuple{Method(LinearBlend{}), "lbs", Blend::Linear}, {Method(DualQuaternion{}), "dqs", Blend::DualQuaternion}})

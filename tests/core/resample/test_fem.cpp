@@ -102,7 +102,8 @@ TEST_CASE("fem: the arm's tendons, thousands of times stiffer than its flesh, do
   CHECK(posed.report.mesh->min_det_f > 0.04);
 }
 
-TEST_CASE("fem: the result is the same for 1 and 2 threads, bit for bit, of one joint and of several with contact") {
+TEST_CASE("fem: the result is the same for 1 and 2 threads, bit for bit, of one joint and of several with contact"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   Pose several = arm.flexed(35);
   for (const char* bone : {"Hand", "MiddleProximal"}) several.rotation[require_bone(arm.phantom.armature, bone)] = glm::angleAxis(0.4, glm::dvec3(1, 0, 0));
@@ -160,7 +161,7 @@ TEST_CASE("fem: a pose out of reach ends at the last good place on the way, and 
   for (const auto& bone : result.report.bones) CHECK(bone.rigid_residual_mm < 0.01);
 }
 
-TEST_CASE("fem: fingers close onto each other and the palm, and pass through neither") {
+TEST_CASE("fem: fingers close onto each other and the palm, and pass through neither" * doctest::test_suite("slow")) {
   const Phantom phantom = make_arm_phantom(3);
   const SkinWeights weights = diffuse_heat(phantom.volume, phantom.tissues, phantom.armature);
   Pose pose = rest_pose(phantom.armature);

@@ -105,7 +105,8 @@ void check_volume(const Posed& posed, const Body& body) {
 
 }  // namespace
 
-TEST_CASE("random poses: finite elements never crash, hang or invert, and say what a pose is blocked by") {
+TEST_CASE("random poses: finite elements never crash, hang or invert, and say what a pose is blocked by"
+          * doctest::test_suite("slow")) {
   const char* asked = std::getenv("LIMBER_RANDOM_POSES");
   const char* one = std::getenv("LIMBER_RANDOM_POSE");
   const unsigned first = one ? unsigned(std::atoi(one)) : 0, end = one && !asked ? first + 1 : asked ? unsigned(std::atoi(asked)) : 10;

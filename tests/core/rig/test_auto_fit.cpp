@@ -74,7 +74,8 @@ Moved moved(const Phantom& phantom, const glm::dmat3& by, double scale, const gl
 
 }  // namespace
 
-TEST_CASE("auto-fit: every joint of the procedural arm lies within 8 mm of the truth, with bone labels and nearly so without") {
+TEST_CASE("auto-fit: every joint of the procedural arm lies within 8 mm of the truth, with bone labels and nearly so without"
+          * doctest::test_suite("slow")) {
   const AutoFit with = auto_fit(arm().volume, arm().tissues, rig_template("arm"));
   CHECK(largest(errors(with.armature, arm().armature)) < 8);
   CHECK(with.check.whole == doctest::Approx(1).epsilon(0.01));
@@ -87,7 +88,8 @@ TEST_CASE("auto-fit: every joint of the procedural arm lies within 8 mm of the t
   CHECK(without.joints[0].how == JointFit::How::Skin);
 }
 
-TEST_CASE("auto-fit: an arm that is turned, mirrored, shifted and of another size is found as well") {
+TEST_CASE("auto-fit: an arm that is turned, mirrored, shifted and of another size is found as well"
+          * doctest::test_suite("slow")) {
   const glm::dmat3 oblique = glm::mat3_cast(glm::angleAxis(2.2, glm::normalize(glm::dvec3(0.5, 1, -0.3))));
   const glm::dmat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);
   for (const auto& [by, scale] : {std::pair(oblique, 0.8), std::pair(mirror, 1.2)}) {
@@ -97,14 +99,16 @@ TEST_CASE("auto-fit: an arm that is turned, mirrored, shifted and of another siz
   }
 }
 
-TEST_CASE("auto-fit: every joint of the procedural body lies within 8 mm of the truth") {
+TEST_CASE("auto-fit: every joint of the procedural body lies within 8 mm of the truth"
+          * doctest::test_suite("slow")) {
   const Phantom body = make_body_phantom(7);
   const AutoFit fitted = auto_fit(body.volume, body.tissues, rig_template("adult"));
   CHECK(largest(errors(fitted.armature, body.armature)) < 8);
   CHECK(median_of_main(errors(fitted.armature, body.armature)) < 3);
 }
 
-TEST_CASE("auto-fit: where bones are labelled, a thick layer of fat does not move the joints") {
+TEST_CASE("auto-fit: where bones are labelled, a thick layer of fat does not move the joints"
+          * doctest::test_suite("slow")) {
   const Phantom body = make_body_phantom(5);
   const Grid& lean = body.volume.grid;
   constexpr int kPadding = 4;
@@ -133,7 +137,7 @@ TEST_CASE("auto-fit: the template that suits an arm is the arm, with a hand of f
   CHECK(suggest_template(arm().volume) == "arm");
 }
 
-TEST_CASE("auto-fit: the result does not depend on the number of threads") {
+TEST_CASE("auto-fit: the result does not depend on the number of threads" * doctest::test_suite("slow")) {
   std::vector<Armature> results;
   for (int threads : {1, 3}) {
     const ThreadCount count(threads);
@@ -182,7 +186,8 @@ std::vector<std::pair<double, std::string>> main_errors(const Armature& found, c
 
 }  // namespace
 
-TEST_CASE("auto-fit: bones drawn as rods are followed along their axes, and found though no table names them") {
+TEST_CASE("auto-fit: bones drawn as rods are followed along their axes, and found though no table names them"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/makehuman/body_4mm.nrrd");
   const VolumeFile file = read_volume(test::shared_path("data/makehuman/body_4mm.nrrd"));
   const Armature truth = read_armature(test::shared_path("data/makehuman/body.armature.json"));
@@ -198,7 +203,8 @@ TEST_CASE("auto-fit: bones drawn as rods are followed along their axes, and foun
   CHECK(fitted.warnings[0].starts_with("no table says what is bone: label 4"));
 }
 
-TEST_CASE("auto-fit: by its skin alone another body is rigged within a median of 15 mm, and what it does not tell is said") {
+TEST_CASE("auto-fit: by its skin alone another body is rigged within a median of 15 mm, and what it does not tell is said"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/makehuman/body_4mm.nrrd");
   LabelVolume volume = read_volume(test::shared_path("data/makehuman/body_4mm.nrrd")).volume;
   for (Label& voxel : volume.voxels) voxel = voxel != 0;
@@ -216,7 +222,8 @@ TEST_CASE("auto-fit: by its skin alone another body is rigged within a median of
   CHECK(fitted.check.whole > share_in_tissue(volume, truth) - 0.005);
 }
 
-TEST_CASE("auto-fit: the joints of a real arm lie within 16 mm, its shoulder in the middle of its ball") {
+TEST_CASE("auto-fit: the joints of a real arm lie within 16 mm, its shoulder in the middle of its ball"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/arm_shoulder_1mm_tissue.mha");
   const VolumeFile file = read_volume(test::shared_path("data/bp3d/arm_shoulder_1mm_tissue.mha"));
   const TissueTable tissues = with_bones(merge_tissue_tables(file.tissues, nullptr), {7});
@@ -238,7 +245,8 @@ TEST_CASE("auto-fit: the joints of a real arm lie within 16 mm, its shoulder in 
   CHECK(limits_text(fitted.armature, *fitted.armature.find("Forearm")) == "hinge, 0 to 145 degrees");
 }
 
-TEST_CASE("auto-fit: an arm that is cut off below the shoulder may be longer than it looks, and every joint says how far it may be off") {
+TEST_CASE("auto-fit: an arm that is cut off below the shoulder may be longer than it looks, and every joint says how far it may be off"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/arm_shoulder_1mm_tissue.mha");
   const VolumeFile file = read_volume(test::shared_path("data/bp3d/arm_shoulder_1mm_tissue.mha"));
   Grid grid = file.volume.grid;
@@ -260,7 +268,8 @@ TEST_CASE("auto-fit: an arm that is cut off below the shoulder may be longer tha
   }
 }
 
-TEST_CASE("auto-fit: the main joints of a real body lie within 18 mm, and within what they say") {
+TEST_CASE("auto-fit: the main joints of a real body lie within 18 mm, and within what they say"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body_3mm_tissue.nrrd");
   const VolumeFile file = read_volume(test::shared_path("data/bp3d/body_3mm_tissue.nrrd"));
   const TissueTable tissues = with_bones(merge_tissue_tables(file.tissues, nullptr), {7});
@@ -279,7 +288,8 @@ TEST_CASE("auto-fit: the main joints of a real body lie within 18 mm, and within
   CHECK(fitted.check.whole > 0.99);
 }
 
-TEST_CASE("auto-fit: the legs of a body without its upper half lie where they are, each for itself") {
+TEST_CASE("auto-fit: the legs of a body without its upper half lie where they are, each for itself"
+          * doctest::test_suite("slow")) {
   const Phantom body = make_body_phantom(8);
   Pose stride = rest_pose(body.armature);
   flex(stride, body.armature, require_bone(body.armature, "LeftThigh"), 25);
@@ -304,7 +314,8 @@ TEST_CASE("auto-fit: the legs of a body without its upper half lie where they ar
   }
 }
 
-TEST_CASE("auto-fit: of a body cut at the hips what is there lies within 8 mm, behind a padding of air too, and what is not is said") {
+TEST_CASE("auto-fit: of a body cut at the hips what is there lies within 8 mm, behind a padding of air too, and what is not is said"
+          * doctest::test_suite("slow")) {
   Phantom body = make_body_phantom(8);
   Grid& grid = body.volume.grid;
   const int cut = static_cast<int>(0.46 * grid.size.z), padding = 3;

@@ -149,7 +149,8 @@ TEST_CASE("fit joint: a cancelled fit stops") {
   CHECK_THROWS_AS(fit_joint(bars.volume, TissueVoxels(bars.volume), bars.parts, bars.armature, 1, {}, progress), Cancelled);
 }
 
-TEST_CASE("fit joint: the elbow of the Bender arm bends by 90 degrees without bone in bone") {
+TEST_CASE("fit joint: the elbow of the Bender arm bends by 90 degrees without bone in bone"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   const VolumeFile file = read_volume(test::shared_path("data/bender/man-arm-2mm.mha"));
   const TissueTable tissues = merge_tissue_tables(file.tissues, nullptr);

@@ -110,7 +110,8 @@ TEST_CASE("fitted limits: a shoulder's cone reaches as far from the hanging arm 
   CHECK(fitted < cone - 30);
 }
 
-TEST_CASE("fitted limits: auto-fit of a bent arm leaves every hinge the template's anatomical range") {
+TEST_CASE("fitted limits: auto-fit of a bent arm leaves every hinge the template's anatomical range"
+          * doctest::test_suite("slow")) {
   const Phantom phantom = make_arm_phantom(5);
   // The template with its elbow straight: the body's is bent by 25 degrees.
   const Armature bent = rig_template("arm");

@@ -241,7 +241,8 @@ TEST_CASE("retarget: real motions keep the directions of matched bones on real r
     }
 }
 
-TEST_CASE("retarget: feet that stand slide no more than the source's, stance by stance, and stand as high") {
+TEST_CASE("retarget: feet that stand slide no more than the source's, stance by stance, and stand as high"
+          * doctest::test_suite("slow")) {
   for (const char* file : {"data/bvh/cmu_12_01_walk.bvh", "data/bvh/freebvh_fingers.bvh", "data/bvh/mocapbank_crlf.bvh", "data/bvh/cmu_01_01.bvh", "data/bvh/Boxing_Toes.bvh"})
     for (const char* rig_file : {"data/bp3d/body.armature.json", "data/makehuman/body.armature.json"}) {
       NEEDS_SHARED(file);

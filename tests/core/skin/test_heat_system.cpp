@@ -147,7 +147,8 @@ TEST_CASE("heat system: temperatures are those of elimination, with holes, seams
   }
 }
 
-TEST_CASE("heat system: iterations stay few when the body grows and when voxels are flat or long") {
+TEST_CASE("heat system: iterations stay few when the body grows and when voxels are flat or long"
+          * doctest::test_suite("slow")) {
   for (const auto& [size, spacing] : std::vector<std::pair<glm::ivec3, glm::dvec3>>{{{16, 16, 16}, glm::dvec3(1)},
                                                                                     {{64, 64, 64}, glm::dvec3(1)},
                                                                                     {{40, 40, 40}, {0.5, 3, 20}},

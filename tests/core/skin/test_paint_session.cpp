@@ -127,7 +127,8 @@ double blend_width(const Arm& arm, const SkinWeights& weights) {
 
 }  // namespace
 
-TEST_CASE("paint session: two strokes at the elbow of the Bender arm keep a third more of its skin, fat and muscle than heat") {
+TEST_CASE("paint session: two strokes at the elbow of the Bender arm keep a third more of its skin, fat and muscle than heat"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   VolumeFile file = read_volume(shared_path("data/bender/man-arm-2mm.mha"));
   Arm arm{.volume = std::move(file.volume), .tissues = merge_tissue_tables(file.tissues, nullptr), .rig = read_armature(shared_path("data/bender/man-arm-2mm-armature.vtk"))};

@@ -48,7 +48,7 @@ glm::ivec3 nearest_tissue(const LabelVolume& volume, const AffineTransform& from
 }
 }  // namespace
 
-TEST_CASE("painted body: the strongest bone is the artist's on most of the surface") {
+TEST_CASE("painted body: the strongest bone is the artist's on most of the surface" * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/makehuman/body_4mm.nrrd");
   const Path folder = shared_path("data/makehuman");
   const VolumeFile file = read_volume(folder / "body_4mm.nrrd");

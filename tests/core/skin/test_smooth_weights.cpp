@@ -148,7 +148,8 @@ TEST_CASE("smooth weights: a stroke widens a blend by as many mm at 1 mm as at 2
   CHECK(wider[1] == doctest::Approx(wider[0]).epsilon(0.1));
 }
 
-TEST_CASE("smooth weights: ten strokes around a real elbow halve what its muscles overlap by when it bends") {
+TEST_CASE("smooth weights: ten strokes around a real elbow halve what its muscles overlap by when it bends"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   VolumeFile file = read_volume(shared_path("data/bender/man-arm-2mm.mha"));
   const TissueTable tissues = merge_tissue_tables(file.tissues, nullptr);

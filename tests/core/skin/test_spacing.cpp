@@ -52,7 +52,8 @@ double width_across(const Weighted& body, const TissueTable& tissues, const glm:
 }
 }  // namespace
 
-TEST_CASE("spacing: an arm at 2, 3 and 4 mm gets the same weights, and its elbow the same width") {
+TEST_CASE("spacing: an arm at 2, 3 and 4 mm gets the same weights, and its elbow the same width"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   const VolumeFile file = read_volume(shared_path("data/bender/man-arm-2mm.mha"));
   const Armature armature = read_armature(shared_path("data/bender/man-arm-2mm-armature.vtk"));

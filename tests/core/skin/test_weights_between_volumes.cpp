@@ -85,7 +85,8 @@ void check_round_trip(const char* name, const Skinned& fine, const Skinned& coar
 
 }  // namespace
 
-TEST_CASE("weights between volumes: from 2 mm to 4 mm and back, or from 4 mm to 2 mm and back, an arm's weights stay nearly what they were") {
+TEST_CASE("weights between volumes: from 2 mm to 4 mm and back, or from 4 mm to 2 mm and back, an arm's weights stay nearly what they were"
+          * doctest::test_suite("slow")) {
   const Phantom two = make_arm_phantom(2), four = make_arm_phantom(4);
   check_round_trip("procedural arm", {two.volume, two.tissues, two.armature}, {four.volume, four.tissues, two.armature});
 
@@ -97,7 +98,8 @@ TEST_CASE("weights between volumes: from 2 mm to 4 mm and back, or from 4 mm to 
   check_round_trip("Bender's arm", {std::move(file.volume), tissues, rig}, {std::move(coarse), tissues, rig});
 }
 
-TEST_CASE("weights between volumes: a body whose sides differ takes one side's weights over to the other, and says where it cannot") {
+TEST_CASE("weights between volumes: a body whose sides differ takes one side's weights over to the other, and says where it cannot"
+          * doctest::test_suite("slow")) {
   for (const auto& [volume, rig] : {std::pair{"data/makehuman/body_4mm.nrrd", "data/makehuman/body.armature.json"}, std::pair{"data/bp3d/body_3mm_tissue.nrrd", "data/bp3d/body.armature.json"}}) {
     NEEDS_SHARED(volume);
     VolumeFile file = read_volume(shared_path(volume));

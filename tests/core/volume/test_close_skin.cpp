@@ -230,7 +230,8 @@ TEST_CASE("close skin: new skin is like the skin nearest to it, or as it is told
   CHECK(close_skin(limb, without, SkinGrowth::Inward, kSkin).changed_voxels > 0);
 }
 
-TEST_CASE("close skin: whatever the body, it ends, is closed, and changes nothing a second time") {
+TEST_CASE("close skin: whatever the body, it ends, is closed, and changes nothing a second time"
+          * doctest::test_suite("slow")) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     INFO("seed ", seed);
     LabelVolume body = test::random_body(seed).regions;

@@ -51,7 +51,8 @@ void check_refused(const ProgramRun& run) {
 
 }  // namespace
 
-TEST_CASE("hostile headers: a DICOM element that claims four gigabytes gets no memory") {
+TEST_CASE("hostile headers: a DICOM element that claims four gigabytes gets no memory"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const std::string claim = little_endian(9, 2) + little_endian(0x1001, 2) + "UN" + little_endian(0, 2);
   for (const std::uint32_t length : {0xfffffff0u, 0x7ffffff0u, 0x20000000u})
@@ -68,7 +69,8 @@ TEST_CASE("hostile headers: a DICOM element that claims four gigabytes gets no m
 }
 
 TEST_CASE(
-    "hostile headers: packed zeros are unpacked as far as the header promises, and a promise beyond the file is refused at once") {
+    "hostile headers: packed zeros are unpacked as far as the header promises, and a promise beyond the file is refused at once"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const std::string bomb = packed_zeros(600);
   const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nencoding: gzip\nsizes: ";
@@ -84,7 +86,8 @@ TEST_CASE(
       info(folder, "large.mha", meta + "DimSize = 40000 40000 1000\nElementDataFile = LOCAL\n" + packed_zeros(1)));
 }
 
-TEST_CASE("hostile headers: scales that are no finite number, or beyond what an image has, are refused") {
+TEST_CASE("hostile headers: scales that are no finite number, or beyond what an image has, are refused"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   for (const char* slope : {"nan", "inf", "1e300", "-1e300", "1e-300"}) {
     CAPTURE(slope);
@@ -101,7 +104,8 @@ TEST_CASE("hostile headers: scales that are no finite number, or beyond what an 
   CHECK_NOTHROW(check_scale(-2.5e-6, -1024, "image"));
 }
 
-TEST_CASE("hostile headers: a bone beyond any body, and numbers on the command line that are none, are refused") {
+TEST_CASE("hostile headers: a bone beyond any body, and numbers on the command line that are none, are refused"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   for (const char* far : {"1e308", "-1e12", "1e999"}) {
     const ProgramRun run =

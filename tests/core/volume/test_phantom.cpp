@@ -42,14 +42,14 @@ std::set<std::string> names_present(const Phantom& phantom) {
 }
 }  // namespace
 
-TEST_CASE("the arm phantom is closed by skin at every spacing") {
+TEST_CASE("the arm phantom is closed by skin at every spacing" * doctest::test_suite("slow")) {
   for (double spacing : {1.5, 2.0, 3.0, 4.0, 7.0, 10.0}) {
     CAPTURE(spacing);
     CHECK(leaks(make_arm_phantom(spacing)) == 0);
   }
 }
 
-TEST_CASE("the body phantom is closed by skin, its limbs and fingers do not touch") {
+TEST_CASE("the body phantom is closed by skin, its limbs and fingers do not touch" * doctest::test_suite("slow")) {
   for (double spacing : {4.0, 8.0}) {
     CAPTURE(spacing);
     const Phantom body = make_body_phantom(spacing);
@@ -72,7 +72,8 @@ TEST_CASE("the body phantom is closed by skin, its limbs and fingers do not touc
   }
 }
 
-TEST_CASE("every bone of the body phantom is a piece of its own, with marrow cores in the long ones") {
+TEST_CASE("every bone of the body phantom is a piece of its own, with marrow cores in the long ones"
+          * doctest::test_suite("slow")) {
   const Phantom body = make_body_phantom(3);
   const auto kinds = body.tissues.kinds();
   LabelVolume bone = body.volume, marrow = body.volume;
@@ -131,7 +132,7 @@ TEST_CASE("the arm curl bends the elbow by 100 degrees about its hinge") {
   CHECK(most == doctest::Approx(100).epsilon(0.02));
 }
 
-TEST_CASE("the arm phantom has the same tissues and volume at 2, 3 and 4 mm") {
+TEST_CASE("the arm phantom has the same tissues and volume at 2, 3 and 4 mm" * doctest::test_suite("slow")) {
   const Phantom fine = make_arm_phantom(2), middle = make_arm_phantom(3), coarse = make_arm_phantom(4);
   CHECK(names_present(fine) == names_present(middle));
   CHECK(names_present(fine) == names_present(coarse));

@@ -87,7 +87,8 @@ bool refused_for(const Path& path, const std::string& reason) {
 }
 }  // namespace
 
-TEST_CASE("volume io: what is written is read back, in every format and voxel type, mirrored and anisotropic too") {
+TEST_CASE("volume io: what is written is read back, in every format and voxel type, mirrored and anisotropic too"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const std::pair<const char*, const char*> formats[] = {{"a.nrrd", "NRRD"},    {"a.seg.nrrd", "NRRD"},  {"a.nhdr", "NRRD"}, {"a.mha", "MetaImage"},
                                                          {"a.mhd", "MetaImage"}, {"a.nii", "NIfTI-1"},   {"a.nii.gz", "NIfTI-1"}, {"b.nii", "NIfTI-2"},
@@ -410,7 +411,8 @@ TEST_CASE("volume io: Bender's arm is read with its mirrored z axis and its twel
   CHECK(file.warnings.empty());
 }
 
-TEST_CASE("volume io: a DICOM series and the labels made from it lie at the same place") {
+TEST_CASE("volume io: a DICOM series and the labels made from it lie at the same place"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/torso/dicom_ct");
   const GreyVolume series = read_grey_volume(test::shared_path("data/torso/dicom_ct"));
   const Grid labels = read_volume(test::shared_path("data/torso/ts_seg_of_dicom.nii.gz")).volume.grid;

@@ -107,7 +107,8 @@ std::string outcome(const std::string& what, const Limits& limits = {}) {
 }  // namespace
 
 TEST_CASE(
-    "volume reader: what it says of a file is what the parsers say in this process, byte for byte, in every format") {
+    "volume reader: what it says of a file is what the parsers say in this process, byte for byte, in every format"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const LabelVolume volume = small_volume();
   const std::pair<const char*, const char*> formats[] = {
@@ -153,7 +154,7 @@ TEST_CASE("volume reader: what the parsers refuse it refuses with the same words
   }
 }
 
-TEST_CASE("volume reader: shared volumes are the same by both ways") {
+TEST_CASE("volume reader: shared volumes are the same by both ways" * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/edge");
   for (const auto& entry : fs::directory_iterator(shared_path("data/edge")))
     if (is_volume_path(entry.path())) check_same(entry.path());
@@ -191,7 +192,7 @@ TEST_CASE("volume reader: one that lacks a library is not blamed on the file, an
   before ? ::setenv("LD_LIBRARY_PATH", kept.c_str(), 1) : ::unsetenv("LD_LIBRARY_PATH");
 }
 
-TEST_CASE("volume reader: one that spins, waits or takes memory is ended") {
+TEST_CASE("volume reader: one that spins, waits or takes memory is ended" * doctest::test_suite("slow")) {
   CHECK(outcome("spin", {.busy_seconds = 0.3}).find("kept its reader busy") != std::string::npos);
   CHECK(outcome("silence", {.silent_seconds = 0.3}).find("has said nothing") != std::string::npos);
 #ifndef LIMBER_ADDRESS_SANITIZER
