@@ -73,43 +73,83 @@ double along_bone(const Bone& bone, const glm::dvec3& p) {
   return length > 0 ? std::clamp(glm::dot(p - bone.head, (bone.tail - bone.head) / length), 0.0, length) : 0;
 }
 
-class JointCutter {
- public:
-  JointCutter(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature, const std::vector<std::int32_t>& group,
-            const std::vector<std::vector<int>>& candidates)
-      : graph_(graph), volume_(volume), kinds_(kinds), bones_(armature.bones), group_(group), candidates_(candidates), world_from_voxel_(world_from_voxel(volume.grid)),
-        area_(areas_of_edges(volume.grid.spacing)), local_(graph.size(), -1) {
-    std::vector<std::string> names;
-    std::vector<int> parents;
-    for (const Bone& bone : bones_) names.push_back(bone.name), parents.push_back(bone.parent);
-    const std::vector<std::optional<JointRole>> roles = joint_roles(names, parents);
-    for (int b = 0; b < std::ssize(bones_); ++b) {
-      is_ball_.push_back(roles[b] && (roles[b]->part == BodyPart::Thigh || roles[b]->part == BodyPart::UpperArm));
-      shape_.push_back(shape_of_joint(roles[b]));
+// The two rig bones that lie nearest to a voxel, and its place among the voxels nearest to the first.
+struct Near {
+  std::array<int, 2> bone{-1, -1};
+  std::array<float, 2> distance{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};  // mm
+  std::int32_t rank = -1;
+  void take(int b, float d) {
+    if (d < distance[0]) {
+      bone = {b, bone[0]};
+      distance = {d, distance[0]};
+    } else if (d < distance[1]) {
+      bone[1] = b;
+      distance[1] = d;
     }
-    find_nearest();
   }
+};
 
-  // Where a bone meets its parent; and where it sits on another child of that, nearer than on the parent itself, as a thumb
-  // does that the rig hangs on the forearm beside the hand, also where it meets that one.
-  void cut_joints_of(int child) {
-    cut_joint(bones_[child].parent, child);
-    if (const int other = bone_it_sits_on(child); other >= 0) cut_joint(other, child);
+// What every cut reads. Only connections of the graph change, each by the one cut whose domain holds both its ends.
+struct Scene {
+  BoneGraph& graph;
+  const LabelVolume& volume;
+  const std::vector<TissueKind>& kinds;
+  const std::vector<Bone>& bones;
+  const std::vector<std::int32_t>& group;
+  const std::vector<std::vector<int>>& candidates;
+  AffineTransform world_from_voxel;
+  std::array<double, 26> area;
+  std::vector<float> depth;                      // #graph, mm, before the cuts
+  std::vector<Near> near;                        // #graph
+  std::vector<std::vector<std::int32_t>> along;  // by rig bone: the voxels nearest to it
+  std::vector<bool> is_ball;                     // by rig bone: its head is the centre of a ball
+  std::vector<std::optional<JointShape>> shape;  // by rig bone: of the joint at its head
+
+  glm::dvec3 world(std::int32_t i) const { return world_from_voxel * glm::dvec3(graph.voxel[i]); }
+  bool is_marrow(std::int32_t i) const { return kinds[volume.at(graph.voxel[i])] == TissueKind::Marrow; }
+  // Distance in mm from a point to the nearest voxel that is not bone, at most `most`.
+  double depth_at(const glm::dvec3& point, double most) const {
+    const glm::dvec3 centre = voxel_from_world(volume.grid) * point;
+    const glm::dvec3 first(-1), last(volume.grid.size);  // the air around the grid included
+    const glm::ivec3 low(glm::clamp(glm::floor(centre - most / volume.grid.spacing), first, last));
+    const glm::ivec3 high(glm::clamp(glm::ceil(centre + most / volume.grid.spacing), first, last));
+    double nearest = most;
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x)
+          if (!is_bone(kinds[volume.at_or_air({x, y, z})])) nearest = std::min(nearest, glm::length((glm::dvec3(x, y, z) - centre) * volume.grid.spacing));
+    return nearest;
   }
+};
 
-  void cut_joint(int parent, int child) {
+// What one cut found.
+struct Found {
+  std::vector<BeyondJoint> beyond;
+  std::optional<BroadCut> broad;
+  std::vector<std::int32_t> at_cuts;  // voxels that lost connections
+};
+
+// One cut between two rig bones. Its domain holds only voxels that lie nearest to either, and it reads and changes no
+// connection of others: cuts that share no rig bone may run at once.
+class Cut {
+ public:
+  Cut(Scene& scene, int first, int second) : scene_(scene), bones_(scene.bones), bone_{first, second} {}
+
+  // Where a bone, the second of the two, begins at the first.
+  Found at_joint() && {
+    const auto [parent, child] = bone_;
     const Bone &p = bones_[parent], &c = bones_[child];
     const double shorter = std::min(length_of(p), length_of(c)), longer = std::max(length_of(p), length_of(c));
-    if (shorter <= 0) return;
+    if (shorter <= 0) return {};
     const glm::dvec3 joint = c.head, normal = normal_of_joint(p, c);
     const double reach = kReach * shorter, reach_aside = std::max(reach, kReachAside * longer);
-    clear_domain();
     for (int which = 0; which < 2; ++which)
-      for (const std::int32_t i : along_[which ? child : parent])
-        if (const glm::dvec3 at = world(i); glm::distance(at, joint) <= reach_aside && std::abs(glm::dot(at - joint, normal)) <= reach) add(i, which);
-    if (domain_.empty()) return;
-    for (int which = 0; which < 2; ++which) find_shaft(which, which ? child : parent, joint, kShaft * shorter, kShaftWidth * shorter);
-    const double ball = is_ball_[child] ? depth_at(joint, kLargestBall * length_of(c)) : 0;
+      for (const std::int32_t i : scene_.along[bone_[which]])
+        if (const glm::dvec3 at = world(i); glm::distance(at, joint) <= reach_aside && std::abs(glm::dot(at - joint, normal)) <= reach) add(i);
+    if (domain_.empty()) return {};
+    link();
+    for (int which = 0; which < 2; ++which) find_shaft(which, joint, kShaft * shorter, kShaftWidth * shorter);
+    const double ball = scene_.is_ball[child] ? scene_.depth_at(joint, kLargestBall * length_of(c)) : 0;
     if (ball > kBall * length_of(c)) {
       for (Voxel& v : domain_)
         if (glm::distance(world(v.at), joint) < kBallCore * ball) v.shaft = 1;
@@ -117,56 +157,31 @@ class JointCutter {
         return weight_away((glm::distance(at, joint) - ball) / (kBallWidth * ball));
       }));
     } else {
-      cut_across(normal, child, shorter);
+      cut_across(normal, shorter);
     }
     const double shaft = (kReach - kShaft) * shorter;  // mm of it that lie in the domain
-    if (cut_area_ > 0 && cut_area_ >= kBroad * std::min(volume_along(parent, 0, joint, kShaft * shorter), volume_along(child, 1, joint, kShaft * shorter)) / shaft) broad_.push_back({parent, child, cut_area_});
-    tell_sides(parent, child);
+    if (cut_area_ > 0 && cut_area_ >= kBroad * std::min(volume_along(0, joint, kShaft * shorter), volume_along(1, joint, kShaft * shorter)) / shaft)
+      found_.broad = BroadCut{parent, child, cut_area_};
+    tell_sides();
+    return std::move(found_);
   }
 
-  // Where bones that have no joint lie side by side, as fingers do that are pushed together.
-  void cut_sides() {
-    std::map<std::pair<int, int>, std::vector<std::int32_t>> between;
-    for (std::int32_t i = 0; i < graph_.size(); ++i) {
-      const auto [a, b] = std::minmax(near_[i].bone[0], near_[i].bone[1]);
-      if (b < 0 || a < 0 || bones_[a].parent == b || bones_[b].parent == a) continue;
-      if (near_[i].distance[0] + near_[i].distance[1] <= kSide * std::min(length_of(bones_[a]), length_of(bones_[b]))) between[{a, b}].push_back(i);
-    }
-    for (const auto& [pair, voxels] : between) {
-      clear_domain();
-      for (const std::int32_t i : voxels) add(i, near_[i].bone[0] == pair.second);
-      for (Voxel& v : domain_)
-        if (v.is_allowed && near_[v.at].distance[0] < kSideShaft * near_[v.at].distance[1]) v.shaft = v.nearest;
-      part(least_cut([&](std::int32_t i, const glm::dvec3&) {
-        const auto& [nearest, next] = near_[i].distance;
-        return weight_away((next - nearest) / (next + nearest));
-      }));
-    }
-  }
-
-  JointCuts cuts() && {
-    if (depth_.empty())
-      depth_ = bone_depth(graph_, volume_.grid.spacing);
-    else
-      lower_depth(graph_, volume_.grid.spacing, at_cuts_, depth_);
-    return {std::move(beyond_), std::move(broad_), std::move(depth_)};
+  // Where two bones that have no joint lie side by side.
+  //   voxels  nearest to one of them, and next to the other
+  Found side_by_side(const std::vector<std::int32_t>& voxels) && {
+    for (const std::int32_t i : voxels) add(i);
+    link();
+    const std::vector<Near>& near = scene_.near;
+    for (Voxel& v : domain_)
+      if (v.is_allowed && near[v.at].distance[0] < kSideShaft * near[v.at].distance[1]) v.shaft = v.nearest;
+    part(least_cut([&](std::int32_t i, const glm::dvec3&) {
+      const auto& [nearest, next] = near[i].distance;
+      return weight_away((next - nearest) / (next + nearest));
+    }));
+    return std::move(found_);
   }
 
  private:
-  // The two rig bones that lie nearest to a voxel.
-  struct Near {
-    std::array<int, 2> bone{-1, -1};
-    std::array<float, 2> distance{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};  // mm
-    void take(int b, float d) {
-      if (d < distance[0]) {
-        bone = {b, bone[0]};
-        distance = {d, distance[0]};
-      } else if (d < distance[1]) {
-        bone[1] = b;
-        distance[1] = d;
-      }
-    }
-  };
   struct Voxel {
     std::int32_t at;  // in the graph
     int nearest;      // 0 or 1 of the two bones that are cut apart
@@ -175,9 +190,9 @@ class JointCutter {
   };
 
   // At a plane across the joint, or where its shape is known at that surface.
-  void cut_across(const glm::dvec3& normal, int child, double shorter) {
-    const glm::dvec3& joint = bones_[child].head;
-    const glm::dvec3& spacing = volume_.grid.spacing;
+  void cut_across(const glm::dvec3& normal, double shorter) {
+    const glm::dvec3& joint = bones_[bone_[1]].head;
+    const glm::dvec3& spacing = scene_.volume.grid.spacing;
     const double coarse = std::max({spacing.x, spacing.y, spacing.z}) / (kCoarse * shorter);
     const double scale = std::sqrt(1 + coarse * coarse) / (kShaft * shorter);
     const double slice = std::max({spacing.x, spacing.y, spacing.z});
@@ -189,7 +204,7 @@ class JointCutter {
         return weight_away(height * scale * sharp) * (1 + far * far * far * far);
       });
     };
-    const JointSurface surface = surface_at(normal, child, shorter);
+    const JointSurface surface = surface_at(normal, shorter);
     std::vector<std::uint8_t> side = cut_along(surface, 1);
     // Where the two are closed up, only the joint's own shape tells where one ends.
     const double section = std::numbers::pi * surface.radius * surface.radius;
@@ -197,31 +212,19 @@ class JointCutter {
     part(side);
   }
 
-  int bone_it_sits_on(int child) const {
-    const glm::dvec3& joint = bones_[child].head;
-    int found = -1;
-    double nearest = distance_to_bone(bones_[bones_[child].parent], joint);
-    for (int b = 0; b < std::ssize(bones_); ++b) {
-      if (b == child || bones_[b].parent != bones_[child].parent) continue;
-      if (along_bone(bones_[b], joint) < kSitsAlong * length_of(bones_[b])) continue;
-      if (const double d = distance_to_bone(bones_[b], joint); d < nearest) nearest = d, found = b;
-    }
-    return found;
-  }
-
   // mm, of the bones of the domain in a slice across `axis` that is twice `half` mm thick.
   double radius_at(const glm::dvec3& joint, const glm::dvec3& axis, double half) const {
-    const glm::dvec3& spacing = volume_.grid.spacing;
+    const glm::dvec3& spacing = scene_.volume.grid.spacing;
     const auto voxels = std::count_if(domain_.begin(), domain_.end(), [&](const Voxel& v) {
       return std::abs(glm::dot(world(v.at) - joint, axis)) < half;
     });
     return std::sqrt(double(voxels) * spacing.x * spacing.y * spacing.z / (2 * half) / std::numbers::pi);
   }
-  JointSurface surface_at(const glm::dvec3& normal, int child, double shorter) const {
-    const Bone& bone = bones_[child];
-    const std::optional<JointShape>& shape = shape_[child];
+  JointSurface surface_at(const glm::dvec3& normal, double shorter) const {
+    const Bone& bone = bones_[bone_[1]];
+    const std::optional<JointShape>& shape = scene_.shape[bone_[1]];
     if (!shape) return flat_surface(bone.head, normal);
-    const glm::dvec3& spacing = volume_.grid.spacing;
+    const glm::dvec3& spacing = scene_.volume.grid.spacing;
     const glm::dvec3 axis = glm::normalize(glm::mix(normal, glm::normalize(bone.tail - bone.head), shape->turn));
     std::vector<glm::dvec3> places;
     for (const Voxel& v : domain_) places.push_back(world(v.at));
@@ -229,21 +232,6 @@ class JointCutter {
     const double reach = std::max(0.5 * shorter, kJointReach * length_of(bones_[bone.parent]));
     return surface_of_joint(*shape, bone.head, axis, places, spacing.x * spacing.y * spacing.z, half, reach,
                             std::min({spacing.x, spacing.y, spacing.z}));
-  }
-
-  void find_nearest() {
-    std::vector<Bone> inner = bones_;  // bones share the point where they meet: away from it the direction decides
-    for (Bone& bone : inner) bone.head = glm::mix(bone.head, bone.tail, 0.1), bone.tail = glm::mix(bone.head, bone.tail, 8.0 / 9);
-    near_.resize(graph_.size());
-    parallel_for(graph_.size(), 4096, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t i = begin; i < end; ++i) {
-        const glm::dvec3 at = world(static_cast<std::int32_t>(i));
-        for (int b = 0; b < std::ssize(inner); ++b) near_[i].take(b, static_cast<float>(distance_to_bone(inner[b], at)));
-      }
-    });
-    along_.resize(bones_.size());
-    for (std::int32_t i = 0; i < graph_.size(); ++i)
-      if (near_[i].bone[0] >= 0) along_[near_[i].bone[0]].push_back(i);  // none where the rig is too far away for numbers
   }
 
   // The direction from the parent to the child across the plane that halves the angle between them, or the child's own where it
@@ -257,47 +245,59 @@ class JointCutter {
     return glm::length(halving) > 0.3 ? glm::normalize(halving) : along;
   }
 
-  void clear_domain() {
-    for (const Voxel& v : domain_) local_[v.at] = -1;
-    domain_.clear();
+  void add(std::int32_t i) {
+    const int nearest = scene_.near[i].bone[0];
+    const std::vector<int>& allowed = scene_.candidates[scene_.group[i]];
+    domain_.push_back({i, nearest == bone_[1], allowed.empty() || std::find(allowed.begin(), allowed.end(), nearest) != allowed.end(), -1});
   }
-  void add(std::int32_t i, int nearest) {
-    const std::vector<int>& allowed = candidates_[group_[i]];
-    local_[i] = static_cast<std::int32_t>(domain_.size());
-    domain_.push_back({i, nearest, allowed.empty() || std::find(allowed.begin(), allowed.end(), near_[i].bone[0]) != allowed.end(), -1});
+  // Finds what is connected within the domain.
+  void link() {
+    std::array<std::vector<std::int32_t>, 2> place;  // by bone and rank there: in the domain or -1
+    for (int which = 0; which < 2; ++which) place[which].assign(scene_.along[bone_[which]].size(), -1);
+    for (std::int32_t i = 0; i < std::ssize(domain_); ++i) place[domain_[i].nearest][scene_.near[domain_[i].at].rank] = i;
+    neighbour_.resize(domain_.size());
+    for (std::size_t i = 0; i < domain_.size(); ++i)
+      for (int k = 0; k < 26; ++k) {
+        const std::int32_t n = scene_.graph.neighbour[domain_[i].at][k];
+        const int nearest = n >= 0 ? scene_.near[n].bone[0] : -1;
+        const bool is_known = nearest >= 0 && (nearest == bone_[0] || nearest == bone_[1]);
+        neighbour_[i][k] = is_known ? place[nearest == bone_[1]][scene_.near[n].rank] : -1;
+      }
   }
 
   // What hangs on the shaft of one of the two bones cannot be of the other.
-  void tell_sides(int a, int b) {
+  void tell_sides() {
     for (int which = 0; which < 2; ++which)
-      for (const std::int32_t i : reached_from(which)) beyond_.push_back({domain_[i].at, which ? a : b, which ? b : a});
+      for (const std::int32_t i : reached_from(which)) found_.beyond.push_back({domain_[i].at, bone_[1 - which], bone_[which]});
   }
 
   // The shaft of one of the two bones: what lies nearest to it, in each of several slices along it, and no nearer to the
   // joint than `beginning`.
-  void find_shaft(int which, int bone, const glm::dvec3& joint, double beginning, double width) {
+  void find_shaft(int which, const glm::dvec3& joint, double beginning, double width) {
     constexpr int kSlices = 16;
-    const double length = length_of(bones_[bone]), at_joint = along_bone(bones_[bone], joint);
+    const Bone& bone = bones_[bone_[which]];
+    const double length = length_of(bone), at_joint = along_bone(bone, joint);
     std::array<float, kSlices + 1> nearest;
     nearest.fill(std::numeric_limits<float>::max());
     auto slice_of = [&](const Voxel& voxel) {
       if (voxel.nearest != which || !voxel.is_allowed) return -1;
-      const double along = along_bone(bones_[bone], world(voxel.at));
+      const double along = along_bone(bone, world(voxel.at));
       return std::abs(along - at_joint) >= beginning ? static_cast<int>(along / length * kSlices) : -1;
     };
     for (const Voxel& voxel : domain_)
-      if (const int s = slice_of(voxel); s >= 0) nearest[s] = std::min(nearest[s], near_[voxel.at].distance[0]);
+      if (const int s = slice_of(voxel); s >= 0) nearest[s] = std::min(nearest[s], scene_.near[voxel.at].distance[0]);
     for (Voxel& voxel : domain_)
-      if (const int s = slice_of(voxel); s >= 0 && near_[voxel.at].distance[0] <= nearest[s] + width && nearest[s] < kFarAside * length) voxel.shaft = which;
+      if (const int s = slice_of(voxel); s >= 0 && scene_.near[voxel.at].distance[0] <= nearest[s] + width && nearest[s] < kFarAside * length) voxel.shaft = which;
   }
 
   // Of the bone tissue beside one of the two bones, no nearer to the joint than `beginning`; mm^3.
-  double volume_along(int bone, int which, const glm::dvec3& joint, double beginning) const {
-    const double at_joint = along_bone(bones_[bone], joint);
+  double volume_along(int which, const glm::dvec3& joint, double beginning) const {
+    const Bone& bone = bones_[bone_[which]];
+    const double at_joint = along_bone(bone, joint);
     const auto voxels = std::count_if(domain_.begin(), domain_.end(), [&](const Voxel& v) {
-      return v.nearest == which && std::abs(along_bone(bones_[bone], world(v.at)) - at_joint) >= beginning;
+      return v.nearest == which && std::abs(along_bone(bone, world(v.at)) - at_joint) >= beginning;
     });
-    const glm::dvec3& spacing = volume_.grid.spacing;
+    const glm::dvec3& spacing = scene_.volume.grid.spacing;
     return double(voxels) * spacing.x * spacing.y * spacing.z;
   }
 
@@ -308,10 +308,8 @@ class JointCutter {
     for (std::int32_t i = 0; i < std::ssize(domain_); ++i)
       if (domain_[i].shaft == which) front.push_back(i), seen[i] = 1;
     for (std::size_t k = 0; k < front.size(); ++k)
-      for (const std::int32_t n : graph_.neighbour[domain_[front[k]].at]) {
-        const std::int32_t m = n >= 0 ? local_[n] : -1;
+      for (const std::int32_t m : neighbour_[front[k]])
         if (m >= 0 && !seen[m]) seen[m] = 1, front.push_back(m);
-      }
     return front;
   }
   bool is_connected() const {
@@ -325,22 +323,19 @@ class JointCutter {
 
   // #domain, 1 on the side of the first of the two bones; empty where nothing connects their shafts.
   //   weight  (voxel, world) how many times its area a place counts
-  std::vector<std::uint8_t> least_cut(const auto& weight) {
+  std::vector<std::uint8_t> least_cut(const auto& weight) const {
     if (!is_connected()) return {};
-    if (depth_.empty()) depth_ = bone_depth(graph_, volume_.grid.spacing);
-    CutGraph<26> cut;
-    cut.neighbour.resize(domain_.size());
-    cut.capacity.resize(domain_.size());
-    cut.terminal.resize(domain_.size());
+    CutGraph<26> cut{neighbour_, std::vector<std::array<std::int32_t, 26>>(domain_.size()), std::vector<std::int32_t>(domain_.size())};
     for (std::int32_t i = 0; i < std::ssize(domain_); ++i) {
       cut.terminal[i] = domain_[i].shaft == 0 ? kHard : domain_[i].shaft == 1 ? -kHard : 0;
+      const std::int32_t here = domain_[i].at;
       for (int k = 0; k < 26; ++k) {
-        const std::int32_t n = graph_.neighbour[domain_[i].at][k];
-        const std::int32_t m = cut.neighbour[i][k] = n >= 0 ? local_[n] : -1;
+        const std::int32_t m = neighbour_[i][k];
         if (m < i) continue;
-        const double times = weight(domain_[i].at, (world(domain_[i].at) + world(n)) / 2.0);
-        double cost = area_[k] * times * (depth_[domain_[i].at] + depth_[n]) / 2;
-        if (is_marrow(domain_[i].at) && is_marrow(n)) cost *= kMarrow;
+        const std::int32_t there = domain_[m].at;
+        const double times = weight(here, (world(here) + world(there)) / 2.0);
+        double cost = scene_.area[k] * times * (scene_.depth[here] + scene_.depth[there]) / 2;
+        if (scene_.is_marrow(here) && scene_.is_marrow(there)) cost *= kMarrow;
         cut.capacity[i][k] = cut.capacity[m][25 - k] = static_cast<std::int32_t>(std::clamp(1000 * cost, 1.0, double(kHard)));
       }
     }
@@ -350,10 +345,8 @@ class JointCutter {
   double area_of(const std::vector<std::uint8_t>& side) const {
     double area = 0;
     for (std::int32_t i = 0; i < std::ssize(side); ++i)
-      for (int k = 0; k < 26; ++k) {
-        const std::int32_t n = graph_.neighbour[domain_[i].at][k];
-        if (n >= 0 && local_[n] >= 0 && side[local_[n]] != side[i]) area += area_[k] / 2;  // the neighbour counts the other half
-      }
+      for (int k = 0; k < 26; ++k)
+        if (const std::int32_t m = neighbour_[i][k]; m >= 0 && side[m] != side[i]) area += scene_.area[k] / 2;  // the neighbour counts the other half
     return area;
   }
   void part(const std::vector<std::uint8_t>& side) {
@@ -361,60 +354,144 @@ class JointCutter {
     for (std::int32_t i = 0; i < std::ssize(side); ++i) {
       bool is_cut = false;
       for (int k = 0; k < 26; ++k) {
-        std::int32_t& n = graph_.neighbour[domain_[i].at][k];
-        if (n < 0 || local_[n] < 0 || side[local_[n]] == side[i]) continue;
-        n = kNotBone;
+        std::int32_t& m = neighbour_[i][k];
+        if (m < 0 || side[m] == side[i]) continue;
+        m = -1;
+        scene_.graph.neighbour[domain_[i].at][k] = kNotBone;
         is_cut = true;
       }
-      if (is_cut) at_cuts_.push_back(domain_[i].at);
+      if (is_cut) found_.at_cuts.push_back(domain_[i].at);
+    }
+  }
+  glm::dvec3 world(std::int32_t i) const { return scene_.world(i); }
+
+  Scene& scene_;
+  const std::vector<Bone>& bones_;
+  const std::array<int, 2> bone_;
+  std::vector<Voxel> domain_;
+  std::vector<std::array<std::int32_t, 26>> neighbour_;  // #domain, in the domain or -1
+  double cut_area_ = 0;  // mm^2
+  Found found_;
+};
+
+// Makes all cuts, several at once.
+class JointCutter {
+ public:
+  explicit JointCutter(Scene scene) : scene_(std::move(scene)) {
+    std::vector<std::string> names;
+    std::vector<int> parents;
+    for (const Bone& bone : scene_.bones) names.push_back(bone.name), parents.push_back(bone.parent);
+    const std::vector<std::optional<JointRole>> roles = joint_roles(names, parents);
+    for (const std::optional<JointRole>& role : roles) {
+      scene_.is_ball.push_back(role && (role->part == BodyPart::Thigh || role->part == BodyPart::UpperArm));
+      scene_.shape.push_back(shape_of_joint(role));
+    }
+    scene_.depth = bone_depth(scene_.graph, scene_.volume.grid.spacing);
+    find_nearest();
+  }
+
+  // Where a bone meets its parent; and where it sits on another child of that, nearer than on the parent itself, as a thumb
+  // does that the rig hangs on the forearm beside the hand, also where it meets that one. A wave of cuts at a time: those of
+  // a wave share no bone, and those that share one keep the order of the rig.
+  void cut_joints(Progress& progress) {
+    std::vector<std::array<int, 2>> joints;
+    for (int child = 0; child < std::ssize(scene_.bones); ++child) {
+      if (scene_.bones[child].parent < 0) continue;
+      joints.push_back({scene_.bones[child].parent, child});
+      if (const int other = bone_it_sits_on(child); other >= 0) joints.push_back({other, child});
+    }
+    std::vector<std::vector<std::size_t>> waves;
+    std::vector<std::size_t> next_wave(scene_.bones.size(), 0);
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      const auto [parent, child] = joints[k];
+      const std::size_t wave = std::max(next_wave[parent], next_wave[child]);
+      if (wave >= waves.size()) waves.resize(wave + 1);
+      waves[wave].push_back(k);
+      next_wave[parent] = next_wave[child] = wave + 1;
+    }
+    std::vector<Found> found(joints.size());
+    for (const std::vector<std::size_t>& wave : waves) {
+      progress.update("bones", 0.4);
+      parallel_for(std::ssize(wave), 1, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t k = begin; k < end; ++k) found[wave[k]] = Cut(scene_, joints[wave[k]][0], joints[wave[k]][1]).at_joint();
+      });
+    }
+    keep(found);
+  }
+
+  // Where bones that have no joint lie side by side, as fingers do that are pushed together.
+  void cut_sides() {
+    std::map<std::array<int, 2>, std::vector<std::int32_t>> between;
+    for (std::int32_t i = 0; i < scene_.graph.size(); ++i) {
+      const Near& near = scene_.near[i];
+      const auto [a, b] = std::minmax(near.bone[0], near.bone[1]);
+      if (b < 0 || a < 0 || scene_.bones[a].parent == b || scene_.bones[b].parent == a) continue;
+      if (near.distance[0] + near.distance[1] <= kSide * std::min(length_of(scene_.bones[a]), length_of(scene_.bones[b]))) between[{a, b}].push_back(i);
+    }
+    const std::vector<std::pair<std::array<int, 2>, std::vector<std::int32_t>>> sides(between.begin(), between.end());
+    std::vector<Found> found(sides.size());
+    parallel_for(std::ssize(sides), 1, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t k = begin; k < end; ++k) found[k] = Cut(scene_, sides[k].first[0], sides[k].first[1]).side_by_side(sides[k].second);
+    });
+    keep(found);
+  }
+
+  JointCuts cuts() && {
+    lower_depth(scene_.graph, scene_.volume.grid.spacing, at_cuts_, scene_.depth);
+    return {std::move(beyond_), std::move(broad_), std::move(scene_.depth)};
+  }
+
+ private:
+  int bone_it_sits_on(int child) const {
+    const glm::dvec3& joint = scene_.bones[child].head;
+    int found = -1;
+    double nearest = distance_to_bone(scene_.bones[scene_.bones[child].parent], joint);
+    for (int b = 0; b < std::ssize(scene_.bones); ++b) {
+      if (b == child || scene_.bones[b].parent != scene_.bones[child].parent) continue;
+      if (along_bone(scene_.bones[b], joint) < kSitsAlong * length_of(scene_.bones[b])) continue;
+      if (const double d = distance_to_bone(scene_.bones[b], joint); d < nearest) nearest = d, found = b;
+    }
+    return found;
+  }
+
+  void find_nearest() {
+    std::vector<Bone> inner = scene_.bones;  // bones share the point where they meet: away from it the direction decides
+    for (Bone& bone : inner) bone.head = glm::mix(bone.head, bone.tail, 0.1), bone.tail = glm::mix(bone.head, bone.tail, 8.0 / 9);
+    scene_.near.resize(scene_.graph.size());
+    parallel_for(scene_.graph.size(), 4096, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) {
+        const glm::dvec3 at = scene_.world(static_cast<std::int32_t>(i));
+        for (int b = 0; b < std::ssize(inner); ++b) scene_.near[i].take(b, static_cast<float>(distance_to_bone(inner[b], at)));
+      }
+    });
+    scene_.along.resize(scene_.bones.size());
+    for (std::int32_t i = 0; i < scene_.graph.size(); ++i) {
+      Near& near = scene_.near[i];
+      if (near.bone[0] < 0) continue;  // the rig is too far away for numbers
+      near.rank = static_cast<std::int32_t>(scene_.along[near.bone[0]].size());
+      scene_.along[near.bone[0]].push_back(i);
+    }
+  }
+  void keep(std::vector<Found>& found) {
+    for (Found& one : found) {
+      beyond_.insert(beyond_.end(), one.beyond.begin(), one.beyond.end());
+      at_cuts_.insert(at_cuts_.end(), one.at_cuts.begin(), one.at_cuts.end());
+      if (one.broad) broad_.push_back(*one.broad);
+      one = {};
     }
   }
 
-  // Distance in mm from a point to the nearest voxel that is not bone, at most `most`.
-  double depth_at(const glm::dvec3& point, double most) const {
-    const glm::dvec3 centre = voxel_from_world(volume_.grid) * point;
-    const glm::dvec3 first(-1), last(volume_.grid.size);  // the air around the grid included
-    const glm::ivec3 low(glm::clamp(glm::floor(centre - most / volume_.grid.spacing), first, last));
-    const glm::ivec3 high(glm::clamp(glm::ceil(centre + most / volume_.grid.spacing), first, last));
-    double nearest = most;
-    for (int z = low.z; z <= high.z; ++z)
-      for (int y = low.y; y <= high.y; ++y)
-        for (int x = low.x; x <= high.x; ++x)
-          if (!is_bone(kinds_[volume_.at_or_air({x, y, z})])) nearest = std::min(nearest, glm::length((glm::dvec3(x, y, z) - centre) * volume_.grid.spacing));
-    return nearest;
-  }
-  bool is_marrow(std::int32_t i) const { return kinds_[volume_.at(graph_.voxel[i])] == TissueKind::Marrow; }
-  glm::dvec3 world(std::int32_t i) const { return world_from_voxel_ * glm::dvec3(graph_.voxel[i]); }
-
-  BoneGraph& graph_;
-  const LabelVolume& volume_;
-  const std::vector<TissueKind>& kinds_;
-  const std::vector<Bone>& bones_;
-  const std::vector<std::int32_t>& group_;
-  const std::vector<std::vector<int>>& candidates_;
-  AffineTransform world_from_voxel_;
-  std::array<double, 26> area_;
-  std::vector<Near> near_;                        // #graph
-  std::vector<std::vector<std::int32_t>> along_;  // by rig bone: the voxels nearest to it
-  std::vector<bool> is_ball_;  // by rig bone: its head is the centre of a ball
-  std::vector<std::optional<JointShape>> shape_;  // by rig bone: of the joint at its head
-  std::vector<float> depth_;  // #graph, mm, before the cuts; found when the first cut needs it
-  std::vector<std::int32_t> local_;  // #graph, in `domain_` or -1
-  std::vector<Voxel> domain_;
+  Scene scene_;
   std::vector<BeyondJoint> beyond_;
   std::vector<BroadCut> broad_;
-  double cut_area_ = 0;  // of the last cut, mm^2
   std::vector<std::int32_t> at_cuts_;  // voxels that lost connections
 };
 }  // namespace
 
 JointCuts cut_at_joints(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
                    const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates, Progress& progress) {
-  JointCutter cutter(graph, volume, kinds, armature, group, candidates);
-  for (int child = 0; child < std::ssize(armature.bones); ++child) {
-    progress.update("bones", 0.4);
-    if (armature.bones[child].parent >= 0) cutter.cut_joints_of(child);
-  }
+  JointCutter cutter({graph, volume, kinds, armature.bones, group, candidates, world_from_voxel(volume.grid), areas_of_edges(volume.grid.spacing), {}, {}, {}, {}, {}});
+  cutter.cut_joints(progress);
   cutter.cut_sides();
   return std::move(cutter).cuts();
 }
