@@ -93,18 +93,17 @@ class SeamFinder {
   void spread_bones() {
     bone_ = held_by_;
     std::vector<float> distance(tissue_.size(), std::numeric_limits<float>::infinity());
-    std::vector<Label> label(tissue_.size());
+    std::vector<Label> label;  // only where some label names a limb
+    if (std::any_of(named_.begin(), named_.end(), [](const auto& name) { return name.has_value(); })) label.resize(tissue_.size());
     TissueFront front(volume_, tissue_);
-    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
-      label[place] = volume_.at(v);
-      if (held_by_[place] == kSoft) return;
+    front.start_all([&](std::int64_t place, const glm::ivec3& v) {
+      if (!label.empty()) label[place] = volume_.at(v);
+      if (held_by_[place] == kSoft) return TissueFront::kNoSource;
       distance[place] = 0;
-      if (has_soft_beside(v)) front.start(place, v, held_by_[place]);
+      return has_soft_beside(v) ? held_by_[place] : TissueFront::kNoSource;
     });
     front.spread(
-        [&](std::uint16_t bone, std::int64_t to, float way) {
-          return held_by_[to] == kSoft && way < distance[to] && may_hold(bone, label[to]);
-        },
+        distance, [&](std::uint16_t bone, std::int64_t to, float way) { return way < distance[to] && (label.empty() || may_hold(bone, label[to])); },
         [&](std::uint16_t bone, std::int64_t to, float way) {
           distance[to] = way;
           bone_[to] = bone;

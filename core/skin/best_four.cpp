@@ -33,12 +33,11 @@ Influence normalized(Influence influence) {
 
 BestFour::Slot& BestFour::grow_to(std::int64_t brick, std::int64_t place, int k) {
   Brick& here = bricks_[brick];
-  const std::int64_t count = tissue_.bricks()[brick].count();
   if (k >= here.used) {
     here.used = k + 1;
-    here.slots.resize(here.used * count);
+    here.slots.resize(here.used * here.count);
   }
-  return here.slots[k * count + place - tissue_.bricks()[brick].first];
+  return here.slots[k * here.count + place - tissue_.bricks()[brick].first];
 }
 
 void BestFour::offer(std::int64_t brick, std::int64_t place, int bone, float weight) {
@@ -64,7 +63,7 @@ void BestFour::hold_all(const std::vector<std::uint16_t>& bones, std::uint16_t n
   parallel_for(std::ssize(bricks_), 64, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t brick = begin; brick < end; ++brick) {
       const auto& here = tissue_.bricks()[brick];
-      for (std::int64_t place = here.first; place < here.first + here.count(); ++place)
+      for (std::int64_t place = here.first; place < here.first + bricks_[brick].count; ++place)
         if (bones[place] != none) hold(brick, place, bones[place]);
     }
   });
@@ -75,7 +74,7 @@ SkinWeights BestFour::weights(std::vector<std::string> bone_names) {
   parallel_for(std::ssize(bricks_), 64, [&](std::int64_t begin, std::int64_t end) {
     SkinWeights::Influences influences;
     for (std::int64_t brick = begin; brick < end; ++brick) {
-      influences.assign(tissue_.bricks()[brick].count(), {});
+      influences.assign(bricks_[brick].count, {});
       for (std::int64_t i = 0; i < std::ssize(influences); ++i) {
         for (int k = 0; k < 4; ++k) {
           const Slot slot = at(brick, tissue_.bricks()[brick].first + i, k);

@@ -14,7 +14,9 @@ namespace limber {
 class BestFour {
  public:
   // Kept as a reference. Memory is as much as the bricks' most mixed voxels need: 4 bytes for each bone of theirs.
-  explicit BestFour(const TissueVoxels& tissue) : tissue_(tissue), bricks_(tissue.bricks().size()) {}
+  explicit BestFour(const TissueVoxels& tissue) : tissue_(tissue), bricks_(tissue.bricks().size()) {
+    for (std::size_t b = 0; b < bricks_.size(); ++b) bricks_[b].count = tissue.bricks()[b].count();
+  }
 
   // `brick` holds `place`; threads may work on different bricks.
   // The weight of a bone at a place, 0 .. 1. Each bone is offered once.
@@ -34,11 +36,12 @@ class BestFour {
   };
   struct Brick {
     int used = 0;             // bones that a voxel has at most
+    int count = 0;            // voxels
     std::vector<Slot> slots;  // used x #voxels, by falling weight, not normalized
   };
   Slot at(std::int64_t brick, std::int64_t place, int k) const {
     const Brick& here = bricks_[brick];
-    return k < here.used ? here.slots[k * tissue_.bricks()[brick].count() + place - tissue_.bricks()[brick].first] : Slot();
+    return k < here.used ? here.slots[k * here.count + place - tissue_.bricks()[brick].first] : Slot();
   }
   Slot& grow_to(std::int64_t brick, std::int64_t place, int k);
 

@@ -52,7 +52,7 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
       front.start(place, glm::ivec3(voxel), static_cast<std::uint16_t>(bone));
     }
     front.spread(
-        [&](std::uint16_t, std::int64_t to, float way) {
+        distance, [&](std::uint16_t, std::int64_t to, float way) {
           return held_by[to] == kSoft && way < distance[to] && way <= kFurthest * nearest.distance[to];
         },
         [&](std::uint16_t, std::int64_t to, float way) { distance[to] = way; });

@@ -25,7 +25,20 @@ class Coarsening {
       : system_(system),
         halved_(coarsened_axes(system.spacing)),
         parent_(system.brick_count() * kSlots, -1),
-        pieces_(system.brick_count()) {}
+        pieces_(system.brick_count()) {
+    for (int slot = 0; slot < kSlots; ++slot) {
+      const glm::ivec3 voxel = HeatSystem::voxel_of(slot), block = block_of(voxel);
+      Block& own = blocks_[block.x + 8 * (block.y + 8 * block.z)];
+      block_of_slot_[slot] = &own;
+      own.place = block;
+      own.slots.push_back(slot);
+      for (int direction = 0; direction < 6; ++direction) {
+        const glm::ivec3 there = stepped(voxel, direction);
+        steps_[slot][direction] = {HeatSystem::slot_of(there & 7), is_in_brick(there), is_in_brick(there) && block_of(there) == block};
+        if (slot < HeatSystem::kColour && steps_[slot][direction].stays_in_block) own.links.push_back(direction * HeatSystem::kColour + slot);
+      }
+    }
+  }
 
   CoarseHeat run() {
     const std::int64_t bricks = system_.brick_count();
@@ -60,29 +73,49 @@ class Coarsening {
     int count = 0;
     std::array<std::int32_t, 24> to;
     std::array<float, 24> conductance;
+    std::array<int, 6> last;  // by direction: where in `to` the last link that way is
     double linked = 0, lost = 0;
 
-    void clear() { count = 0, linked = 0, lost = 0; }
-    void add(std::int32_t other, float g) {
-      const auto known = std::find(to.begin(), to.begin() + count, other);
-      if (known == to.begin() + count) {
-        *known = other;
+    void clear() { count = 0, last = {}, linked = 0, lost = 0; }
+    void add(std::int32_t other, float g, int direction) {
+      int& known = last[direction];
+      if (known >= count || to[known] != other) known = static_cast<int>(std::find(to.begin(), to.begin() + count, other) - to.begin());
+      if (known == count) {
+        to[count] = other;
         conductance[count++] = 0;
       }
-      conductance[known - to.begin()] += g;
+      conductance[known] += g;
     }
+  };
+
+  // The cells of one block in any brick, and where in a brick's conductances the links between them stand.
+  struct Block {
+    glm::ivec3 place{0};
+    std::vector<int> slots, links;
+  };
+  // From a slot in one of six directions: the slot there, whether that is in the same brick, and in the same block.
+  struct Step {
+    int slot;
+    bool stays_in_brick, stays_in_block;
   };
 
   glm::ivec3 block_of(const glm::ivec3& voxel) const { return voxel >> glm::ivec3(halved_); }
 
   // Where a cell's neighbour lies: its brick and slot.
-  std::pair<std::int64_t, int> neighbour(std::int64_t brick, const glm::ivec3& voxel, int direction) const {
-    const glm::ivec3 there = stepped(voxel, direction);
-    return {is_in_brick(there) ? brick : system_.beside[brick][direction], HeatSystem::slot_of(there & 7)};
+  std::pair<std::int64_t, int> neighbour(std::int64_t brick, int slot, int direction) const {
+    const Step& step = steps_[slot][direction];
+    return {step.stays_in_brick ? brick : system_.beside[brick][direction], step.slot};
   }
   float conductance(std::int64_t brick, int slot, int direction, const std::pair<std::int64_t, int>& other) const {
     return slot < HeatSystem::kColour ? system_.conductance_of_red(brick, direction, slot)
                                       : system_.conductance_of_red(other.first, direction ^ 1, other.second);
+  }
+
+  // Whether all cells of a block are there, and all neighbours among them are linked.
+  bool is_whole(std::int64_t brick, const Block& block) const {
+    const float* conductance = &system_.conductance[brick * 6 * HeatSystem::kColour];
+    return std::all_of(block.slots.begin(), block.slots.end(), [&](int slot) { return system_.is_cell(brick, slot); }) &&
+           std::all_of(block.links.begin(), block.links.end(), [&](int link) { return conductance[link] > 0; });
   }
 
   // Numbers a brick's pieces from 0, each colour apart: `parent_` holds twice the number, plus the colour of the block.
@@ -92,22 +125,23 @@ class Coarsening {
     std::array<std::int32_t, 2> found{};
     for (int seed = 0; seed < kSlots; ++seed) {
       if (!system_.is_cell(brick, seed) || parent[seed] >= 0) continue;
-      const glm::ivec3 block = block_of(HeatSystem::voxel_of(seed));
-      const int colour = colour_of(brick, block);
+      const Block& block = *block_of_slot_[seed];
+      const int colour = colour_of(brick, block.place);
       const std::int32_t piece = 2 * found[colour]++ + colour;
+      if (is_whole(brick, block)) {
+        for (const int slot : block.slots) parent[slot] = piece;
+        continue;
+      }
       int waiting = 0;
       parent[seed] = piece;
       open[waiting++] = seed;
       while (waiting > 0) {
         const int slot = open[--waiting];
-        const glm::ivec3 voxel = HeatSystem::voxel_of(slot);
         for (int direction = 0; direction < 6; ++direction) {
-          const glm::ivec3 there = stepped(voxel, direction);
-          if (!is_in_brick(there) || block_of(there) != block) continue;
-          const auto other = neighbour(brick, voxel, direction);
-          if (parent[other.second] >= 0 || !(conductance(brick, slot, direction, other) > 0)) continue;
-          parent[other.second] = piece;
-          open[waiting++] = other.second;
+          const Step& step = steps_[slot][direction];
+          if (!step.stays_in_block || parent[step.slot] >= 0 || !(conductance(brick, slot, direction, {brick, step.slot}) > 0)) continue;
+          parent[step.slot] = piece;
+          open[waiting++] = step.slot;
         }
       }
     }
@@ -151,10 +185,9 @@ class Coarsening {
       const std::int32_t parent = parent_[brick * kSlots + slot];
       if (parent < 0) continue;
       Row& row = found[parent < graph_.red_count ? parent - first_[brick][0] : count[0] + parent - first_[brick][1]];
-      const glm::ivec3 voxel = HeatSystem::voxel_of(slot);
       double own = system_.diagonal[brick * kSlots + slot];
       for (int direction = 0; direction < 6; ++direction) {
-        const auto other = neighbour(brick, voxel, direction);
+        const auto other = neighbour(brick, slot, direction);
         const float g = conductance(brick, slot, direction, other);
         if (!(g > 0)) continue;
         own -= g;
@@ -162,7 +195,7 @@ class Coarsening {
         if (to == parent) continue;
         const float across = halved_[direction >> 1] ? g * kCoarseConductance : g;
         row.linked += across;
-        row.add(to, across);
+        row.add(to, across, direction);
       }
       row.lost += std::max(own, 0.0);
     }
@@ -200,6 +233,9 @@ class Coarsening {
 
   const HeatSystem& system_;
   const glm::i16vec3 halved_;
+  std::array<Block, kSlots> blocks_;
+  std::array<const Block*, kSlots> block_of_slot_;
+  std::array<std::array<Step, 6>, kSlots> steps_;
   std::vector<std::int32_t> parent_;                 // bricks, slots
   std::vector<std::array<std::int32_t, 2>> pieces_;  // of each brick, by colour: how many
   std::vector<std::array<std::int32_t, 2>> first_;   // likewise: the number of the first

@@ -202,7 +202,7 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
       if (!reached[coarse.cell_of_place[place]]) system.diagonal[b * HeatSystem::kSlots + slot] += 1;
     });
     HeatSolver solver(system, lanes, vectors);
-    body.add_sources(block.bricks, lane_of_bone, solver);
+    body.add_sources(block.bricks, system, lane_of_bone, solver);
     for_cells(tissue, block.bricks, system, [&](std::int64_t place, std::int64_t b, int slot) {
       if (slot < HeatSystem::kColour) return;
       const float* from = &guess[std::int64_t{coarse.cell_of_place[place]} * lanes];

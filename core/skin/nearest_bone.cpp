@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/parallel.h"
 #include "core/skin/tissue_front.h"
 
 namespace limber {
@@ -22,6 +23,7 @@ constexpr double kLinkShare = 0.75;
 constexpr float kAtJoint = 0.75f;
 // Bone that is not drawn is taken to fill this share of the flesh around its axis, a voxel's diagonal at least.
 constexpr double kBoneShare = 0.5;
+constexpr std::int64_t kGrain = 64;  // bricks a block of a parallel loop
 }  // namespace
 
 namespace {
@@ -61,8 +63,11 @@ std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueV
   std::vector<std::uint16_t> held_by(tissue.size(), kSoft);
   std::vector<bool> has_part(armature.bones.size(), false);
   for (const auto& part : parts.parts) has_part[part.bone] = true;
-  for (std::int64_t i = 0; i < tissue.size(); ++i)
-    if (parts.part_of[i]) held_by[i] = static_cast<std::uint16_t>(parts.parts[parts.part_of[i] - 1].bone);
+  parallel_for(tissue.size(), 1 << 16, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i)
+      if (parts.part_of[i]) held_by[i] = static_cast<std::uint16_t>(parts.parts[parts.part_of[i] - 1].bone);
+  });
+  if (std::find(has_part.begin(), has_part.end(), false) == has_part.end()) return held_by;
 
   const AffineTransform from_voxel = world_from_voxel(volume.grid), from_world = voxel_from_world(volume.grid);
   const double voxel = std::max({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
@@ -183,15 +188,13 @@ NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tis
                               const std::vector<Count>& counts) {
   NearestBone nearest{held_by, std::vector<float>(tissue.size(), std::numeric_limits<float>::infinity())};
   TissueFront front(volume, tissue);
-  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
-    if (held_by[place] == kSoft) return;
-    nearest.distance[place] = 0;
-    front.start(place, v, held_by[place]);
+  // No way is shorter than none: held voxels keep their bone.
+  front.start_all([&](std::int64_t place, const glm::ivec3&) {
+    if (held_by[place] != kSoft) nearest.distance[place] = 0;
+    return held_by[place];
   });
   front.spread(
-      [&](std::uint16_t bone, std::int64_t to, float way) {
-        return held_by[to] == kSoft && counts[bone](way) < nearest.distance[to];
-      },
+      nearest.distance, [&](std::uint16_t bone, std::int64_t to, float way) { return counts[bone](way) < nearest.distance[to]; },
       [&](std::uint16_t bone, std::int64_t to, float way) {
         nearest.distance[to] = counts[bone](way);
         nearest.bone[to] = bone;
@@ -210,9 +213,11 @@ NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissu
   NearestBone nearest = spread_from_bones(volume, tissue, held_by, counts_of_bones(armature));
   const Hinges hinges(armature);
   const AffineTransform from_voxel = world_from_voxel(volume.grid);
-  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
-    if (held_by[place] == kSoft && nearest.bone[place] != kSoft)
-      nearest.bone[place] = hinges.bone_at(glm::vec3(from_voxel * glm::dvec3(v)), nearest.bone[place], nearest.distance[place]);
+  parallel_for(std::ssize(tissue.bricks()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    tissue.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& v) {
+      if (held_by[place] == kSoft && nearest.bone[place] != kSoft)
+        nearest.bone[place] = hinges.bone_at(glm::vec3(from_voxel * glm::dvec3(v)), nearest.bone[place], nearest.distance[place]);
+    });
   });
   return nearest;
 }

@@ -40,13 +40,14 @@ SoftBody::SoftBody(const LabelVolume& volume, const TissueVoxels& tissue, const 
   const double largest = std::max({area_over_distance.x, area_over_distance.y, area_over_distance.z});
   for (int axis = 0; axis < 3; ++axis) face_[axis] = static_cast<float>(area_over_distance[axis] / largest);
   volume_of_voxel_ = static_cast<float>(volume.grid.voxel_volume() / largest);
+  bones_in_brick_ = bones_in_bricks();
 }
 
-// A brick and one layer around it: places in the tissue list, -1 for air.
+// A brick and one layer around it: places in the tissue list, -1 for air, and what soft voxels conduct, 0 for all others.
 struct SoftBody::Window {
-  static constexpr int kStep[3] = {1, 10, 100};
+  static constexpr int kTo[6] = {-1, 1, -10, 10, -100, 100};
   std::array<std::int32_t, 1000> place;
-  std::array<Label, 1000> label;
+  std::array<float, 1000> soft;
   const Seams* seams = nullptr;  // where one is near
 
   static int at(const glm::ivec3& v) { return (v.x + 1) + 10 * (v.y + 1) + 100 * (v.z + 1); }  // v from the corner
@@ -58,13 +59,14 @@ struct SoftBody::Window {
     seams = body.tissue_.seams();
     if (seams && !seams->is_near_brick(here.corner)) seams = nullptr;
     place.fill(-1);
-    label.fill(0);
-    body.tissue_.for_each(brick, brick + 1, [&](std::int64_t p, const glm::ivec3& v) {
-      place[at(v - here.corner)] = static_cast<std::int32_t>(p);
-      label[at(v - here.corner)] = body.volume_.at(v);
-    });
+    soft.fill(0);
+    body.tissue_.for_each(brick, brick + 1, [&](std::int64_t p, const glm::ivec3& v) { set(body, v - here.corner, v, p); });
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {-1, TissueVoxels::kBrick}) look_beside(body, here.corner, axis, side);
+  }
+  void set(const SoftBody& body, const glm::ivec3& from_corner, const glm::ivec3& voxel, std::int64_t its_place) {
+    place[at(from_corner)] = static_cast<std::int32_t>(its_place);
+    if (body.held_by_[its_place] == kSoft) soft[at(from_corner)] = body.conductivity_[body.volume_.at(voxel)];
   }
 
   // The layer of the brick beside it.
@@ -80,44 +82,32 @@ struct SoftBody::Window {
     v[axis] = side;
     int &a = v[(axis + 1) % 3], &b = v[(axis + 2) % 3];
     for (a = 0; a < TissueVoxels::kBrick; ++a)
-      for (b = 0; b < TissueVoxels::kBrick; ++b) {
-        const std::int64_t found = TissueVoxels::index_in(there, v & 7);
-        if (found < 0) continue;
-        place[at(v)] = static_cast<std::int32_t>(found);
-        label[at(v)] = body.volume_.at(corner + v);
-      }
+      for (b = 0; b < TissueVoxels::kBrick; ++b)
+        if (const std::int64_t found = TissueVoxels::index_in(there, v & 7); found >= 0) set(body, v, corner + v, found);
   }
 };
 
-// Between two soft voxels.
-float SoftBody::face(std::int64_t axis, Label a, Label b) const {
-  const float ka = conductivity_[a], kb = conductivity_[b];
+// What a face of a soft voxel conducts: between two soft voxels, to a held one, or nothing.
+float SoftBody::conductance(const Window& window, const glm::ivec3& v, int here, int direction) const {
+  const int there = here + Window::kTo[direction], axis = direction >> 1;
+  if (window.place[there] < 0 || window.is_cut(v, direction)) return 0;
+  const float ka = window.soft[here], kb = window.soft[there];
+  if (kb == 0) return 2 * face_[axis] * ka;
   return face_[axis] * (ka == kb ? ka : 2 * ka * kb / (ka + kb));
 }
 
-float SoftBody::attraction(std::int64_t place, Label label) const {
+float SoftBody::attraction(std::int64_t place, const glm::ivec3& voxel) const {
   const float distance = nearest_.distance[place];
-  return attraction_[label] * volume_of_voxel_ / (distance * distance);  // zero where no bone is reached
+  return attraction_[volume_.at(voxel)] * volume_of_voxel_ / (distance * distance);  // zero where no bone is reached
 }
 
-// body(voxel, place, direction, other, conductance) for every face of the soft voxels of a brick behind which there is tissue: the
-// place of the voxel there and what the face conducts; then, with direction 6 and its own place, for what attracts it.
+// body(voxel, place, its place in the window) for every soft voxel of a brick.
 template <class Body>
-void SoftBody::for_faces(std::int64_t brick, Window& window, const Body& body) const {
+void SoftBody::for_soft(std::int64_t brick, Window& window, const Body& body) const {
   window.look(*this, brick);
   const glm::ivec3 corner = tissue_.bricks()[brick].corner;
   tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
-    if (held_by_[place] != kSoft) return;
-    const int here = Window::at(v - corner);
-    for (int direction = 0; direction < 6; ++direction) {
-      const int axis = direction >> 1, there = here + (direction & 1 ? Window::kStep[axis] : -Window::kStep[axis]);
-      const std::int32_t other = window.place[there];
-      if (other < 0 || window.is_cut(v, direction)) continue;
-      const bool is_held = held_by_[other] != kSoft;
-      body(v, place, direction, std::int64_t{other},
-           is_held ? 2 * face_[axis] * conductivity_[window.label[here]] : face(axis, window.label[here], window.label[there]));
-    }
-    if (const float g = attraction(place, window.label[here]); g > 0) body(v, place, 6, place, g);
+    if (const int here = Window::at(v - corner); window.soft[here] > 0) body(v, place, here);
   });
 }
 
@@ -138,37 +128,68 @@ void SoftBody::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system)
   system.reset(std::move(corners), std::move(beside), volume_.grid.spacing);
   parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Window window;
-    for (std::int64_t b = begin; b < end; ++b) {
-      tissue_.for_each(bricks[b], bricks[b] + 1, [&](std::int64_t place, const glm::ivec3& v) {
-        if (held_by_[place] == kSoft) system.add_cell(b, HeatSystem::slot_of(v - system.corners[b]), 0);
-      });
-      for_faces(bricks[b], window, [&](const glm::ivec3& v, std::int64_t, int direction, std::int64_t other, float g) {
+    for (std::int64_t b = begin; b < end; ++b)
+      for_soft(bricks[b], window, [&](const glm::ivec3& v, std::int64_t place, int here) {
         const glm::ivec3 in = v - system.corners[b];
         const int slot = HeatSystem::slot_of(in);
-        system.diagonal[b * HeatSystem::kSlots + slot] += g;
-        if (direction == 6 || slot >= HeatSystem::kColour || held_by_[other] != kSoft) return;
-        const int beyond = in[direction >> 1] + (direction & 1 ? 1 : -1);
-        const bool is_left_out = (beyond < 0 || beyond > 7) && system.beside[b][direction] == system.brick_count();
-        if (!is_left_out) system.conductance_of_red(b, direction, slot) = g;
+        float diagonal = 0;
+        for (int direction = 0; direction < 6; ++direction) {
+          const float g = conductance(window, v, here, direction);
+          diagonal += g;
+          if (slot >= HeatSystem::kColour || g == 0 || window.soft[here + Window::kTo[direction]] == 0) continue;
+          const int beyond = in[direction >> 1] + (direction & 1 ? 1 : -1);
+          const bool is_left_out = (beyond < 0 || beyond > 7) && system.beside[b][direction] == system.brick_count();
+          if (!is_left_out) system.conductance_of_red(b, direction, slot) = g;
+        }
+        system.add_cell(b, slot, diagonal + attraction(place, v));
       });
-    }
   });
 }
 
-void SoftBody::add_sources(const std::vector<std::int32_t>& bricks, const std::vector<int>& lane_of_bone, HeatSolver& solver) const {
+// Which bones hold or attract voxels of each brick, a bit each; bones that differ by 64 share one.
+std::vector<std::uint64_t> SoftBody::bones_in_bricks() const {
+  std::vector<std::uint64_t> bones(tissue_.bricks().size(), 0);
+  parallel_for(std::ssize(bones), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t brick = begin; brick < end; ++brick)
+      tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3&) {
+        for (const std::uint16_t bone : {held_by_[place], nearest_.bone[place]})
+          if (bone != kSoft) bones[brick] |= std::uint64_t{1} << (bone & 63);
+      });
+  });
+  return bones;
+}
+
+void SoftBody::add_sources(const std::vector<std::int32_t>& bricks, const HeatSystem& system, const std::vector<int>& lane_of_bone,
+                           HeatSolver& solver) const {
+  std::uint64_t wanted = 0;
+  for (std::size_t bone = 0; bone < lane_of_bone.size(); ++bone)
+    if (lane_of_bone[bone] >= 0) wanted |= std::uint64_t{1} << (bone & 63);
+  // A bone's heat comes from voxels of the brick itself or of one beside it; what is left out holds none that matters.
+  const auto is_near = [&](std::int64_t b) {
+    std::uint64_t near = bones_in_brick_[bricks[b]];
+    for (int direction = 0; direction < 6; ++direction) {
+      glm::ivec3 there = system.corners[b];
+      there[direction >> 1] += direction & 1 ? TissueVoxels::kBrick : -TissueVoxels::kBrick;
+      if (const int other = volume_.grid.contains(there) ? tissue_.brick_at(there) : -1; other >= 0) near |= bones_in_brick_[other];
+    }
+    return (near & wanted) != 0;
+  };
   parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Window window;
     for (std::int64_t b = begin; b < end; ++b) {
-      const glm::ivec3 corner = tissue_.bricks()[bricks[b]].corner;
-      for_faces(bricks[b], window, [&](const glm::ivec3& v, std::int64_t place, int direction, std::int64_t other, float g) {
-        const std::uint16_t bone = direction == 6 ? nearest_.bone[place] : held_by_[other];
-        const int lane = bone == kSoft ? -1 : lane_of_bone[bone];
-        if (lane < 0) return;
+      if (!is_near(b)) continue;
+      const glm::ivec3 corner = system.corners[b];
+      for_soft(bricks[b], window, [&](const glm::ivec3& v, std::int64_t place, int here) {
         const int slot = HeatSystem::slot_of(v - corner);
-        if (slot < HeatSystem::kColour)
-          solver.red_sources(b, lane)[slot] += g;
-        else
-          solver.black_sources(b, lane)[slot - HeatSystem::kColour] += g;
+        const auto add = [&](std::uint16_t bone, float g) {
+          const int lane = bone == kSoft ? -1 : lane_of_bone[bone];
+          if (lane < 0) return;
+          (slot < HeatSystem::kColour ? solver.red_sources(b, lane)[slot] : solver.black_sources(b, lane)[slot - HeatSystem::kColour]) += g;
+        };
+        for (int direction = 0; direction < 6; ++direction)
+          if (const int there = here + Window::kTo[direction]; window.place[there] >= 0 && window.soft[there] == 0)
+            add(held_by_[window.place[there]], conductance(window, v, here, direction));
+        add(nearest_.bone[place], attraction(place, v));
       });
     }
   });
@@ -178,9 +199,8 @@ void SoftBody::add_sources(const std::vector<std::int32_t>& bricks, const std::v
 void SoftBody::find_cells(std::int64_t brick, Window& window, std::vector<std::int32_t>& cell_of, std::vector<CoarseCell>& found) const {
   std::array<glm::ivec3, 64> open;
   const glm::ivec3 corner = tissue_.bricks()[brick].corner;
-  window.look(*this, brick);
-  tissue_.for_each(brick, brick + 1, [&](std::int64_t seed, const glm::ivec3& seed_voxel) {
-    if (held_by_[seed] != kSoft || cell_of[seed] >= 0) return;
+  for_soft(brick, window, [&](const glm::ivec3& seed_voxel, std::int64_t seed, int) {
+    if (cell_of[seed] >= 0) return;
     const auto cell = static_cast<std::int32_t>(found.size());
     const glm::ivec3 octant = seed_voxel >> 2;
     found.push_back({glm::i16vec3(octant), static_cast<std::int32_t>(brick)});
@@ -193,8 +213,9 @@ void SoftBody::find_cells(std::int64_t brick, Window& window, std::vector<std::i
         glm::ivec3 w = v;
         w[direction >> 1] += direction & 1 ? 1 : -1;
         if ((w >> 2) != octant) continue;
-        const std::int32_t place = window.place[Window::at(w - corner)];
-        if (place < 0 || held_by_[place] != kSoft || cell_of[place] >= 0 || window.is_cut(v, direction)) continue;
+        const int there = Window::at(w - corner);
+        const std::int32_t place = window.place[there];
+        if (window.soft[there] == 0 || cell_of[place] >= 0 || window.is_cut(v, direction)) continue;
         cell_of[place] = cell;
         open[open_count++] = w;
       }
@@ -221,28 +242,21 @@ void add_up(std::vector<Entry>& entries, size_t start, const IsLess& is_less) {
 // One entry for each pair of cells; the way between their centres is four times as long as between voxels.
 void SoftBody::link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of, std::vector<float>& diagonal,
                           std::vector<Link>& links, std::vector<HeldFace>& held) const {
-  const glm::ivec3 corner = tissue_.bricks()[brick].corner;
-  window.look(*this, brick);
   const size_t start = links.size(), held_start = held.size();
-  tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+  for_soft(brick, window, [&](const glm::ivec3& v, std::int64_t place, int here) {
     const std::int32_t cell = cell_of[place];
-    if (cell < 0) return;
-    const int here = Window::at(v - corner);
     for (int direction = 0; direction < 6; ++direction) {
-      const int axis = direction >> 1, there = here + (direction & 1 ? Window::kStep[axis] : -Window::kStep[axis]);
+      const int there = here + Window::kTo[direction];
       const std::int32_t other = window.place[there];
       if (other < 0 || cell_of[other] == cell || window.is_cut(v, direction)) continue;
-      if (held_by_[other] != kSoft) {
-        const float g = 0.5f * face_[axis] * conductivity_[window.label[here]];
-        diagonal[cell] += g;
-        held.push_back({cell, held_by_[other], g});
-      } else {
-        const float g = 0.25f * face(axis, window.label[here], window.label[there]);
-        diagonal[cell] += g;
-        links.push_back({cell, cell_of[other], g});
-      }
+      const float conducted = 0.25f * conductance(window, v, here, direction);
+      diagonal[cell] += conducted;
+      if (window.soft[there] == 0)
+        held.push_back({cell, held_by_[other], conducted});
+      else
+        links.push_back({cell, cell_of[other], conducted});
     }
-    if (const float g = attraction(place, window.label[here]); g > 0) {
+    if (const float g = attraction(place, v); g > 0) {
       diagonal[cell] += g;
       held.push_back({cell, nearest_.bone[place], g});
     }

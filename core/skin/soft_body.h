@@ -66,7 +66,7 @@ class SoftBody {
   void fill(const std::vector<std::int32_t>& bricks, HeatSystem& system) const;
   // What bones give to the cells of such a system, added to a solver's sources.
   //   lane_of_bone  -1 for bones that are not solved for
-  void add_sources(const std::vector<std::int32_t>& bricks, const std::vector<int>& lane_of_bone, HeatSolver& solver) const;
+  void add_sources(const std::vector<std::int32_t>& bricks, const HeatSystem& system, const std::vector<int>& lane_of_bone, HeatSolver& solver) const;
 
   // The whole body in cells of up to 4^3 voxels: connected sets of soft voxels in one octant of a brick.
   struct Coarse {
@@ -88,12 +88,13 @@ class SoftBody {
     float conductance;
   };
   template <class Body>
-  void for_faces(std::int64_t brick, Window& window, const Body& body) const;
+  void for_soft(std::int64_t brick, Window& window, const Body& body) const;
   void find_cells(std::int64_t brick, Window& window, std::vector<std::int32_t>& cell_of, std::vector<CoarseCell>& found) const;
   void link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of, std::vector<float>& diagonal,
                   std::vector<Link>& links, std::vector<HeldFace>& held) const;
-  float face(std::int64_t axis, Label a, Label b) const;
-  float attraction(std::int64_t place, Label label) const;
+  float conductance(const Window& window, const glm::ivec3& v, int here, int direction) const;
+  float attraction(std::int64_t place, const glm::ivec3& voxel) const;
+  std::vector<std::uint64_t> bones_in_bricks() const;
 
   const LabelVolume& volume_;
   const TissueVoxels& tissue_;
@@ -103,6 +104,7 @@ class SoftBody {
   std::vector<float> attraction_;    // likewise: the square of its stiffness, since blends are as wide as the root of conduction over attraction
   std::array<float, 3> face_;        // area / distance of a face across each axis, largest 1
   float volume_of_voxel_ = 1;        // mm3, in the same measure
+  std::vector<std::uint64_t> bones_in_brick_;
 };
 
 }  // namespace limber

@@ -22,6 +22,8 @@ namespace limber {
 
 class TissueFront {
  public:
+  static constexpr std::uint16_t kNoSource = 0xFFFF;
+
   // References are kept.
   TissueFront(const LabelVolume& volume, const TissueVoxels& tissue)
       : grid_(volume.grid), tissue_(tissue), ways_(tissue.size()),
@@ -36,17 +38,30 @@ class TissueFront {
     add(domains_[domain_of(tissue_.brick_at(voxel))], {static_cast<std::int32_t>(place), 0, glm::i16vec3(voxel)}, 0);
   }
 
+  // Starts ways at all voxels that have a source, on several threads.
+  //   source_of  (place, voxel) -> what the way that starts there belongs to, kNoSource where none does
+  template <class SourceOf>
+  void start_all(const SourceOf& source_of) {
+    const auto bricks = std::ssize(tissue_.bricks()), domains = std::ssize(domains_);
+    parallel_for(domains, 1, [&](std::int64_t begin, std::int64_t end) {
+      tissue_.for_each((begin * bricks + domains - 1) / domains, (end * bricks + domains - 1) / domains, [&](std::int64_t place, const glm::ivec3& voxel) {
+        if (const std::uint16_t source = source_of(place, voxel); source != kNoSource) start(place, voxel, source);
+      });
+    });
+  }
+
   // Lets the front go on until no way is shorter any more. Both are called from several threads, for different places.
   //   is_shorter  (source, to, way) -> whether a way of that many mm to place `to` is better than what `to` has. Where it is
   //               not, no longer way may be.
   //   take        (source, to, way): notes such a way; the front goes on from there
+  //   reached     #tissue voxels: what is_shorter compares with. Only its place in memory is used, which is fetched in time.
   template <class IsShorter, class Take>
-  void spread(const IsShorter& is_shorter, const Take& take) {
+  void spread(const std::vector<float>& reached, const IsShorter& is_shorter, const Take& take) {
     const std::vector<bool> near_seam = bricks_near_seams();
     for (std::size_t bucket = 0; bucket < bucket_count(); ++bucket) {
       for (std::vector<Domain*> waiting = domains_waiting(bucket); !waiting.empty(); waiting = domains_waiting(bucket)) {
         parallel_for(std::ssize(waiting), 1, [&](std::int64_t begin, std::int64_t end) {
-          for (std::int64_t k = begin; k < end; ++k) advance(*waiting[k], bucket, near_seam, is_shorter, take);
+          for (std::int64_t k = begin; k < end; ++k) advance(*waiting[k], bucket, near_seam, reached, is_shorter, take);
         });
         parallel_for(std::ssize(domains_), 1, [&](std::int64_t begin, std::int64_t end) {
           for (std::int64_t to = begin; to < end; ++to)
@@ -68,6 +83,7 @@ class TissueFront {
   static constexpr glm::ivec3 kSteps[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
   static constexpr double kWidth = 0.5;  // of the shortest voxel edge: ways that differ by less may come in any order
   static constexpr std::size_t kLeastBricks = 256, kMostDomains = 64;
+  static constexpr std::size_t kAhead = 12;  // voxels: memory is fetched so long before it is read
 
   // The shortest known to a voxel, mm: to the corner that it last came round, and all of it.
   struct Way {
@@ -92,9 +108,11 @@ class TissueFront {
   };
 
   template <class IsShorter, class Take>
-  void advance(Domain& domain, std::size_t bucket, const std::vector<bool>& is_near_seam, const IsShorter& is_shorter, const Take& take) {
+  void advance(Domain& domain, std::size_t bucket, const std::vector<bool>& is_near_seam, const std::vector<float>& reached,
+               const IsShorter& is_shorter, const Take& take) {
     const Seams* seams = tissue_.seams();
     for (; domain.done < domain.buckets[bucket].size(); ++domain.done) {
+      if (const std::size_t ahead = domain.done + kAhead; ahead < domain.buckets[bucket].size()) fetch(domain.buckets[bucket][ahead].place, reached);
       const auto [place, way_here, small_voxel] = domain.buckets[bucket][domain.done];
       const Way here = ways_[place];
       if (way_here > here.length) continue;  // a shorter one came later
@@ -131,6 +149,16 @@ class TissueFront {
     take(step.way.source, std::int64_t{step.to}, step.way.length);
     ways_[step.to] = step.way;
     add(domain, {step.to, step.way.length, step.voxel}, bucket);
+  }
+
+  // Begins to read what advancing from a place needs: its way, and what its neighbours have. Those above and below lie a slice
+  // of a full brick away. Inlined always: as a function of its own it seems to do nothing, and compilers leave it out.
+  [[gnu::always_inline]] void fetch(std::int32_t place, const std::vector<float>& reached) const {
+    constexpr int kSlice = TissueVoxels::kBrick * TissueVoxels::kBrick;
+    __builtin_prefetch(&ways_[place]);
+    __builtin_prefetch(&reached[place]);
+    __builtin_prefetch(&reached[std::max(place - kSlice, 0)]);
+    __builtin_prefetch(&reached[std::min<std::int64_t>(std::int64_t{place} + kSlice, std::ssize(reached) - 1)]);
   }
 
   void add(Domain& domain, const Reached& reached, std::size_t present) {

@@ -109,7 +109,7 @@ std::vector<std::vector<float>> solved_temperatures(const RandomBody& body, doub
   soft.fill(bricks, system);
   HeatVectors vectors;
   HeatSolver solver(system, kBones, vectors);
-  soft.add_sources(bricks, {0, 1, 2}, solver);
+  soft.add_sources(bricks, system, {0, 1, 2}, solver);
   const SolveReport report = solver.solve(residual, 200);
   CHECK(report.residual <= residual);
   if (iterations) *iterations = report.iterations;
@@ -181,7 +181,7 @@ TEST_CASE("heat system: bricks that are left out count as cold") {
   soft.fill(lower, system);
   HeatVectors vectors;
   HeatSolver solver(system, 1, vectors);
-  soft.add_sources(lower, {0, -1, -1}, solver);
+  soft.add_sources(lower, system, {0, -1, -1}, solver);
   solver.solve(1e-6, 100);
   const std::vector<double> exact = exact_temperatures(body, 0, 16);
   double worst = 0;
