@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <queue>
+#include <ranges>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -27,8 +28,7 @@ constexpr std::int64_t kMostDistances = 16'000'000;  // basins x rig bones: 64 M
 // A basin that holds most of the length of several rig bones is several bones grown together (or drawn as one tube):
 // there each voxel goes with the nearest of those.
 void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armature, const Grid& grid, const TissueVoxels& tissue,
-                                 const Hugging& hugging,
-                                 std::vector<std::int32_t>& basin) {
+                                 const Hugging& hugging, std::vector<std::int32_t>& basin) {
   constexpr double kMostOfItsLength = 0.5;
   const AffineTransform from_world = voxel_from_world(grid);
   std::map<std::int32_t, std::vector<int>> bones_inside;
@@ -404,8 +404,8 @@ void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vec
     }
     return number[p];
   };
-  for (std::int32_t i = 0; i < graph.size(); ++i) {
-    const int part = number_of(root(i));
+  for (std::int32_t i = 0, piece = -1, part = -1; i < graph.size(); ++i) {
+    if (const std::int32_t its_piece = root(i); its_piece != piece) piece = its_piece, part = number_of(piece);
     result.part_of[graph.place[i]] = static_cast<std::uint16_t>(1 + part);
     result.parts[part].voxel_count += 1;
     result.parts[part].centre += glm::dvec3(graph.voxel[i]);
@@ -420,8 +420,8 @@ struct ShapeBones {
 // The rig bone of every voxel by shape: bones that touch are cut at the rig's joints, then a watershed, whose basins join to the pieces that move as one.
 //   group       #graph, into `candidates`
 ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds,
-                                const Armature& armature, const Hugging& hugging, const std::vector<std::int32_t>& group,
-                                const std::vector<std::vector<int>>& candidates, Progress& progress) {
+                          const Armature& armature, const Hugging& hugging, const std::vector<std::int32_t>& group,
+                          const std::vector<std::vector<int>>& candidates, Progress& progress) {
   JointCuts cuts = cut_at_joints(graph, volume, kinds, armature, group, candidates, progress);
   // Marrow raises the ground: two cores are two summits however thin the shells between them.
   std::vector<float> height = cuts.depth;
@@ -443,8 +443,7 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
   pieces.join();
   pieces.settle(armature);
   const std::vector<int> of_basin = bones_of_basins(graph, tissue, volume, basin, pieces);
-  ShapeBones found{std::vector<int>(graph.size()), std::move(cuts.broad)};
-  std::vector<int>& bone = found.bone;
+  std::vector<int> bone(graph.size());
   for (std::int64_t i = 0; i < graph.size(); ++i) {
     bone[i] = of_basin[basin[i]];
     // What touched nothing of its own took what lay nearest, which its name may forbid.
@@ -452,21 +451,24 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), bone[i]) == allowed.end())
       bone[i] = *std::min_element(allowed.begin(), allowed.end(), [&](int a, int b) { return hugging.distance(a, graph.voxel[i]) < hugging.distance(b, graph.voxel[i]); });
   }
-  return found;
+  return {std::move(bone), std::move(cuts.broad)};
 }
 
 std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const LabelVolume& volume, const NamedBones& named, const std::vector<int>& bone,
                                                const std::map<Label, LabelBones>& labels) {
   std::map<std::pair<Label, int>, BoneParts::Identity> found;
+  BoneParts::Identity* identity = nullptr;  // neighbours most often share one
   for (std::int64_t i = 0; i < graph.size(); ++i) {
     const Label label = volume.at(graph.voxel[i]);
-    auto& identity = found[{label, bone[i]}];
-    const auto name = labels.find(label);
-    identity = {label, bone[i], named.found_by[i], name != labels.end() && name->second.is_substitute, identity.voxel_count + 1};
+    if (!identity || identity->label != label || identity->bone != bone[i]) {
+      const auto name = labels.find(label);
+      identity = &found.insert({{label, bone[i]}, {label, bone[i], {}, name != labels.end() && name->second.is_substitute, 0}}).first->second;
+    }
+    identity->found_by = named.found_by[i];
+    ++identity->voxel_count;
   }
-  std::vector<BoneParts::Identity> all;
-  for (const auto& [_, identity] : found) all.push_back(identity);
-  return all;
+  const auto all = std::views::values(found);
+  return {all.begin(), all.end()};
 }
 }  // namespace
 
@@ -480,7 +482,6 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   const BoneGraph graph = gather_bone(volume, tissue, kinds);
   if (graph.size() == 0) return result;
   progress.update("bones", 0.4);
-
   const Hugging hugging(armature, volume.grid);
   const NamedBones named = assign_named_bones(graph, volume, kinds, armature, labels);
   std::vector<int> bone = named.bone;

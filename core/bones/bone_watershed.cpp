@@ -2,13 +2,12 @@
 #include "core/bones/bone_watershed.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <queue>
-#include <set>
-#include <tuple>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -21,6 +20,7 @@ namespace {
 // 0.9 puts 0.4 % of bone voxels into a basin of another bone, 0.7 puts 2.4 %. Splitting one bone too often costs
 // nothing: its pieces find the same rig bone.
 constexpr double kMergeRatio = 0.9;
+constexpr std::int64_t kBricks = 64;  // a block of a parallel loop
 constexpr double kWiggleShare = 0.2;  // of the depth, at most: a finger bone is two voxels deep
 
 std::array<glm::ivec3, 26> offsets_26() {
@@ -73,67 +73,137 @@ class LabelWalls {
 }  // namespace
 
 BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds) {
-  BoneGraph graph;
-  std::vector<std::int32_t> of_place(tissue.size(), kNotBone);
-  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
-    if (!is_bone(kinds[volume.at(v)])) return;
-    of_place[place] = static_cast<std::int32_t>(graph.place.size());
-    graph.place.push_back(place);
-    graph.voxel.push_back(v);
+  // Bricks of tissue that know their bone: where a voxel stands in the graph is found by counting bits.
+  const auto bricks = std::ssize(tissue.bricks());
+  std::vector<TissueVoxels::Brick> bone(bricks);
+  parallel_for(bricks, kBricks, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t b = begin; b < end; ++b) {
+      bone[b] = {tissue.bricks()[b].corner, 0, {}};
+      tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
+        if (is_bone(kinds[volume.at(v)])) bone[b].mask[v.z & 7] |= std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7));
+      });
+      for (int z = 1; z < TissueVoxels::kBrick; ++z) bone[b].below[z] = static_cast<std::uint16_t>(bone[b].below[z - 1] + std::popcount(bone[b].mask[z - 1]));
+    }
   });
+  std::int64_t size = 0;
+  for (TissueVoxels::Brick& brick : bone) brick.first = std::exchange(size, size + brick.count());
 
+  BoneGraph graph;
+  graph.place.resize(size);
+  graph.voxel.resize(size);
+  graph.neighbour.resize(size);
   const LabelWalls walls(volume, tissue, kinds);
-  graph.neighbour.resize(graph.size());
   const auto neighbour = [&](const glm::ivec3& v, const glm::ivec3& w) {
     if (!volume.grid.contains(w)) return kOutside;
     const Label label = volume.at(w);
-    return is_bone(kinds[label]) && !walls.between(volume.at(v), label) ? of_place[tissue.index_of(w)] : kNotBone;
+    return is_bone(kinds[label]) && !walls.between(volume.at(v), label)
+               ? static_cast<std::int32_t>(TissueVoxels::index_in(bone[tissue.brick_at(w)], w & 7))
+               : kNotBone;
   };
-  parallel_for(graph.size(), 4096, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i)
-      for (int k = 0; k < 26; ++k) graph.neighbour[i][k] = neighbour(graph.voxel[i], graph.voxel[i] + kOffsets[k]);
+  parallel_for(bricks, kBricks, [&](std::int64_t begin, std::int64_t end) {
+    tissue.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& v) {
+      const std::int64_t i = TissueVoxels::index_in(bone[tissue.brick_at(v)], v & 7);
+      if (i < 0) return;
+      graph.place[i] = place;
+      graph.voxel[i] = v;
+      for (int k = 0; k < 26; ++k) graph.neighbour[i][k] = neighbour(v, v + kOffsets[k]);
+    });
   });
   return graph;
 }
 
-void lower_depth(const BoneGraph& graph, const glm::dvec3& spacing, const std::vector<std::int32_t>& at_borders, std::vector<float>& depth) {
-  std::vector<glm::ivec3> offset(graph.size(), glm::ivec3(0));
-  using Entry = std::pair<float, std::int32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-  auto offer = [&](std::int32_t i, const glm::ivec3& to_border) {
-    const float distance = static_cast<float>(glm::length(glm::dvec3(to_border) * spacing));
-    if (distance >= depth[i]) return;
-    depth[i] = distance;
-    offset[i] = to_border;
-    front.push({distance, i});
-  };
-  for (const std::int32_t i : at_borders)
-    for (int k = 0; k < 26; ++k)
-      if (graph.neighbour[i][k] == kNotBone) offer(i, kOffsets[k]);
-  while (!front.empty()) {
-    const auto [distance, i] = front.top();
-    front.pop();
-    if (distance > depth[i]) continue;
-    for (int k = 0; k < 26; ++k)
-      if (graph.neighbour[i][k] >= 0) offer(graph.neighbour[i][k], offset[i] - kOffsets[k]);
+namespace {
+// Carries the nearest border from voxel to voxel, the nearest first.
+class DepthFront {
+ public:
+  DepthFront(const BoneGraph& graph, const glm::dvec3& spacing, std::vector<float>& depth)
+      : graph_(graph), spacing_(spacing), depth_(depth), offset_(graph.size(), glm::ivec3(0)) {}
+
+  // Whether a voxel whose connections end lies nearer to that than it was known to.
+  bool start(std::int32_t i) {
+    bool starts = false;
+    for (int k = 0; k < 26; ++k) starts |= graph_.neighbour[i][k] == kNotBone && take(i, kOffsets[k]);
+    return starts;
   }
+  void spread(const std::vector<std::int32_t>& from) {
+    std::vector<Entry> entries;
+    for (const std::int32_t i : from) entries.push_back({depth_[i], i});
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front(std::greater<>(), std::move(entries));
+    while (!front.empty()) {
+      const auto [distance, i] = front.top();
+      front.pop();
+      if (distance > depth_[i]) continue;
+      for (int k = 0; k < 26; ++k)
+        if (const std::int32_t n = graph_.neighbour[i][k]; n >= 0 && take(n, offset_[i] - kOffsets[k])) front.push({depth_[n], n});
+    }
+  }
+
+ private:
+  using Entry = std::pair<float, std::int32_t>;
+
+  bool take(std::int32_t i, const glm::ivec3& to_border) {
+    const glm::dvec3 way = glm::dvec3(to_border) * spacing_;
+    const double squared = glm::dot(way, way), known = depth_[i];
+    if (squared >= known * known) return false;
+    const float distance = static_cast<float>(std::sqrt(squared));
+    if (distance >= depth_[i]) return false;
+    depth_[i] = distance;
+    offset_[i] = to_border;
+    return true;
+  }
+
+  const BoneGraph& graph_;
+  const glm::dvec3 spacing_;
+  std::vector<float>& depth_;
+  std::vector<glm::ivec3> offset_;  // #graph, to the border
+};
+}  // namespace
+
+void lower_depth(const BoneGraph& graph, const glm::dvec3& spacing, const std::vector<std::int32_t>& at_borders, std::vector<float>& depth) {
+  DepthFront front(graph, spacing, depth);
+  std::vector<std::int32_t> from;
+  for (const std::int32_t i : at_borders)
+    if (front.start(i)) from.push_back(i);
+  front.spread(from);
 }
 
 std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing) {
   std::vector<float> depth(graph.size(), std::numeric_limits<float>::max());
-  std::vector<std::int32_t> all(graph.size());
-  std::iota(all.begin(), all.end(), 0);
-  lower_depth(graph, spacing, all, depth);
+  DepthFront front(graph, spacing, depth);
+  std::vector<std::uint8_t> starts(graph.size());
+  parallel_for(graph.size(), 4096, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) starts[i] = front.start(static_cast<std::int32_t>(i));
+  });
+  std::vector<std::int32_t> from;
+  for (std::int32_t i = 0; i < graph.size(); ++i)
+    if (starts[i]) from.push_back(i);
+  front.spread(from);
   for (float& d : depth)
     if (d == std::numeric_limits<float>::max()) d = 0;
   return depth;
 }
 
-std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>& height, double wiggle) {
-  std::vector<std::int32_t> order(graph.size());
+namespace {
+// The places of heights, which are not negative, the highest first; of equal ones the first. Sorts by the bits of the numbers, which
+// rise with them, eleven at a time.
+std::vector<std::int32_t> highest_first(const std::vector<float>& height) {
+  constexpr int kBits = 11;
+  std::vector<std::int32_t> order(height.size()), next(height.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return height[a] > height[b] || (height[a] == height[b] && a < b); });
+  for (int shift = 0; shift < 32; shift += kBits) {
+    const auto digit = [&](std::int32_t i) { return ~std::bit_cast<std::uint32_t>(height[i]) >> shift & ((1u << kBits) - 1); };
+    std::array<std::int64_t, (1 << kBits) + 1> first{};
+    for (const std::int32_t i : order) ++first[digit(i) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    for (const std::int32_t i : order) next[first[digit(i)]++] = i;
+    order.swap(next);
+  }
+  return order;
+}
+}  // namespace
 
+std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>& height, double wiggle) {
+  const std::vector<std::int32_t> order = highest_first(height);
   std::vector<std::int32_t> basin(graph.size(), -1);
   std::vector<std::int32_t> parent;
   std::vector<float> summit;

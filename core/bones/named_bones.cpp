@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/parallel.h"
+
 namespace limber {
 
 namespace {
@@ -170,9 +172,11 @@ Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named) {
   if (part.from.size() == static_cast<std::size_t>(whole.size())) {
     // Nothing is settled; groups alone may part what touches.
     part.graph = whole;
-    for (std::int32_t i = 0; i < whole.size(); ++i)
-      for (std::int32_t& n : part.graph.neighbour[i])
-        if (n >= 0 && named.group[n] != named.group[i]) n = kNotBone;
+    parallel_for(whole.size(), 4096, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i)
+        for (std::int32_t& n : part.graph.neighbour[i])
+          if (n >= 0 && named.group[n] != named.group[i]) n = kNotBone;
+    });
     return part;
   }
   for (const std::int32_t i : part.from) {
