@@ -15,7 +15,6 @@
 #include "core/bones/named_bones.h"
 #include "core/bones/bone_watershed.h"
 #include "core/bones/hugging.h"
-#include "core/bones/joint_cuts.h"
 #include "core/bones/shoulder_girdles.h"
 
 namespace limber {
@@ -478,7 +477,7 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   result.part_of.assign(tissue.size(), 0);
   progress.update("bones", 0);
   const std::vector<TissueKind> kinds = tissues.kinds();
-  const std::map<Label, LabelBones> labels = bones_of_labels(tissues, armature, map);
+  const auto labels = bones_of_labels(tissues, armature, map);
   const BoneGraph graph = gather_bone(volume, tissue, kinds);
   if (graph.size() == 0) return result;
   progress.update("bones", 0.4);

@@ -204,40 +204,55 @@ std::vector<std::int32_t> highest_first(const std::vector<float>& height) {
 
 std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>& height, double wiggle) {
   const std::vector<std::int32_t> order = highest_first(height);
-  std::vector<std::int32_t> basin(graph.size(), -1);
+  struct Ground {
+    float height;
+    std::int32_t basin;
+  };
+  std::vector<Ground> ground(graph.size());
+  for (std::int64_t i = 0; i < graph.size(); ++i) ground[i] = {height[i], -1};
   std::vector<std::int32_t> parent;
   std::vector<float> summit;
   auto root = [&](std::int32_t b) {
     while (parent[b] != b) b = parent[b] = parent[parent[b]];
     return b;
   };
-  for (std::int32_t i : order) {
+  constexpr std::size_t kAhead = 8;  // voxels: memory is fetched so long before it is read
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (k + kAhead < order.size()) {
+      const std::array<std::int32_t, 26>& ahead = graph.neighbour[order[k + kAhead]];
+      __builtin_prefetch(&ahead.front());
+      __builtin_prefetch(&ahead.back());
+    }
+    const std::int32_t i = order[k];
+    Ground& here = ground[i];
     std::int32_t best = -1;
     float best_height = -1;
     for (std::int32_t n : graph.neighbour[i])
-      if (n >= 0 && basin[n] >= 0 && height[n] > best_height) best = n, best_height = height[n];
+      if (n >= 0 && ground[n].basin >= 0 && ground[n].height > best_height) best = n, best_height = ground[n].height;
     if (best < 0) {
-      basin[i] = static_cast<std::int32_t>(parent.size());
-      parent.push_back(basin[i]);
-      summit.push_back(height[i]);
+      here.basin = static_cast<std::int32_t>(parent.size());
+      parent.push_back(here.basin);
+      summit.push_back(here.height);
       continue;
     }
-    basin[i] = root(basin[best]);
+    here.basin = root(ground[best].basin);
     for (std::int32_t n : graph.neighbour[i]) {
-      if (n < 0 || basin[n] < 0) continue;
-      std::int32_t a = root(basin[i]), b = root(basin[n]);
+      if (n < 0 || ground[n].basin < 0) continue;
+      std::int32_t a = root(here.basin), b = root(ground[n].basin);
       if (a == b) continue;
       if (summit[b] > summit[a] || (summit[b] == summit[a] && b < a)) std::swap(a, b);
-      const float pass = std::min(height[i], height[n]);
+      const float pass = std::min(here.height, ground[n].height);
       if (pass >= kMergeRatio * summit[b] || summit[b] - pass <= std::min(wiggle, kWiggleShare * summit[b])) parent[b] = a;
     }
   }
   std::vector<std::int32_t> number(parent.size(), -1);
   std::int32_t count = 0;
-  for (std::int32_t& b : basin) {
-    b = root(b);
-    if (number[b] < 0) number[b] = count++;
-    b = number[b];
+  std::vector<std::int32_t> basin;
+  basin.reserve(ground.size());
+  for (const Ground& here : ground) {
+    std::int32_t& its_number = number[root(here.basin)];
+    if (its_number < 0) its_number = count++;
+    basin.push_back(its_number);
   }
   return basin;
 }

@@ -160,8 +160,8 @@ class Cut {
       cut_across(normal, shorter);
     }
     const double shaft = (kReach - kShaft) * shorter;  // mm of it that lie in the domain
-    if (cut_area_ > 0 && cut_area_ >= kBroad * std::min(volume_along(0, joint, kShaft * shorter), volume_along(1, joint, kShaft * shorter)) / shaft)
-      found_.broad = BroadCut{parent, child, cut_area_};
+    const double thinner = std::min(volume_along(0, joint, kShaft * shorter), volume_along(1, joint, kShaft * shorter)) / shaft;
+    if (cut_area_ > 0 && cut_area_ >= kBroad * thinner) found_.broad = BroadCut{parent, child, cut_area_};
     tell_sides();
     return std::move(found_);
   }
@@ -364,7 +364,6 @@ class Cut {
     }
   }
   glm::dvec3 world(std::int32_t i) const { return scene_.world(i); }
-
   Scene& scene_;
   const std::vector<Bone>& bones_;
   const std::array<int, 2> bone_;
@@ -386,8 +385,11 @@ class JointCutter {
       scene_.is_ball.push_back(role && (role->part == BodyPart::Thigh || role->part == BodyPart::UpperArm));
       scene_.shape.push_back(shape_of_joint(role));
     }
-    scene_.depth = bone_depth(scene_.graph, scene_.volume.grid.spacing);
-    find_nearest();
+    // Depths come from one thread, so the others do the rest meanwhile.
+    parallel_for(2, 1, [&](std::int64_t begin, std::int64_t end) {
+      if (begin == 0) scene_.depth = bone_depth(scene_.graph, scene_.volume.grid.spacing);
+      if (end == 2) find_nearest();
+    });
   }
 
   // Where a bone meets its parent; and where it sits on another child of that, nearer than on the parent itself, as a thumb
@@ -472,12 +474,11 @@ class JointCutter {
       scene_.along[near.bone[0]].push_back(i);
     }
   }
-  void keep(std::vector<Found>& found) {
-    for (Found& one : found) {
+  void keep(const std::vector<Found>& found) {
+    for (const Found& one : found) {
       beyond_.insert(beyond_.end(), one.beyond.begin(), one.beyond.end());
       at_cuts_.insert(at_cuts_.end(), one.at_cuts.begin(), one.at_cuts.end());
       if (one.broad) broad_.push_back(*one.broad);
-      one = {};
     }
   }
 
@@ -490,7 +491,8 @@ class JointCutter {
 
 JointCuts cut_at_joints(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
                    const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates, Progress& progress) {
-  JointCutter cutter({graph, volume, kinds, armature.bones, group, candidates, world_from_voxel(volume.grid), areas_of_edges(volume.grid.spacing), {}, {}, {}, {}, {}});
+  JointCutter cutter({graph, volume, kinds, armature.bones, group, candidates, world_from_voxel(volume.grid),
+                      areas_of_edges(volume.grid.spacing), {}, {}, {}, {}, {}});
   cutter.cut_joints(progress);
   cutter.cut_sides();
   return std::move(cutter).cuts();

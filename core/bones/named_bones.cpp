@@ -169,23 +169,21 @@ Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named) {
   std::vector<std::int32_t> number(whole.size(), kNotBone);
   for (std::int32_t i = 0; i < whole.size(); ++i)
     if (named.bone[i] < 0) number[i] = static_cast<std::int32_t>(part.from.size()), part.from.push_back(i);
-  if (part.from.size() == static_cast<std::size_t>(whole.size())) {
-    // Nothing is settled; groups alone may part what touches.
-    part.graph = whole;
-    parallel_for(whole.size(), 4096, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t i = begin; i < end; ++i)
-        for (std::int32_t& n : part.graph.neighbour[i])
-          if (n >= 0 && named.group[n] != named.group[i]) n = kNotBone;
-    });
-    return part;
-  }
-  for (const std::int32_t i : part.from) {
-    part.graph.place.push_back(whole.place[i]);
-    part.graph.voxel.push_back(whole.voxel[i]);
-    auto& around = part.graph.neighbour.emplace_back(whole.neighbour[i]);
-    for (std::int32_t& n : around)
-      if (n >= 0) n = named.group[n] == named.group[i] ? number[n] : kNotBone;
-  }
+  const bool is_all = part.from.size() == static_cast<std::size_t>(whole.size());
+  const auto count = std::ssize(part.from);
+  part.graph.place.resize(count);
+  part.graph.voxel.resize(count);
+  part.graph.neighbour.resize(count);
+  parallel_for(count, 4096, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t k = begin; k < end; ++k) {
+      const std::int32_t i = part.from[k];
+      part.graph.place[k] = whole.place[i];
+      part.graph.voxel[k] = whole.voxel[i];
+      auto& around = part.graph.neighbour[k] = whole.neighbour[i];
+      for (std::int32_t& n : around)
+        if (n >= 0) n = named.group[n] != named.group[i] ? kNotBone : is_all ? n : number[n];
+    }
+  });
   return part;
 }
 

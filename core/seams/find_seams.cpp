@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "core/base/parallel.h"
 #include "core/bones/min_cut.h"
 #include "core/seams/limbs.h"
 #include "core/seams/skin_layers.h"
@@ -21,6 +23,8 @@ namespace {
 constexpr double kBandShare = 0.2;     // of the limb's first bone: how far from where limbs meet the cut may lie
 constexpr double kWidestBand = 50;     // mm
 constexpr double kNarrowestBand = 4;   // of the longest voxel edge
+constexpr std::int64_t kGrain = 64;    // bricks a block of a parallel loop
+constexpr std::int64_t kNodes = 4096;  // of a band, likewise
 constexpr int kCostUnit = 1024;
 constexpr double kBridge = 0.5;        // cost of a bridge between two skins: half of theirs, and less towards its middle
 
@@ -128,16 +132,26 @@ class SeamFinder {
   // filled the air there. Nothing is a bridge where no skin is.
   void find_bridges() {
     TissueSet flesh(tissue_);
-    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    std::atomic<bool> has_skin = false;
+    for_bricks([&](std::int64_t place, const glm::ivec3& v) {
       const bool is_skin = kind_at(v) == TissueKind::Skin;
-      has_skin_ |= is_skin;
-      if (!is_skin) flesh.add(v);
+      if (!is_skin)
+        flesh.add(v);
+      else if (!has_skin)
+        has_skin = true;
       if (held_by_[place] != kSoft) inside_.add(v);
     });
+    has_skin_ = has_skin;
     if (has_skin_) inside_.spread(flesh);
   }
 
   bool is_bridge(const glm::ivec3& v) const { return has_skin_ && !inside_.contains(v) && kind_at(v) != TissueKind::Skin; }
+
+  // body(place, voxel) for all tissue, on several threads that share no brick.
+  template <class Body>
+  void for_bricks(const Body& body) const {
+    parallel_for(std::ssize(tissue_.bricks()), kGrain, [&](std::int64_t begin, std::int64_t end) { tissue_.for_each(begin, end, body); });
+  }
 
   // body(direction, voxel there, its place) for the tissue that a voxel hangs together with.
   template <class Body>
@@ -158,18 +172,21 @@ class SeamFinder {
   // The voxels at which tissue of different bones meets, and of some others; by place.
   void find_borders() {
     if (limbs_.empty()) return;
-    std::vector<bool> is_border(tissue_.size());
-    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
-      for (int axis = 0; axis < 3; ++axis) {
-        glm::ivec3 w = v;
-        if (++w[axis] >= volume_.grid.size[axis]) continue;
-        const std::int64_t there = tissue_.index_of(w);
-        if (there >= 0 && bone_[there] != bone_[place]) is_border[place] = is_border[there] = true;
-      }
+    const auto bricks = std::ssize(tissue_.bricks());
+    std::vector<std::vector<Border>> found((bricks + kGrain - 1) / kGrain);
+    parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      tissue_.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& v) {
+        for (int direction = 0; direction < 6; ++direction) {
+          glm::ivec3 w = v;
+          w[direction >> 1] += direction & 1 ? 1 : -1;
+          const std::int64_t there = volume_.grid.contains(w) ? tissue_.index_of(w) : -1;
+          if (there < 0 || bone_[there] == bone_[place]) continue;
+          found[begin / kGrain].push_back({v, place});
+          break;
+        }
+      });
     });
-    tissue_.for_each([&](std::int64_t place, const glm::ivec3& v) {
-      if (is_border[place]) borders_.push_back({v, place});
-    });
+    for (const std::vector<Border>& some : found) borders_.insert(borders_.end(), some.begin(), some.end());
   }
   // Where the band's voxels changed sides there are others.
   void add_borders() {
@@ -336,7 +353,7 @@ class SeamFinder {
     CutGraph<6> graph{beside_, std::vector<std::array<std::int32_t, 6>>(band_.size()), std::vector<std::int32_t>(band_.size())};
     const glm::dvec3 s = volume_.grid.spacing, area(s.y * s.z, s.x * s.z, s.x * s.y);
     const double smallest = std::min({area.x, area.y, area.z});
-    for (std::int32_t n = 0; n < std::ssize(band_); ++n) {
+    const auto set_capacities = [&](std::int32_t n) {
       graph.terminal[n] = side_[n] == Side::Limb ? kCertain : side_[n] == Side::Other ? -kCertain : 0;
       for (int axis = 0; axis < 3; ++axis) {
         const int up = edge_up(axis), down = 5 - up;
@@ -349,7 +366,10 @@ class SeamFinder {
         graph.capacity[n][up] = capacity(here.of_limb + beyond.of_other);
         graph.capacity[m][down] = capacity(beyond.of_limb + here.of_other);
       }
-    }
+    };
+    parallel_for(std::ssize(band_), kNodes, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t n = begin; n < end; ++n) set_capacities(static_cast<std::int32_t>(n));
+    });
     return min_cut(std::move(graph));
   }
 

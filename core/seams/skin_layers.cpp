@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "core/base/parallel.h"
+
 namespace limber {
 
 namespace {
@@ -49,19 +51,25 @@ std::optional<SkinRay> cast(const LabelVolume& volume, const std::vector<TissueK
 }  // namespace
 
 std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kind) {
-  std::vector<SkinRay> rays;
-  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
-    if (kind[volume.at(v)] != TissueKind::Skin) return;
-    for (int direction = 0; direction < 6; ++direction) {
-      glm::ivec3 w = v;
-      w[direction >> 1] += direction & 1 ? 1 : -1;
-      if (!volume.grid.contains(w) || volume.at(w) != 0) continue;
-      if (auto ray = cast(volume, kind, v, direction ^ 1)) {
-        ray->place = place;
-        rays.push_back(*ray);
+  constexpr std::int64_t kGrain = 64;  // bricks a block of a parallel loop
+  const auto bricks = std::ssize(tissue.bricks());
+  std::vector<std::vector<SkinRay>> found((bricks + kGrain - 1) / kGrain);
+  parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    tissue.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& v) {
+      if (kind[volume.at(v)] != TissueKind::Skin) return;
+      for (int direction = 0; direction < 6; ++direction) {
+        glm::ivec3 w = v;
+        w[direction >> 1] += direction & 1 ? 1 : -1;
+        if (!volume.grid.contains(w) || volume.at(w) != 0) continue;
+        if (auto ray = cast(volume, kind, v, direction ^ 1)) {
+          ray->place = place;
+          found[begin / kGrain].push_back(*ray);
+        }
       }
-    }
+    });
   });
+  std::vector<SkinRay> rays;
+  for (const std::vector<SkinRay>& some : found) rays.insert(rays.end(), some.begin(), some.end());
   return rays;
 }
 

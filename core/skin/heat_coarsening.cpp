@@ -24,7 +24,7 @@ class Coarsening {
   explicit Coarsening(const HeatSystem& system)
       : system_(system),
         halved_(coarsened_axes(system.spacing)),
-        parent_(system.brick_count() * kSlots, -1),
+        parent_(system.brick_count() * kSlots),
         pieces_(system.brick_count()) {
     for (int slot = 0; slot < kSlots; ++slot) {
       const glm::ivec3 voxel = HeatSystem::voxel_of(slot), block = block_of(voxel);
@@ -52,7 +52,7 @@ class Coarsening {
       for (std::int64_t brick = begin; brick < end; ++brick) find_rows(brick, found, rows[begin / kGrain]);
     });
     join(rows);
-    CoarseHeat coarse{std::move(graph_), std::vector<std::int32_t>(bricks * HeatSystem::kColour)};
+    CoarseHeat coarse{std::move(graph_), ZeroedVector<std::int32_t>(bricks * HeatSystem::kColour)};
     parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t brick = begin; brick < end; ++brick)
         std::copy_n(&parent_[brick * kSlots + HeatSystem::kColour], HeatSystem::kColour,
@@ -121,6 +121,7 @@ class Coarsening {
   // Numbers a brick's pieces from 0, each colour apart: `parent_` holds twice the number, plus the colour of the block.
   void find_pieces(std::int64_t brick) {
     std::int32_t* parent = &parent_[brick * kSlots];
+    std::fill_n(parent, kSlots, -1);
     std::array<int, 8> open;
     std::array<std::int32_t, 2> found{};
     for (int seed = 0; seed < kSlots; ++seed) {
@@ -236,7 +237,7 @@ class Coarsening {
   std::array<Block, kSlots> blocks_;
   std::array<const Block*, kSlots> block_of_slot_;
   std::array<std::array<Step, 6>, kSlots> steps_;
-  std::vector<std::int32_t> parent_;                 // bricks, slots
+  ZeroedVector<std::int32_t> parent_;                // bricks, slots
   std::vector<std::array<std::int32_t, 2>> pieces_;  // of each brick, by colour: how many
   std::vector<std::array<std::int32_t, 2>> first_;   // likewise: the number of the first
   CellGraph graph_;

@@ -27,6 +27,15 @@ Four before(const Four& previous_row, const Four& row) {
   return __builtin_shufflevector(previous_row, row, 3, 4, 5, 6);
 }
 Four after(const Four& row, const Four& next_row) { return __builtin_shufflevector(row, next_row, 1, 2, 3, 4); }
+
+// Makes room for values, which are zero; on several threads where it was used before.
+void make_zeros(std::size_t count, HeatValues& values) {
+  const bool is_new = count > values.capacity();
+  if (is_new) values = HeatValues();
+  values.resize(count);
+  if (is_new) return;
+  parallel_for(static_cast<std::int64_t>(count), 1 << 16, [&](std::int64_t begin, std::int64_t end) { std::fill(&values[begin], &values[0] + end, 0.0f); });
+}
 }  // namespace
 
 void HeatSystem::reset(std::vector<glm::ivec3> its_corners, std::vector<std::array<std::int32_t, 6>> its_neighbours,
@@ -35,8 +44,11 @@ void HeatSystem::reset(std::vector<glm::ivec3> its_corners, std::vector<std::arr
   corners = std::move(its_corners);
   beside = std::move(its_neighbours);
   cells.assign(corners.size(), {});
-  conductance.assign((corners.size() + 1) * 6 * kColour, 0.0f);
-  diagonal.assign((corners.size() + 1) * kSlots, 1.0f);
+  make_zeros((corners.size() + 1) * 6 * kColour, conductance);
+  diagonal.resize((corners.size() + 1) * kSlots);
+  parallel_for(std::ssize(corners) + 1, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::fill_n(&diagonal[begin * kSlots], (end - begin) * kSlots, 1.0f);
+  });
   for (auto& neighbours : beside)
     for (std::int32_t& other : neighbours)
       if (other < 0) other = static_cast<std::int32_t>(corners.size());
@@ -55,8 +67,7 @@ HeatSolver::HeatSolver(const HeatSystem& system, int lanes, HeatVectors& vectors
       search_(vectors.search),
       step_(vectors.step) {
   const std::size_t slots = (system.brick_count() + 1) * lanes * HeatSystem::kColour;
-  for (std::vector<float>* vector : {&red_source_, &red_, &black_, &residual_, &search_, &step_})
-    vector->assign(slots, 0.0f);
+  for (HeatValues* values : {&red_source_, &red_, &black_, &residual_, &search_, &step_}) make_zeros(slots, *values);
 }
 
 HeatSolver::~HeatSolver() = default;
@@ -84,7 +95,7 @@ HeatSolver::Sums HeatSolver::sum_over_bricks(const Body& body) const {
 // body(lane, place, flow) for every row of one colour in a brick: `place` of its first cell in vectors of that colour, and
 // the heat that flows to its four cells from `other`, the cells of the other colour.
 template <bool kRed, class Body>
-void HeatSolver::gather(std::int64_t brick, const std::vector<float>& other, const Body& body) const {
+void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body& body) const {
   const auto& beside = system_.beside[brick];
   const auto conductances = [&](std::int64_t of_brick, int direction, int row) {
     return load(&system_.conductance[(of_brick * 6 + direction) * HeatSystem::kColour + kRow * row]);
@@ -122,7 +133,7 @@ void HeatSolver::gather(std::int64_t brick, const std::vector<float>& other, con
   }
 }
 
-void HeatSolver::relax_reds(const std::vector<float>& blacks, bool with_sources) {
+void HeatSolver::relax_reds(const HeatValues& blacks, bool with_sources) {
   for_bricks([&](std::int64_t brick) {
     const float* diagonal = &system_.diagonal[brick * HeatSystem::kSlots];
     gather<true>(brick, blacks, [&](int, std::int64_t place, Four flow) {

@@ -23,9 +23,12 @@
 #include <glm/glm.hpp>
 
 #include "core/base/progress.h"
+#include "core/base/zeroed_vector.h"
 #include "core/skin/multigrid.h"
 
 namespace limber {
+
+using HeatValues = ZeroedVector<float>;
 
 struct HeatSystem {
   static constexpr int kColour = 256;  // slots of one colour in a brick
@@ -64,21 +67,21 @@ struct HeatSystem {
   std::vector<glm::ivec3> corners;
   std::vector<std::array<std::int32_t, 6>> beside;  // brick_count() where there is none: an empty brick
   std::vector<std::array<std::uint64_t, 8>> cells;  // a bit a slot
-  std::vector<float> conductance;                   // bricks + the empty one, 6 directions, red slots
-  std::vector<float> diagonal;                      // bricks + the empty one, slots; 1 without a cell
+  HeatValues conductance;                           // bricks + the empty one, 6 directions, red slots
+  HeatValues diagonal;                              // bricks + the empty one, slots; 1 without a cell
 };
 
 // The next level of a system, and which of its cells each black cell belongs to.
 struct CoarseHeat {
   CellGraph graph;
-  std::vector<std::int32_t> parent_of_black;  // bricks, black slots; -1 without a cell
+  ZeroedVector<std::int32_t> parent_of_black;  // bricks, black slots; -1 without a cell
 };
 CoarseHeat coarsen(const HeatSystem& system);
 
 // What a solver works on: bricks + the empty one, lanes, slots of a colour.
 struct HeatVectors {
-  std::vector<float> red_source, red, black;  // of reds: b, x; of blacks: x
-  std::vector<float> residual, search, step;  // of blacks: r, p and, by turns, M^-1 r and A p
+  HeatValues red_source, red, black;  // of reds: b, x; of blacks: x
+  HeatValues residual, search, step;  // of blacks: r, p and, by turns, M^-1 r and A p
 
   // About what a brick takes here, in its system and on the coarser levels.
   static double bytes_of_brick(int lanes) { return 12.0e3 + 7.5e3 * lanes; }
@@ -102,7 +105,7 @@ class HeatSolver {
 
   // After solve().
   float temperature(std::int64_t brick, int lane, int slot) const {
-    const std::vector<float>& of_colour = slot < HeatSystem::kColour ? red_ : black_;
+    const HeatValues& of_colour = slot < HeatSystem::kColour ? red_ : black_;
     return of_colour[at(brick, lane) + (slot & (HeatSystem::kColour - 1))];
   }
 
@@ -116,9 +119,9 @@ class HeatSolver {
   template <class Body>
   Sums sum_over_bricks(const Body& body) const;
   template <bool kRed, class Body>
-  void gather(std::int64_t brick, const std::vector<float>& other, const Body& body) const;
+  void gather(std::int64_t brick, const HeatValues& other, const Body& body) const;
 
-  void relax_reds(const std::vector<float>& blacks, bool with_sources);
+  void relax_reds(const HeatValues& blacks, bool with_sources);
   Sums start();
   Sums precondition();
   Sums apply();
@@ -128,7 +131,7 @@ class HeatSolver {
   CoarseHeat coarse_;  // its graph is the multigrid's
   const Multigrid multigrid_;
   std::unique_ptr<Multigrid::Cycle> cycle_;
-  std::vector<float>&red_source_, &red_, &black_, &residual_, &search_, &step_;
+  HeatValues &red_source_, &red_, &black_, &residual_, &search_, &step_;
 };
 
 }  // namespace limber

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/base/zeroed_vector.h"
 #include "core/volume/tissue_voxels.h"
 
 namespace limber {
@@ -87,9 +88,9 @@ class TissueFront {
 
   // The shortest known to a voxel, mm: to the corner that it last came round, and all of it.
   struct Way {
-    glm::i16vec3 corner{0};
-    std::uint16_t source = 0;
-    float to_corner = 0, length = 0;
+    glm::i16vec3 corner;
+    std::uint16_t source;
+    float to_corner, length;
   };
   struct Reached {
     std::int32_t place;
@@ -218,7 +219,7 @@ class TissueFront {
   const Grid& grid_;
   const glm::vec3 spacing_{grid_.spacing};
   const TissueVoxels& tissue_;
-  std::vector<Way> ways_;  // by place
+  ZeroedVector<Way> ways_;  // by place
   float width_;
   std::vector<Domain> domains_;
 };

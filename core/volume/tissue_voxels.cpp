@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/volume/label_runs.h"
 
 namespace limber {
@@ -31,6 +32,35 @@ std::uint64_t tissue_bits(const Label* row, int count) {
   return bits;
 }
 
+// The bricks with tissue of one layer, in brick order.
+std::vector<TissueVoxels::Brick> bricks_of_layer(const LabelVolume& volume, int bz) {
+  constexpr int kBrick = TissueVoxels::kBrick;
+  const glm::ivec3 size = volume.grid.size;
+  std::vector<TissueVoxels::Brick> bricks;
+  std::vector<std::array<std::uint64_t, kBrick>> masks((size.x + (kBrick - 1)) / kBrick);  // of a row of bricks
+  for (int by = 0; by * kBrick < size.y; ++by) {
+    std::fill(masks.begin(), masks.end(), std::array<std::uint64_t, kBrick>{});
+    const int end_z = std::min((bz + 1) * kBrick, size.z), end_y = std::min((by + 1) * kBrick, size.y);
+    for (int z = bz * kBrick; z < end_z; ++z)
+      for (int y = by * kBrick; y < end_y; ++y) {
+        const Label* row = &volume.voxels[volume.grid.index({0, y, z})];
+        // Air, by far the most, is passed quickly.
+        for (int x = end_of_air(row, 0, size.x); x < size.x; x = end_of_air(row, x, size.x)) {
+          const int first = x & ~7;
+          x = std::min(first + kBrick, size.x);
+          masks[first / kBrick][z & 7] |= tissue_bits(row + first, x - first) << (8 * (y & 7));
+        }
+      }
+    for (int bx = 0; bx < std::ssize(masks); ++bx) {
+      if (masks[bx] == std::array<std::uint64_t, kBrick>{}) continue;
+      TissueVoxels::Brick brick{glm::ivec3(bx, by, bz) * kBrick, 0, masks[bx]};
+      for (int z = 1; z < kBrick; ++z) brick.below[z] = static_cast<std::uint16_t>(brick.below[z - 1] + std::popcount(brick.mask[z - 1]));
+      bricks.push_back(brick);
+    }
+  }
+  return bricks;
+}
+
 }  // namespace
 
 TissueVoxels::TissueVoxels(const LabelVolume& volume) : grid_size_(volume.grid.size) {
@@ -40,31 +70,18 @@ TissueVoxels::TissueVoxels(const LabelVolume& volume) : grid_size_(volume.grid.s
                 "crop it to " + std::to_string(kLongest) + ", or choose a coarser spacing");
   brick_grid_ = (grid_size_ + (kBrick - 1)) / kBrick;
   brick_of_.assign(std::int64_t{brick_grid_.x} * brick_grid_.y * brick_grid_.z, -1);
-  std::vector<std::array<std::uint64_t, kBrick>> masks(brick_grid_.x);  // of a row of bricks
-  std::int64_t cell = 0;
-  for (int bz = 0; bz < brick_grid_.z; ++bz)
-    for (int by = 0; by < brick_grid_.y; ++by) {
-      std::fill(masks.begin(), masks.end(), std::array<std::uint64_t, kBrick>{});
-      const int end_z = std::min((bz + 1) * kBrick, grid_size_.z), end_y = std::min((by + 1) * kBrick, grid_size_.y);
-      for (int z = bz * kBrick; z < end_z; ++z)
-        for (int y = by * kBrick; y < end_y; ++y) {
-          const Label* row = &volume.voxels[volume.grid.index({0, y, z})];
-          // Air, by far the most, is passed quickly.
-          for (int x = end_of_air(row, 0, grid_size_.x); x < grid_size_.x; x = end_of_air(row, x, grid_size_.x)) {
-            const int first = x & ~7;
-            x = std::min(first + kBrick, grid_size_.x);
-            masks[first / kBrick][z & 7] |= tissue_bits(row + first, x - first) << (8 * (y & 7));
-          }
-        }
-      for (int bx = 0; bx < brick_grid_.x; ++bx, ++cell) {
-        if (masks[bx] == std::array<std::uint64_t, kBrick>{}) continue;
-        Brick brick{glm::ivec3(bx, by, bz) * kBrick, size_, masks[bx]};
-        for (int z = 1; z < kBrick; ++z) brick.below[z] = static_cast<std::uint16_t>(brick.below[z - 1] + std::popcount(brick.mask[z - 1]));
-        const int count = brick.below[kBrick - 1] + std::popcount(brick.mask[kBrick - 1]);
-        brick_of_[cell] = static_cast<std::int32_t>(bricks_.size());
-        bricks_.push_back(brick);
-        size_ += count;
-      }
+  // A layer of bricks at a time; how many voxels and bricks come before is added up afterwards.
+  std::vector<std::vector<Brick>> layers(brick_grid_.z);
+  parallel_for(brick_grid_.z, 1, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t bz = begin; bz < end; ++bz) layers[bz] = bricks_of_layer(volume, static_cast<int>(bz));
+  });
+  for (std::vector<Brick>& layer : layers)
+    for (Brick& brick : layer) {
+      const glm::ivec3 cell = brick.corner / kBrick;
+      brick.first = size_;
+      size_ += brick.below[kBrick - 1] + std::popcount(brick.mask[kBrick - 1]);
+      brick_of_[cell.x + std::int64_t{brick_grid_.x} * (cell.y + std::int64_t{brick_grid_.y} * cell.z)] = static_cast<std::int32_t>(bricks_.size());
+      bricks_.push_back(brick);
     }
   if (size_ > kMostPlaces)
     throw Error("the volume has " + std::to_string(size_) + " tissue voxels", "of " + std::to_string(kMostPlaces) + " at most",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include <doctest/doctest.h>
 
@@ -273,14 +274,18 @@ TEST_CASE("joint cuts: a bone that hangs on the parent of the one it sits on is 
   CHECK(worst_share(fused({forearm, hand, wrist_bone, thumb}, rig, {76, 40, 122}, {1, 1, 1})) < 0.08);
 }
 
-TEST_CASE("joint cuts: two fingers grown together side by side are cut between them") {
+FusedBody fingers_side_by_side() {
   const std::vector<glm::dvec3> first = {{20, 20, 110}, {20, 20, 66}, {20, 20, 38}, {20, 20, 12}}, second = {{30, 20, 112}, {30, 20, 70}, {30, 20, 40}, {30, 20, 10}};
   Armature rig;
   add_chain(rig, "One", first);
   add_chain(rig, "Two", second);
   std::vector<Dumbbell> bones = finger(first, 0), others = finger(second, 3);
   bones.insert(bones.end(), others.begin(), others.end());
-  CHECK(worst_share(fused(bones, rig, {50, 40, 124}, {1, 1, 1})) < 0.03);
+  return fused(bones, rig, {50, 40, 124}, {1, 1, 1});
+}
+
+TEST_CASE("joint cuts: two fingers grown together side by side are cut between them") {
+  CHECK(worst_share(fingers_side_by_side()) < 0.03);
 }
 
 TEST_CASE("joint cuts: bow legs whose knees touch are four bones") {
@@ -347,17 +352,19 @@ TEST_CASE("joint cuts: depths after a cut are those of the graph that was cut") 
 
 TEST_CASE("joint cuts: one, two and four threads cut alike") {
   const std::vector<glm::dvec3> joints = {{20, 20, 112}, {20, 20, 70.3}, {20, 20, 38.6}, {20, 20, 14}};
-  for (const FusedBody& made : {coarse_leg({0, 0, 0}), rolling_finger(joints, ring_finger(joints), {0, 0})}) {
+  for (const FusedBody& made : {coarse_leg({0, 0, 0}), rolling_finger(joints, ring_finger(joints), {0, 0}), fingers_side_by_side()}) {
     const std::vector<TissueKind> kinds = made.body.tissues.kinds();
-    const BoneGraph graph = gather_bone(made.body.volume, TissueVoxels(made.body.volume), kinds);
     auto cut_with = [&](int threads) {
       const ThreadCount count(threads);
-      BoneGraph cut = graph;
-      cut_at_joints(cut, made.body.volume, kinds, made.body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
-      return cut.neighbour;
+      BoneGraph graph = gather_bone(made.body.volume, TissueVoxels(made.body.volume), kinds);
+      const auto whole = graph.neighbour;
+      JointCuts cuts = cut_at_joints(graph, made.body.volume, kinds, made.body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
+      CHECK(graph.neighbour != whole);
+      std::vector<std::array<int, 3>> beyond;
+      for (const BeyondJoint& b : cuts.beyond) beyond.push_back({b.voxel, b.bone, b.other});
+      return std::tuple(graph.place, graph.neighbour, beyond, cuts.depth, flood(graph, cuts.depth, 0.6));
     };
     const auto one = cut_with(1);
-    CHECK(one != graph.neighbour);
     CHECK(cut_with(2) == one);
     CHECK(cut_with(4) == one);
   }
