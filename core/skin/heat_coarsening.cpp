@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/pages.h"
 #include "core/base/parallel.h"
 #include "core/skin/heat_system.h"
 
@@ -26,6 +27,7 @@ class Coarsening {
         halved_(coarsened_axes(system.spacing)),
         parent_(system.brick_count() * kSlots),
         pieces_(system.brick_count()) {
+    want_large_pages(parent_.data(), static_cast<std::int64_t>(parent_.size() * sizeof(std::int32_t)));
     for (int slot = 0; slot < kSlots; ++slot) {
       const glm::ivec3 voxel = HeatSystem::voxel_of(slot), block = block_of(voxel);
       Block& own = blocks_[block.x + 8 * (block.y + 8 * block.z)];

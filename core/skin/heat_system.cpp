@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "core/base/pages.h"
 #include "core/base/parallel.h"
 
 namespace limber {
@@ -33,7 +34,7 @@ void make_zeros(std::size_t count, HeatValues& values) {
   const bool is_new = count > values.capacity();
   if (is_new) values = HeatValues();
   values.resize(count);
-  if (is_new) return;
+  if (is_new) return want_large_pages(values.data(), static_cast<std::int64_t>(count * sizeof(float)));
   parallel_for(static_cast<std::int64_t>(count), 1 << 16, [&](std::int64_t begin, std::int64_t end) { std::fill(&values[begin], &values[0] + end, 0.0f); });
 }
 }  // namespace
@@ -45,7 +46,7 @@ void HeatSystem::reset(std::vector<glm::ivec3> its_corners, std::vector<std::arr
   beside = std::move(its_neighbours);
   cells.assign(corners.size(), {});
   make_zeros((corners.size() + 1) * 6 * kColour, conductance);
-  diagonal.resize((corners.size() + 1) * kSlots);
+  make_zeros((corners.size() + 1) * kSlots, diagonal);
   parallel_for(std::ssize(corners) + 1, kGrain, [&](std::int64_t begin, std::int64_t end) {
     std::fill_n(&diagonal[begin * kSlots], (end - begin) * kSlots, 1.0f);
   });

@@ -224,18 +224,15 @@ void SoftBody::find_cells(std::int64_t brick, Window& window, std::vector<std::i
 }
 
 namespace {
-// Sorts the entries from `start` on, and makes one of those that are alike.
+// Adds what conducts to the entry from `start` on that is alike, or makes one. Neighbours are most often alike, so the last go first.
 template <class Entry, class IsLess>
-void add_up(std::vector<Entry>& entries, size_t start, const IsLess& is_less) {
-  std::stable_sort(entries.begin() + start, entries.end(), is_less);
-  size_t kept = start;
-  for (size_t i = start; i < entries.size(); ++i) {
-    if (kept > start && !is_less(entries[kept - 1], entries[i]))
-      entries[kept - 1].conductance += entries[i].conductance;
-    else
-      entries[kept++] = entries[i];
-  }
-  entries.resize(kept);
+void add_to(std::vector<Entry>& entries, size_t start, const Entry& entry, const IsLess& is_less) {
+  for (size_t k = entries.size(); k > start; --k)
+    if (!is_less(entries[k - 1], entry) && !is_less(entry, entries[k - 1])) {
+      entries[k - 1].conductance += entry.conductance;
+      return;
+    }
+  entries.push_back(entry);
 }
 }  // namespace
 
@@ -243,6 +240,8 @@ void add_up(std::vector<Entry>& entries, size_t start, const IsLess& is_less) {
 void SoftBody::link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of, std::vector<float>& diagonal,
                           std::vector<Link>& links, std::vector<HeldFace>& held) const {
   const size_t start = links.size(), held_start = held.size();
+  const auto is_less_link = [](const Link& a, const Link& b) { return a.from != b.from ? a.from < b.from : a.to < b.to; };
+  const auto is_less_held = [](const HeldFace& a, const HeldFace& b) { return a.cell != b.cell ? a.cell < b.cell : a.bone < b.bone; };
   for_soft(brick, window, [&](const glm::ivec3& v, std::int64_t place, int here) {
     const std::int32_t cell = cell_of[place];
     for (int direction = 0; direction < 6; ++direction) {
@@ -252,17 +251,17 @@ void SoftBody::link_cells(std::int64_t brick, Window& window, const std::vector<
       const float conducted = 0.25f * conductance(window, v, here, direction);
       diagonal[cell] += conducted;
       if (window.soft[there] == 0)
-        held.push_back({cell, held_by_[other], conducted});
+        add_to(held, held_start, {cell, held_by_[other], conducted}, is_less_held);
       else
-        links.push_back({cell, cell_of[other], conducted});
+        add_to(links, start, {cell, cell_of[other], conducted}, is_less_link);
     }
     if (const float g = attraction(place, v); g > 0) {
       diagonal[cell] += g;
-      held.push_back({cell, nearest_.bone[place], g});
+      add_to(held, held_start, {cell, nearest_.bone[place], g}, is_less_held);
     }
   });
-  add_up(links, start, [](const Link& a, const Link& b) { return a.from != b.from ? a.from < b.from : a.to < b.to; });
-  add_up(held, held_start, [](const HeldFace& a, const HeldFace& b) { return a.cell != b.cell ? a.cell < b.cell : a.bone < b.bone; });
+  std::sort(links.begin() + start, links.end(), is_less_link);
+  std::sort(held.begin() + held_start, held.end(), is_less_held);
 }
 
 SoftBody::Coarse SoftBody::coarse() const {

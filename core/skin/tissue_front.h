@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/pages.h"
 #include "core/base/parallel.h"
 #include "core/base/zeroed_vector.h"
 #include "core/volume/tissue_voxels.h"
@@ -30,6 +31,7 @@ class TissueFront {
       : grid_(volume.grid), tissue_(tissue), ways_(tissue.size()),
         width_(static_cast<float>(kWidth * std::min({grid_.spacing.x, grid_.spacing.y, grid_.spacing.z}))),
         domains_(std::clamp<std::size_t>(tissue.bricks().size() / kLeastBricks, 1, kMostDomains)) {
+    want_large_pages(ways_.data(), tissue.size() * static_cast<std::int64_t>(sizeof(Way)));
     for (Domain& domain : domains_) domain.sent.resize(domains_.size());
   }
 
