@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/cmd/pose_options.h"
 
-#include <charconv>
-#include <cmath>
 #include <set>
 
 #include "core/base/error.h"
 #include "core/cmd/command.h"
+#include "core/pose/flex_request.h"
 #include "core/pose/pose_io.h"
 #include "core/rig/motion_edit.h"
 #include "core/rig/up_axis.h"
@@ -14,24 +13,15 @@
 namespace limber::cmd {
 
 namespace {
-void apply_flex(Pose& pose, const Armature& armature, const std::string& request) {
-  const size_t equals = request.rfind('=');
-  double degrees = 0;
-  const char* end = request.data() + request.size();
-  const char* begin = equals == request.npos ? end : request.data() + equals + 1;
-  if (begin != end && *begin == '+') ++begin;
-  const auto [stop, error] = std::from_chars(begin, end, degrees);
-  if (equals == 0 || error != std::errc() || stop != end || !std::isfinite(degrees))
-    throw Error("this is no flex", "--flex " + request, "write BONE=DEG, as in --flex Forearm=45");
-  flex(pose, armature, require_bone(armature, request.substr(0, equals)), degrees);
-}
-
 // Joints by their names, then hinges.
 void apply_requests(Pose& pose, const Armature& armature, const PoseOptions& options, std::set<std::string>& warnings) {
   std::vector<std::string> lines;
   pose = with_request(armature, pose, options.body, lines);
   warnings.insert(lines.begin(), lines.end());
-  for (const std::string& request : options.flex) apply_flex(pose, armature, request);
+  for (const std::string& request : options.flex) {
+    const FlexRequest asked = parse_flex_request(request, "--flex");
+    flex(pose, armature, require_bone(armature, asked.bone), asked.degrees);
+  }
 }
 
 // Of one frame, or of all.

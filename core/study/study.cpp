@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json_text.h"
+#include "core/pose/flex_request.h"
 
 namespace limber {
 
@@ -107,6 +108,7 @@ class Reader {
     StudyPose pose{.name = text(value["name"], "name")};
     if (pose.name.size() > kLongestName) refuse("the name is too long", where + ", name", "write " + std::to_string(kLongestName) + " letters at most");
     pose.flex = texts(value, "flex", where);
+    for (const std::string& request : pose.flex) parse_flex_request(request, path_.string() + ", " + where + ", flex");
     pose.body = body_request(value, where);
     pose.pose = file(value, "pose");
     pose.motion = file(value, "motion");

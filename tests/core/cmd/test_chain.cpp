@@ -227,6 +227,7 @@ TEST_CASE("command line: an output that cannot be written is refused in one line
            {"resample", volume, "--rig", rig, "--method", "lbs", "-o", "/no/such/o.nrrd"},
            {"resample", volume, "--rig", rig, "--method", "lbs", "-o", out, "--field", arm.folder / "f.xyz"},
            {"resample", volume, "--rig", rig, "--method", "lbs", "-o", out, "--flex", "Forearm=nan"},
+           {"resample", volume, "--rig", rig, "--method", "lbs", "-o", out, "--flex", "Forearm=1e308"},
            {"resample", volume, "--rig", rig, "--method", "lbs", "-o", out, "--motion", arm.motion, "--frame", "99999"},
            {"prepare", volume, "-o", out, "--statistics", "/no/such/s.csv"},
            {"prepare", volume, "-o", out, "--spacing", "1e9"},
