@@ -17,10 +17,20 @@ constexpr int kDragSteps = 8;             // moves of a drag, as a slow hand mak
 constexpr double kLongestJob = 300;       // s
 constexpr int kLongestSettling = 20'000;  // frames
 
-double number(const std::string& word) {
+// What a script may ask for, so that a wrong number is told and not acted on.
+constexpr double kFarthestMove = 20'000;   // pixels
+constexpr double kLargestWindow = 16'384;  // pixels
+constexpr double kMostSteps = 1000;        // of the wheel
+constexpr double kLongestWait = 3600;      // s
+
+double number(const std::string& word, double least = -kFarthestMove, double most = kFarthestMove) {
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) throw Error("a number is expected", "'" + word + "'", "correct the script");
+  if (error != std::errc() || end != word.data() + word.size() || !(value >= least && value <= most)) {
+    char range[80];
+    std::snprintf(range, sizeof range, "write a number from %g to %g", least, most);
+    throw Error("a number is expected", "'" + word + "'", range);
+  }
   return value;
 }
 
@@ -221,7 +231,7 @@ void Player::play_line(const ScriptLine& line, const Path& folder) {
     host_.events.push(PointerMoved{place_of(words[1])});
     hold(words, 3, true);
     settle();
-    const int steps = static_cast<int>(number(words[2]));
+    const int steps = static_cast<int>(number(words[2], -kMostSteps, kMostSteps));
     for (int i = 0; i < std::abs(steps); ++i) {
       host_.events.push(Wheeled{steps > 0 ? 1.0f : -1.0f});
       step();
@@ -258,11 +268,11 @@ void Player::play_line(const ScriptLine& line, const Path& folder) {
     settle();
   } else if (command == "resize") {
     need(words, 3);
-    host_.resize({static_cast<int>(number(words[1])), static_cast<int>(number(words[2]))});
+    host_.resize({static_cast<int>(number(words[1], 1, kLargestWindow)), static_cast<int>(number(words[2], 1, kLargestWindow))});
     settle();
   } else if (command == "wait") {
     need(words, 2);
-    for (const double end = now_ + number(words[1]); now_ < end;) step();
+    for (const double end = now_ + number(words[1], 0, kLongestWait); now_ < end;) step();
   } else if (command == "wait-job") {
     wait_for_jobs();
   } else if (command == "wait-idle") {

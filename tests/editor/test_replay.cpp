@@ -376,6 +376,13 @@ TEST_CASE("script: a wrong line is named") {
   CHECK_THROWS_WITH_AS(test.play("type \"no end"), doctest::Contains("line 1"), Error);
 }
 
+TEST_CASE("script: a number that no window or hand reaches is refused, and nothing waits for ever") {
+  SmallEditor test;
+  for (const char* line : {"wait nan", "wait inf", "wait 1e308", "wait -1", "resize 0 500", "resize 1e9 500", "resize nan 500",
+                           "move 1e308 0", "wheel \"3D view/view\" 1e9", "drag \"3D view/view\" inf 0"})
+    CHECK_THROWS_WITH_AS(test.play(line), doctest::Contains("a number from"), Error);
+}
+
 TEST_CASE("replay: a face of the clip box follows its handle, shown while dragged, one edit at the end") {
   SmallEditor test;
   test.play("key Num1\n wait 0.3\n key Alt+B\n wait-idle");
