@@ -16,6 +16,7 @@ using Json = nlohmann::json;
 namespace {
 
 constexpr const char* kSchema = "limber-editor/1";
+constexpr double kFarthest = 1e6;  // mm, from which a place is seen or lies
 
 template <class Vector>
 Json json_of(const Vector& v) {
@@ -50,7 +51,7 @@ bool take_vector(const Json& json, const char* key, Vector& value) {
   if (found == json.end() || !found->is_array() || std::ssize(*found) != Vector::length()) return false;
   Vector read = value;
   for (int i = 0; i < Vector::length(); ++i) {
-    if (!(*found)[i].is_number() || !std::isfinite((*found)[i].template get<double>())) return false;
+    if (!(*found)[i].is_number() || !(std::abs((*found)[i].template get<double>()) <= kFarthest)) return false;
     read[i] = (*found)[i].template get<typename Vector::value_type>();
   }
   value = read;
@@ -69,7 +70,7 @@ void restore(const Json& json, render::Camera& camera) {
   if (!take_vector(json, "world_from_view", turn) || !take_vector(json, "centre", centre) || std::abs(glm::length(turn) - 1) > 1e-3) return;
   camera.centre = centre;
   camera.world_from_view = glm::normalize(glm::dquat(turn[0], turn[1], turn[2], turn[3]));
-  take(json, "distance", 1e-2, 1e6, camera.distance);
+  take(json, "distance", 1e-2, kFarthest, camera.distance);
   take_choice(json, "projection", 2, camera.projection);
 }
 

@@ -89,6 +89,7 @@ Remembered read_remembered(const Path& file, std::string& warning) {
   take(json, "show_start", remembered.show_start);
   take(json, "hidden_files", remembered.hidden_files);
   take(json, "tour_step", remembered.tour_step);
+  remembered.tour_step = std::max(remembered.tour_step, 0);
   return remembered;
 }
 

@@ -13,6 +13,8 @@ namespace limber::editor {
 
 namespace {
 
+constexpr std::uint64_t kLargestFile = 1 << 20;
+
 struct Token {
   const char* name;
   Colour& (*colour)(Theme&);
@@ -70,7 +72,7 @@ double relative_luminance(Colour colour) {
 }  // namespace
 
 Theme read_theme(const Path& path) {
-  const auto json = nlohmann::json::parse(checked_json(read_file(path), path.string()), nullptr, false);
+  const auto json = nlohmann::json::parse(checked_json(read_file(path, kLargestFile), path.string()), nullptr, false);
   if (!json.is_object() || json.value("schema", nlohmann::json()) != "limber-theme/1" || !json.contains("colours"))
     throw Error("this is not a theme", path.string(), "choose another theme");
   Theme theme;

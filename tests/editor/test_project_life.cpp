@@ -3,6 +3,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <regex>
 #include <thread>
 
 #include <sys/resource.h>
@@ -85,6 +86,28 @@ TEST_CASE("project: state of the editor that is nested a million deep is left ou
   Sitting sitting(home.folder.path(), {home / "deep.limber"});
   sitting.play("expect name deep.limber\n expect toast \"Views and tools begin anew\"");
   CHECK(sitting.editor().document().volume != nullptr);
+}
+
+TEST_CASE("project: whatever numbers the state of the editor holds, places stay near enough to be drawn") {
+  SmallEditor test;
+  const std::string sound = editor_state(*test.editor);
+  const std::regex numbers("-?[0-9]+(\\.[0-9]+)?(e[-+]?[0-9]+)?");
+  std::vector<std::pair<std::ptrdiff_t, std::ptrdiff_t>> places;
+  for (std::sregex_iterator at(sound.begin(), sound.end(), numbers), end; at != end; ++at) places.emplace_back(at->position(), at->length());
+  REQUIRE(places.size() > 30);
+  for (const char* number : {"1e308", "-1e308", "1e300", "-1", "4294967296", "1e-300", "null", "[]", "\"1\""})
+    for (const auto& [at, length] : places) {
+      INFO(number, " at ", at, " of ", sound);
+      restore_editor_state(*test.editor, sound.substr(0, at) + number + sound.substr(at + length));
+      const editor::Views& views = *test.editor->views;
+      for (int axis = 0; axis < 3; ++axis) {
+        CHECK(std::abs(views.cross_hair[axis]) <= 1e6);
+        CHECK(std::abs(views.body.camera.centre[axis]) <= 1e6);
+      }
+      CHECK(std::abs(glm::length(views.body.camera.world_from_view) - 1) < 1e-6);
+      for (const editor::SliceState& slice : views.slices) CHECK(slice.camera.millimetres_per_pixel > 0);
+    }
+  test.player.settle();
 }
 
 TEST_CASE("project: unsaved edits are asked about before New, Open and Quit, and Cancel changes nothing") {

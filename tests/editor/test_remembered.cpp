@@ -49,3 +49,12 @@ TEST_CASE("remembered: a damaged file is set aside with a message, and odd value
   CHECK(remembered.show_start);
   CHECK(remembered.tour_step == 0);
 }
+
+TEST_CASE("remembered: the tour has no step before its first") {
+  const TemporaryFolder folder;
+  for (const auto& [kept, step] : {std::pair{"-4", 0}, {"4", 4}}) {
+    std::ofstream(folder / "remembered.json") << R"({"schema": "limber-remembered/1", "tour_step": )" << kept << "}";
+    std::string warning;
+    CHECK(read_remembered(folder / "remembered.json", warning).tour_step == step);
+  }
+}
