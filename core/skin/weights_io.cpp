@@ -3,21 +3,19 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <map>
-#include <optional>
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/deflate.h"
 #include "core/base/error.h"
 #include "core/base/json_text.h"
 #include "core/skin/best_four.h"
 #include "core/volume/volume_io.h"
+#include "core/volume/nrrd_header.h"
 #include "core/volume/seam_text.h"
+#include "core/volume/voxel_source.h"
 
 namespace limber {
 
@@ -41,33 +39,7 @@ std::string text_of(const glm::ivec3& size) {
   return std::to_string(size.x) + " " + std::to_string(size.y) + " " + std::to_string(size.z);
 }
 
-constexpr std::size_t kLongestHeader = 1 << 20;
-
-using Header = std::map<std::string, std::string>;  // fields as "type" and "sizes", keys as "limber_bones"
-
-// Up to the empty line that ends it; the data follow.
-Header read_header(std::istream& in, const std::string& where) {
-  Header header;
-  std::size_t read = 0;
-  bool begins = true;
-  for (std::string line;; line.clear()) {
-    char c = 0;
-    while (in.get(c) && c != '\n' && ++read < kLongestHeader) line += c;
-    if (begins && line.compare(0, 7, "NRRD000") != 0)
-      throw Error("these are no weights", where, "give a W.nrrd, a folder of weight_NN.mha or Bender's skin map");
-    if (!in || read >= kLongestHeader) throw Error("the header of the weights has no end", where, kMakeAnew);
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty()) return header;
-    const bool is_field = !begins && line[0] != '#';
-    begins = false;
-    if (!is_field) continue;
-    const std::size_t key_mark = line.find(":="), field_mark = line.find(": ");
-    if (key_mark != std::string::npos && key_mark <= field_mark)
-      header[line.substr(0, key_mark)] = line.substr(key_mark + 2);
-    else if (field_mark != std::string::npos)
-      header[line.substr(0, field_mark)] = line.substr(field_mark + 2);
-  }
-}
+constexpr std::size_t kLongestSeams = 1 << 19;  // letters; longer ones are not kept with weights
 
 // Place in the rig of each of the file's bones.
 std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::string& where, const Armature& armature) {
@@ -83,60 +55,6 @@ std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::str
   }
   return in_rig;
 }
-
-// The numbers behind the header, as they are or inflated.
-class WeightData {
- public:
-  WeightData(std::istream& in, const std::string& encoding, const std::string& where) : in_(in), where_(where) {
-    if (encoding == "gzip" || encoding == "gz")
-      inflater_.emplace();
-    else if (encoding != "raw")
-      throw Error("the weights are encoded as " + encoding.substr(0, 40), where, "save them raw or gzip");
-  }
-
-  void read(void* to, std::size_t size) {
-    if (!inflater_) {
-      if (!in_.read(static_cast<char*>(to), static_cast<std::streamsize>(size))) fail("too short");
-      return;
-    }
-    for (std::size_t done = 0; done < size;) {
-      const std::size_t made = inflate(static_cast<char*>(to) + done, size - done);
-      if (made == 0) fail("damaged or too short");
-      done += made;
-    }
-  }
-
-  // After the last number.
-  void expect_end() {
-    char beyond;
-    if (inflater_ && (inflate(&beyond, 1) > 0 || !inflater_->ended())) fail("damaged or too long");
-    if (!inflater_ && in_.peek() != std::istream::traits_type::eof()) fail("too long");
-  }
-
- private:
-  // Nothing where the stream has ended.
-  std::size_t inflate(char* to, std::size_t room) {
-    for (;;) {
-      if (inflater_->ended()) return 0;
-      if (packed_.empty()) {
-        in_.read(buffer_.data(), std::ssize(buffer_));
-        packed_ = {buffer_.data(), static_cast<std::size_t>(in_.gcount())};
-      }
-      const Inflater::Step step = inflater_->inflate(packed_, to, room);
-      packed_.remove_prefix(step.taken);
-      if (step.damaged) fail("damaged");
-      if (step.made > 0 || step.taken == 0) return step.made;
-    }
-  }
-
-  [[noreturn]] void fail(const std::string& how) const { throw Error("the weights are " + how, where_, kMakeAnew); }
-
-  std::istream& in_;
-  const std::string& where_;
-  std::optional<Inflater> inflater_;
-  std::array<char, 1 << 16> buffer_;
-  std::string_view packed_;  // of the buffer, still to be inflated
-};
 
 // By falling weight, bones as the rig numbers them. Throws for what no writer of ours makes.
 void accept(Influence& influence, const std::vector<std::uint16_t>& in_rig, const std::string& where) {
@@ -237,26 +155,9 @@ WeightsFile read_bender_map(const Path& path, const LabelVolume& volume, const T
   result.weights = best.weights(names_of(armature));
   return result;
 }
-}  // namespace
 
-WeightsFile parse_weights(std::istream& in, const std::string& where, const LabelVolume& volume, const TissueVoxels& tissue,
-                          const Armature& armature) {
-  const Header header = read_header(in, where);
-  auto field = [&](const std::string& name) {
-    const auto found = header.find(name);
-    if (found == header.end()) throw Error("the weights lack the field " + name, where, kMakeAnew);
-    return found->second;
-  };
-  const std::string type = field("type");
-  if (type != "unsigned short" && type != "ushort" && type != "uint16" && type != "uint16_t")
-    throw Error("the weights are of type " + type.substr(0, 40), where, "they should be unsigned short");
-  if (field("endian") != "little") throw Error("the weights are not little-endian", where, kMakeAnew);
-  if (field("limber_size") != text_of(volume.grid.size) || field("sizes") != "8 " + std::to_string(tissue.size()) ||
-      field("limber_tissue_sha256") != tissue_sha256(tissue))
-    throw Error("the weights belong to another volume", where, "give the volume they were made for, or " + std::string(kMakeAnew));
-  const std::vector<std::uint16_t> in_rig = bones_in_rig(field("limber_bones"), where, armature);
-
-  WeightData data(in, field("encoding"), where);
+std::vector<std::shared_ptr<const SkinWeights::Chunk>> read_chunks(VoxelSource& data, const TissueVoxels& tissue, const std::vector<std::uint16_t>& in_rig,
+                                                                   const std::string& where) {
   std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
   chunks.reserve(tissue.bricks().size());
   for (const auto& brick : tissue.bricks()) {
@@ -265,12 +166,33 @@ WeightsFile parse_weights(std::istream& in, const std::string& where, const Labe
     for (Influence& influence : influences) accept(influence, in_rig, where);
     chunks.push_back(std::make_shared<const SkinWeights::Chunk>(influences));
   }
-  data.expect_end();
-  WeightsFile file{{names_of(armature), std::move(chunks)}, {}};
-  if (const auto text = header.find("limber_seams"); text != header.end())
+  if (const auto beyond = data.finish(); !beyond.empty()) throw Error("the weights are too long", where, kMakeAnew);
+  return chunks;
+}
+
+WeightsFile read_nrrd(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature) {
+  const std::string where = path.string();
+  const OpenedVolume opened = open_volume(path, no_progress(), Holding::Weights);
+  const VolumeHeader& header = opened.header;
+  const auto key = [&](const char* name) {
+    const auto found = header.keys.find(name);
+    if (found == header.keys.end()) throw Error(std::string("the file holds no weights: it lacks the key ") + name, where, kMakeAnew);
+    return found->second;
+  };
+  const std::vector<std::uint16_t> in_rig = bones_in_rig(key(kWeightsKey), where, armature);
+  if (header.voxel_type != VoxelType::UInt16)
+    throw Error("the weights are of type " + std::string(to_string(header.voxel_type)), where, "they should be unsigned short");
+  if (header.big_endian) throw Error("the weights are not little-endian", where, kMakeAnew);
+  const glm::ivec3& numbers = header.grid.size;
+  if (key("limber_size") != text_of(volume.grid.size) || numbers.x != 8 || numbers.y != tissue.size() || numbers.z != 1 ||
+      key("limber_tissue_sha256") != tissue_sha256(tissue))
+    throw Error("the weights belong to another volume", where, "give the volume they were made for, or " + std::string(kMakeAnew));
+  WeightsFile file{{names_of(armature), read_chunks(*opened.voxels, tissue, in_rig, where)}, header.warnings};
+  if (const auto text = header.keys.find("limber_seams"); text != header.keys.end())
     file.seams = text->second.empty() ? nullptr : std::make_shared<const Seams>(seams_of_text(text->second, volume.grid.size, where));
   return file;
 }
+}  // namespace
 
 WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature) {
   std::error_code error;
@@ -278,9 +200,7 @@ WeightsFile read_weights(const Path& path, const LabelVolume& volume, const Tiss
   const std::string extension = path.extension().string();
   if (extension == ".mha" || extension == ".mhd") return read_bender_map(path, volume, tissue, armature);
   if (!fs::is_regular_file(path, error)) throw Error("there is no such file of weights", path.string(), "name a file on disk");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
-  return parse_weights(in, path.string(), volume, tissue, armature);
+  return read_nrrd(path, volume, tissue, armature);
 }
 
 void check_weights_writable(const Path& path) {
@@ -294,11 +214,11 @@ void write_weights(const SkinWeights& weights, const LabelVolume& volume, const 
   std::string seam_line;
   if (seams == SeamsOfWeights::OfTissue) {
     const std::string text = tissue.seams() ? text_of_seams(*tissue.seams()) : "";
-    if (text.size() < kLongestHeader / 2) seam_line = "\nlimber_seams:=" + text;
+    if (text.size() < kLongestSeams) seam_line = "\nlimber_seams:=" + text;
   }
   const nlohmann::json names = weights.bones();
   const std::string header = "NRRD0005\ntype: unsigned short\ndimension: 2\nsizes: 8 " + std::to_string(tissue.size()) +
-                             "\nendian: little\nencoding: raw\nlimber_bones:=" + names.dump() + "\nlimber_size:=" + text_of(volume.grid.size) +
+                             "\nendian: little\nencoding: raw\nlimber_bones:=" + nrrd_escaped(names.dump()) + "\nlimber_size:=" + text_of(volume.grid.size) +
                              "\nlimber_tissue_sha256:=" + tissue_sha256(tissue) + seam_line + "\n\n";
   write_atomically(path, [&](const Path& temporary) {
     std::ofstream out(temporary, std::ios::binary);

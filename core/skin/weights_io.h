@@ -10,7 +10,6 @@
 // goes to the rig bone nearest to it, which is said in `warnings`.
 #pragma once
 
-#include <istream>
 #include <memory>
 #include <optional>
 
@@ -27,6 +26,7 @@ struct WeightsFile {
   std::optional<std::shared_ptr<const Seams>> seams = {};
 };
 
+// Parsed by a process without rights, as volumes are (volume_reader.h).
 // Throws Error when the file is damaged, does not belong to this tissue or names a bone that the rig lacks.
 WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature);
 // Throws Error when no weights can be written under this name.
@@ -38,9 +38,5 @@ void write_weights(const SkinWeights& weights, const LabelVolume& volume, const 
 // The folder is made if need be.
 void write_bender_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
                           const Path& folder);
-
-// Of a W.nrrd; `where` names the file in messages.
-WeightsFile parse_weights(std::istream& in, const std::string& where, const LabelVolume& volume, const TissueVoxels& tissue,
-                          const Armature& armature);
 
 }  // namespace limber

@@ -429,6 +429,17 @@ class NrrdReader {
 };
 }  // namespace
 
+std::string nrrd_escaped(std::string_view value) {
+  std::string safe;
+  for (const char c : value) {
+    if (c == '\\') safe += "\\\\";
+    else if (c == '\n') safe += "\\n";
+    else if (c == '\r') safe += ' ';
+    else safe += c;
+  }
+  return safe;
+}
+
 bool looks_like_nrrd_header(std::string_view bytes) {
   return bytes.size() >= 8 && bytes.substr(0, 7) == "NRRD000" && bytes[7] >= '1' && bytes[7] <= '5';
 }

@@ -4,6 +4,7 @@
 // is passed over. SegmentN_ keys give names and colours, as 3D Slicer writes them.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "core/volume/volume_header.h"
@@ -15,5 +16,8 @@ bool looks_like_nrrd_header(std::string_view bytes);
 //   bytes  the file's first bytes            where  the file, for messages
 //   throws Error for anything but one scalar volume of 1 to 3 axes that is described without contradiction
 VolumeHeader parse_nrrd_header(std::string_view bytes, const std::string& where);
+
+// The value of a `key:=value` line as it is written: backslashes and line ends are escaped.
+std::string nrrd_escaped(std::string_view value);
 
 }  // namespace limber

@@ -17,6 +17,7 @@
 #include "core/base/error.h"
 #include "core/volume/header_text.h"
 #include "core/volume/nifti_header.h"
+#include "core/volume/nrrd_header.h"
 #include "core/volume/vector_volume_io.h"
 #include "core/volume/virtual_family.h"
 #include "core/volume/volume_header.h"
@@ -126,17 +127,6 @@ std::string_view nrrd_type_name(VoxelType type) {
   return to_string(type);
 }
 
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (char c : text) {
-    if (c == '\\') safe += "\\\\";
-    else if (c == '\n') safe += "\\n";
-    else if (c == '\r') safe += ' ';
-    else safe += c;
-  }
-  return safe;
-}
-
 std::vector<std::pair<std::string, std::string>> segment_keys(const TissueTable& tissues, const Grid& grid) {
   const bool named = std::any_of(tissues.tissues.begin(), tissues.tissues.end(), [](const Tissue& t) { return !t.name.empty(); });
   if (!named) return {};
@@ -169,8 +159,8 @@ std::string nrrd_header(const Voxels& voxels, const std::string& data_name) {
   text += std::string("encoding: ") + (voxels.compress ? "gzip" : "raw") + "\nspace origin: (" + joined(grid.origin, ",") + ")\n";
   if (!data_name.empty()) text += "data file: " + data_name + "\n";
   if (!voxels.description.empty()) text += "content: " + voxels.description + "\n";
-  for (const auto& [key, value] : voxels.keys) text += key + ":=" + escaped(value) + "\n";
-  for (const auto& [key, value] : segment_keys(voxels.tissues, grid)) text += key + ":=" + escaped(value) + "\n";
+  for (const auto& [key, value] : voxels.keys) text += key + ":=" + nrrd_escaped(value) + "\n";
+  for (const auto& [key, value] : segment_keys(voxels.tissues, grid)) text += key + ":=" + nrrd_escaped(value) + "\n";
   return text + "\n";
 }
 

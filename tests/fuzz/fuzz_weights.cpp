@@ -3,8 +3,10 @@
 // seams lie in the volume.
 #include <cstdint>
 #include <cstdlib>
-#include <sstream>
+#include <fstream>
 #include <string>
+
+#include <unistd.h>
 
 #include "core/base/error.h"
 #include "core/skin/weights_io.h"
@@ -32,9 +34,10 @@ struct Bar {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Bar bar;
+  static const limber::Path path = std::filesystem::temp_directory_path() / ("fuzz-weights-" + std::to_string(::getpid()) + ".nrrd");
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
-    std::istringstream in(std::string(reinterpret_cast<const char*>(data), size));
-    const limber::WeightsFile file = limber::parse_weights(in, "f", bar.volume, bar.tissue, bar.armature);
+    const limber::WeightsFile file = limber::read_weights(path, bar.volume, bar.tissue, bar.armature);
     const limber::SkinWeights& weights = file.weights;
     if (weights.size() != bar.tissue.size()) std::abort();
     for (std::int64_t c = 0; c < weights.chunk_count(); ++c)
