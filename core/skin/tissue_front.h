@@ -76,10 +76,10 @@ class TissueFront {
       }
       for (Domain& domain : domains_) {
         domain.done = 0;
-        if (bucket < domain.buckets.size()) domain.buckets[bucket] = {};
+        if (bucket < domain.buckets.size()) domain.finish(bucket);
       }
     }
-    for (Domain& domain : domains_) domain.buckets.clear();
+    for (Domain& domain : domains_) domain.buckets.clear(), domain.spare.clear();
   }
 
  private:
@@ -105,7 +105,23 @@ class TissueFront {
     Way way;
   };
   struct Domain {
+    // Few buckets are open at a time: their memory goes round. That of the first, which may be far larger, does not.
+    void finish(std::size_t bucket) {
+      std::vector<Reached> done_with = std::move(buckets[bucket]);
+      done_with.clear();
+      if (bucket > 0 && done_with.capacity() > 0) spare.push_back(std::move(done_with));
+    }
+    std::vector<Reached>& open(std::size_t bucket) {
+      if (bucket >= buckets.size()) buckets.resize(bucket + 1);
+      if (buckets[bucket].capacity() == 0 && !spare.empty()) {
+        buckets[bucket] = std::move(spare.back());
+        spare.pop_back();
+      }
+      return buckets[bucket];
+    }
+
     std::vector<std::vector<Reached>> buckets;  // by length of the way
+    std::vector<std::vector<Reached>> spare;    // empty ones
     std::size_t done = 0;                       // of the bucket that is worked on
     std::vector<std::vector<Step>> sent;        // to each domain
   };
@@ -165,9 +181,7 @@ class TissueFront {
   }
 
   void add(Domain& domain, const Reached& reached, std::size_t present) {
-    const std::size_t bucket = std::max(present, static_cast<std::size_t>(reached.way / width_));
-    if (bucket >= domain.buckets.size()) domain.buckets.resize(bucket + 1);
-    domain.buckets[bucket].push_back(reached);
+    domain.open(std::max(present, static_cast<std::size_t>(reached.way / width_))).push_back(reached);
   }
 
   std::size_t bucket_count() const {
