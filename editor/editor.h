@@ -131,6 +131,7 @@ struct Editor {
   ProjectLife life;
   std::vector<std::function<bool(Editor&)>> each_frame;  // called once a frame until they return false
   Path project_path;  // empty: never saved
+  std::vector<NamedFile> inputs;  // what the project was read from since it was opened: never written over
   std::string shown_title;  // of the window
   std::string name;   // of the project or of the volume opened last
   std::vector<Path> to_open;  // dropped on the window, or given on the command line

@@ -18,6 +18,7 @@
 #include "core/volume/dicom.h"
 #include "core/volume/grey_image.h"
 #include "core/volume/phantom.h"
+#include "core/volume/volume_files.h"
 #include "core/volume/volume_io.h"
 #include "editor/layers.h"
 #include "editor/panels/grey_image.h"
@@ -71,6 +72,27 @@ Document with_volume(const VolumeFile& file) {
   throw Error(what, path.string(), what_to_do);
 }
 
+std::string name_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::Project: return "the project";
+    case FileKind::Volume: return "the volume";
+    case FileKind::Tissues: return "the tissues";
+    case FileKind::Rig: return "the rig";
+    case FileKind::Weights: return "the weights";
+    case FileKind::Motion: return "the motion";
+    case FileKind::Pose: return "the pose";
+  }
+  return "";
+}
+
+// The file, and what is read with a volume.
+std::vector<NamedFile> inputs_of(FileKind kind, const Path& path) {
+  std::vector<NamedFile> inputs;
+  for (const Path& file : kind == FileKind::Volume ? files_of_volume(path) : std::vector<Path>{path})
+    inputs.push_back({name_of(kind), file});
+  return inputs;
+}
+
 // ---- work: reads beside the editor, fits against the document as it was then
 
 // A volume's file: labels, a grey image, or both where whole values look like one.
@@ -110,6 +132,7 @@ struct Import {
   std::vector<std::string> warnings;
   double inside = 1;  // of a rig: the share of its bones' length that is in tissue
   ReadVolume read = {};  // of a volume
+  std::vector<NamedFile> inputs = {};
 };
 
 Import read_tissues(const Path& path, const Document& now) {
@@ -279,6 +302,7 @@ void open_volume(Editor& editor, const Path& path, Then then) {
       opened->document = with_volume(file);
       opened->document.volume = shared(std::move(file.volume));
       opened->extents = shared(extents_of(opened->document.volume));
+      opened->inputs = inputs_of(FileKind::Volume, path);
       opened->name = path.stem().string();
       opened->label = "Open " + path.filename().string();
       opened->agreed = agreed;
@@ -300,12 +324,14 @@ void open_volume(Editor& editor, const Path& path, Then then) {
 void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
   const int job = start_task(editor, imported(path), [kind, path, then, before = editor.document()](Progress& progress) -> Finish {
     auto import = std::make_shared<Import>(read_import(kind, path, before, progress));
+    import->inputs = inputs_of(kind, path);
     const Finish take = [import, kind, path, then, before](Editor& e) {
       if (!same_basis(kind, before, e.document()))
         refuse("the project changed while the file was read", path, "import it once more");
       Document next = e.document();
       import->change(next);
       commit(e, imported(path), std::move(next));
+      e.inputs.insert(e.inputs.end(), import->inputs.begin(), import->inputs.end());
       warn_of(e, path, import->warnings);
       if (kind == FileKind::Volume) {
         e.selection = {};

@@ -134,6 +134,7 @@ void replace_project(Editor& editor, std::shared_ptr<Opened> opened) {
   ProjectLife life;
   life.session = opened->session;
   life.recoverable = std::move(editor.life.recoverable);
+  editor.inputs = opened->inputs;
   editor.life = std::move(life);
   editor.history.reset(opened->document, opened->label);
   editor.life.kept_revision = editor.history.revision();

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/named_files.h"
 #include "core/project/session.h"
 #include "editor/extents.h"
 
@@ -39,6 +40,7 @@ struct Opened {
   std::int64_t agreed = 0;           // the revision that the user agreed to leave
   bool recover = false;              // what a crash left of it is wanted, and needs no question
   Then then;                         // what goes on after it
+  std::vector<NamedFile> inputs;     // what it was read from, without a project's file
 };
 void replace_project(Editor& editor, std::shared_ptr<Opened> opened);
 

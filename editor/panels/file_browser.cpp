@@ -4,7 +4,8 @@
 
 #include <imgui_internal.h>
 
-#include "core/base/error.h"
+#include "core/base/named_files.h"
+#include "core/volume/volume_files.h"
 #include "editor/folders.h"
 #include "editor/panels/file_browser_dialog.h"
 
@@ -19,6 +20,21 @@ constexpr int kPage = 12;            // rows of PageUp and PageDown
 
 bool pressed(Key key, bool repeat = false) { return ImGui::IsKeyPressed(static_cast<int>(key), repeat); }
 bool pressed_return() { return pressed(Key::Return) || pressed(Key::NumEnter); }
+
+// Refuses, with a message, to write over what the project was read from. True when it has.
+bool refuses_to_write(Editor& editor, const Path& path, bool as_project) {
+  std::vector<NamedFile> inputs = editor.inputs, outputs;
+  if (!as_project && !editor.project_path.empty()) inputs.push_back({"the project", editor.project_path});
+  for (const Path& file : files_written_as(path)) outputs.push_back({"the file to write", file});
+  try {
+    check_apart(inputs, outputs);
+    return false;
+  } catch (const UsageError& error) {
+    const ErrorMessage message = parts_of(error.what());
+    editor.messages.warn(message.what, message.where + ": " + message.what_to_do);
+    return true;
+  }
+}
 
 }  // namespace
 
@@ -207,6 +223,7 @@ void FileBrowser::accept_name(Editor& editor) {
   const auto is_known = [&](const FileFilter& one) { return !one.ends.empty() && matches(one, path.filename().string()); };
   if (!filter.ends.empty() && std::none_of(request_.filters.begin(), request_.filters.end(), is_known)) path += filter.ends.front();
   if (!is_folder(path.parent_path())) return void(remark_ = "There is no folder " + short_path(path.parent_path()));
+  if (refuses_to_write(editor, path, request_.purpose == "project")) return;
   std::error_code error;
   if (fs::exists(path, error)) return void(replace_ = path);
   finish(editor, path);

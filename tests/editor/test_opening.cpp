@@ -156,6 +156,36 @@ TEST_CASE("import and export: each kind of file goes out through its menu and co
   CHECK(after.shown_clip()->motion->joints == before.shown_clip()->motion->joints);
 }
 
+TEST_CASE("export: what the project was read from is not written over, by whatever name") {
+  const TubeFiles files;
+  std::filesystem::create_symlink("tube.nrrd", files / "link.nrrd");
+  Sitting sitting(files.folder.path(), {files / "tube.nrrd", files / "rig.json", files / "weights.nrrd", files / "pose.json", files / "motion.bvh"});
+  sitting.play("wait-job");
+  import_file(sitting.editor(), FileKind::Tissues, files / "tissues.json");
+  sitting.play("wait-job\n expect error none");
+  const auto contents = [&] { return sha256_of_file(files.folder.path()); };
+  const std::string before = contents();
+  for (const auto& [kind, name] : {std::pair{"volume", "tube.nrrd"}, {"volume", "link.nrrd"}, {"rig", "rig.json"}, {"weights", "weights.nrrd"},
+                                   {"pose", "pose.json"}, {"motion", "motion.bvh"}, {"tissues", "tissues.json"}, {"pose", "rig.json"}}) {
+    INFO(std::string(name));
+    sitting.editor().messages.toasts.clear();
+    editor::run(sitting.editor(), std::string("file.export_") + kind);
+    sitting.play("expect dialog yes\n type " + std::string(name) + "\n key Return\n wait-job\n expect dialog yes\n expect toast \"The output is also an input\"\n key Escape");
+    CHECK(contents() == before);
+  }
+  editor::run(sitting.editor(), "file.export_rig");
+  sitting.play("type own.json\n key Return\n wait-job\n expect dialog no\n expect error none");
+  CHECK(std::filesystem::exists(files / "own.json"));
+}
+
+TEST_CASE("export: a project that is opened in another's place was read from other files") {
+  const TubeFiles files;
+  Sitting sitting(files.folder.path(), {files / "tube.nrrd"});
+  CHECK_FALSE(sitting.editor().inputs.empty());
+  sitting.open_ball();
+  CHECK(sitting.editor().inputs.empty());
+}
+
 TEST_CASE("export: the view is written as a picture, and turned all around without holding up the editor") {
   const Home home;
   Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"});
