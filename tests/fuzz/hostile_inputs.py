@@ -1,19 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Feeds the program with damaged and malicious files of every format that its commands read, and watches it.
+"""Feeds the program with damaged and malicious files of every format that it reads, and watches it.
 
-    hostile_inputs.py --program build/limber [--count 1000] [--seed 1] [--malformed FOLDER] [--keep FOLDER]
+    hostile_inputs.py --program build/limber [--count 1000] [--seed 1] [--first 0] [--malformed FOLDER] [--keep FOLDER]
 
 Small sound samples are made with the program itself, and by hand where it only reads a format. Each input is a sample with one to
 four mutations (bits, bytes, slices cut, doubled or exchanged, numbers made huge, nested JSON), chosen by the seed alone, or, one in
-five, a file of --malformed as it is. The program runs on each in a folder of its own, with 5 s of processor and HOME, TMPDIR and
-the working folder inside. Counted: crashes (an end by a signal), time-outs, more than 1 GB of memory, exit codes that are none of
+five, a file of --malformed as it is. What a project holds beside its chunks (the editor's state, its picture) is mutated inside the
+project. The program runs on each in a folder of its own, with 5 s of processor (the editor: 20 s) and HOME, TMPDIR and the working
+folder inside. The editor opens files, key maps and scripts without a display; its preferences and themes, which it reads only where
+it has a window or from its own installation, are the business of fuzz_editor_files.cpp. Counted: crashes (an end by a signal), time-outs, more than 1 GB of memory, exit codes that are none of
 the program's, errors that are no single line, and every file that was made, changed or deleted without being named as an output.
 The exit code is 0 when nothing was counted. With --keep the inputs that were counted are kept there, with the command.
 """
 import argparse
+import base64
 import collections
 import hashlib
+import json
 import os
 import pathlib
 import random
@@ -21,6 +25,7 @@ import re
 import resource
 import shutil
 import signal
+import sqlite3
 import struct
 import subprocess
 import sys
@@ -28,13 +33,15 @@ import tempfile
 import time
 
 CPU_SECONDS = 5
+EDITOR_SECONDS = 20
 WALL_SECONDS = 60
 MEMORY_KB = 1_000_000
 ADDRESS_BYTES = 4 << 30  # so that a claim of everything is refused by the system and not by the machine's end
+ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 NUMBERS = [b"-1", b"0", b"65536", b"4294967295", b"2147483648", b"9223372036854775807", b"1e308", b"-1e308", b"nan", b"inf", b"1e999"]
 
 
-def dicom():
+def dicom(z=0):
     def element(group, number, kind, value):
         if len(value) % 2:
             value += b"\0" if kind == b"UI" else b" "
@@ -48,7 +55,7 @@ def dicom():
     syntax = element(2, 0x10, b"UI", b"1.2.840.10008.1.2.1")
     head = b"\0" * 128 + b"DICM" + element(2, 0, b"UL", struct.pack("<I", len(syntax))) + syntax
     for group, number, kind, value in [
-            (8, 0x16, b"UI", b"1.2.840.10008.5.1.4.1.1.2"), (0x18, 0x50, b"DS", b"2"), (0x20, 0xe, b"UI", b"1.2.3"), (0x20, 0x32, b"DS", b"0\\0\\0"),
+            (8, 0x16, b"UI", b"1.2.840.10008.5.1.4.1.1.2"), (0x18, 0x50, b"DS", b"2"), (0x20, 0xe, b"UI", b"1.2.3"), (0x20, 0x32, b"DS", b"0\\0\\%d" % z),
             (0x20, 0x37, b"DS", b"1\\0\\0\\0\\1\\0"), (0x28, 2, b"US", word(1)), (0x28, 4, b"CS", b"MONOCHROME2"), (0x28, 0x10, b"US", word(4)),
             (0x28, 0x11, b"US", word(4)), (0x28, 0x30, b"DS", b"1\\1"), (0x28, 0x100, b"US", word(16)), (0x28, 0x101, b"US", word(16)),
             (0x28, 0x102, b"US", word(15)), (0x28, 0x103, b"US", word(0)), (0x28, 0x1052, b"DS", b"0"), (0x28, 0x1053, b"DS", b"1")]:
@@ -56,14 +63,32 @@ def dicom():
     return head + element(0x7fe0, 0x10, b"OW", bytes(range(32)))
 
 
+EDITOR_STATE = json.dumps({
+    "schema": "limber-editor/1", "workspace": 2, "display": 1, "slices": 1, "cross_hair": [1, 2, 3], "bones": True, "method": "fem", "tissue": 3,
+    "camera": {"centre": [0, 0, 0], "distance": 500, "world_from_view": [1, 0, 0, 0], "projection": 1}, "weights": {"display": 2, "contours": True},
+    "finite_elements": {"quality": "fine", "contact": True}, "slice_cameras": [{"centre": [0, 0, 0], "millimetres_per_pixel": 0.5}],
+    "arrangements": [{"views": 1, "sidebar": True}]}).encode()
+
+
+def gltf_of(glb):
+    """The text form of a .glb, its buffer inside."""
+    length, = struct.unpack_from("<I", glb, 12)
+    description = json.loads(glb[20:20 + length])
+    description["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(glb[28 + length:]).decode()
+    return json.dumps(description)
+
+
 class Samples:
     """Sound files, and for each the commands that read it."""
 
     def __init__(self, program, folder):
         self.folder = folder
-        self.cases = []  # (file to be damaged, words with {name} for files and {out} for the output's folder)
+        # (file to be damaged, or FILE#STATE for a state inside a project; words with {} for the file and {out} for the output's folder)
+        self.cases = []
         self.program = program
+        self.has_editor = subprocess.run([program, "editor", "--help"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
         self.make()
+        self.make_editor_files()
 
     def limber(self, *words):
         subprocess.run([self.program, *words], cwd=self.folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -76,27 +101,40 @@ class Samples:
         for name in ["v.mha", "v.mhd", "v.nii", "v.nii.gz", "v.hdr", "v.nhdr", "v.txt", "v.seg.nrrd"]:
             self.limber("convert", "volume.nrrd", name)
         self.limber("weights", "volume.nrrd", "--rig", "rig.json", "-o", "weights.nrrd")
-        self.limber("export-gltf", "volume.nrrd", "--rig", "rig.json", "--weights", "weights.nrrd", "-o", "body.glb")
         self.limber("surfaces", "volume.nrrd", "-o", "body.obj")
         self.limber("resample", "volume.nrrd", "--rig", "rig.json", "--flex", "Forearm=20", "--method", "lbs", "-o", "posed.nrrd", "--field", "field.nrrd")
         self.limber("project", "body.limber", "create", "volume.nrrd", "--rig", "rig.json", "--weights", "weights.nrrd", "--motion", "motion.bvh")
         self.write("image.dcm", dicom())
         self.write("pose.json", '{"bones": {"Forearm": {"axis": [0, 0, 1], "degrees": 20}}, "root_translation": [0, 0, 1]}')
         self.write("map.json", '{"Forearm": "Forearm", "@rests": {"motion": "T", "rig": "anatomical"}}')
-        self.write("bone_map.json", '{"1@left": "Forearm"}')
+        self.write("bone_map.json", '{"cortical bone": "Forearm"}')
         self.write("points.csv", "name,x,y,z\nelbow,1,2,3\n")
         self.write("case.json", '{"schema": "skin-ref/1", "bones": [{"rest": [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1], "pose": [1,0,0,5,0,1,0,0,0,0,1,0,0,0,0,1]}], '
                                 '"rest": [1, 2, 3], "influence_offsets": [0, 1], "influence_bones": [0], "influence_weights": [1]}')
         self.write("job.json", '{"command": "prepare", "volume": "volume.nrrd", "output": "out/job.nrrd", "pad": 1}')
         self.write("study.json", '{"volume": "volume.nrrd", "rig": "rig.json", "poses": [{"name": "bent", "flex": ["Forearm=20"]}], "methods": ["lbs"]}')
+        self.limber("experiment", "study.json", "-o", "out/study")
+        self.limber("prepare", "volume.nrrd", "--rig", "rig.json", "--seams", "seams.nrrd", "-o", "prepared.nrrd")
+        self.limber("export-gltf", "volume.nrrd", "--rig", "rig.json", "--weights", "weights.nrrd", "-o", "body.glb")
+        self.write("body.gltf", gltf_of((self.folder / "body.glb").read_bytes()))
         self.write("rig.vtk", self.bender_rig())
+        self.write("rig.arm", '<armature name="a" orientation="0 0 0 1"><bone name="Forearm" head="0 0 0" tail="0 0 9" orientation="0 0 0 1"/></armature>')
+        self.write("job2.json", '{"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "flex": ["Forearm=20"], "joints": ["elbow flexion=9"], '
+                                '"method": "lbs", "output": "out/job.nrrd", "report": "out/report.json"}')
+        self.write("table.ctbl", "# Color table\n1 skin 177 122 101 255\n2 fat 240 210 60 255\n")
+        self.write("table.label", '    1  177 122 101  1  1  1  "skin"\n    2  240 210 60  1  1  1  "fat"\n')
+        self.write("properties.csv", "\n".join((ASSETS / "tissues/dielectric.csv").read_text().splitlines()[:3]) + "\n")
+        (self.folder / "images").mkdir()
+        self.write("images/1.dcm", dicom())
+        self.write("images/2.dcm", dicom(2))
         for name in ["volume.nrrd", "v.mha", "v.mhd", "v.nii", "v.nii.gz", "v.hdr", "v.nhdr", "v.txt", "v.seg.nrrd", "image.dcm"]:
             self.add(name, ["info", "{}"], ["info", "{}", "--json"], ["convert", "{}", "{out}/a.nrrd"], ["prepare", "{}", "-o", "{out}/a.mha", "--crop"])
         for name, header in [("v.raw", "v.txt"), ("v.zraw", "v.mhd"), ("v.raw.gz", "v.nhdr"), ("v.img", "v.hdr")]:
             if (self.folder / name).exists():
                 self.add(name, ["info", header])
-        for name in ["rig.json", "rig.vtk", "motion.bvh", "body.glb", "body.obj"]:
+        for name in ["rig.json", "rig.vtk", "rig.arm", "motion.bvh", "body.glb", "body.gltf"]:
             self.add(name, ["info", "{}"], ["fk", "{}"], ["fk", "{}", "--json"], ["convert", "{}", "{out}/r.json"])
+        self.add("body.obj", ["info", "{}"])
         self.add("rig.json", ["weights", "volume.nrrd", "--rig", "{}", "--method", "rigid", "-o", "{out}/w.nrrd"])
         self.add("weights.nrrd", ["info", "{}"], ["resample", "volume.nrrd", "--rig", "rig.json", "--weights", "{}", "--flex", "Forearm=20", "--method", "lbs", "-o", "{out}/p.nrrd"])
         self.add("body.limber", ["info", "{}"], ["project", "{}", "verify"], ["project", "{}", "recover", "-o", "{out}/r.limber"], ["project", "{}", "export", "rig", "-o", "{out}/r.json"])
@@ -109,7 +147,56 @@ class Samples:
         self.add("field.nrrd", ["report", "volume.nrrd", "posed.nrrd", "--field", "{}"])
         self.add("case.json", ["skin-points", "{}", "--method", "dqs"])
         self.add("job.json", ["job", "{}"])
-        self.add("study.json", ["experiment", "{}", "-o", "{out}/study", "--shard", "1/9"])
+        self.add("job2.json", ["job", "{}"])
+        self.add("study.json", ["experiment", "{}", "-o", "{out}/new", "--shard", "1/9"])
+        for cell in sorted((self.folder / "out/study/cells").rglob("*.json")):
+            self.add(str(cell.relative_to(self.folder)), ["experiment", "study.json", "-o", "{out}/study"])
+        self.add("images/2.dcm", ["info", "images"], ["convert", "images", "{out}/a.nrrd"])
+        for name in ["table.ctbl", "table.label"]:
+            self.add(name, ["info", "{}"], ["convert", "{}", "{out}/t.json"], ["tissues", "volume.nrrd", "--frequency", "1e9", "--tissues", "{}"])
+        self.add("properties.csv", ["tissues", "volume.nrrd", "--frequency", "1e9", "--properties", "{}"])
+        self.add("seams.nrrd", ["info", "{}"], ["resample", "volume.nrrd", "--rig", "rig.json", "--seams", "{}", "--flex", "Forearm=20", "--method", "lbs", "-o", "{out}/p.nrrd"])
+        self.add("body.limber#editor", ["info", "{}"])
+        self.add("body.limber#thumbnail", ["info", "{}"])
+
+    def make_editor_files(self):
+        if not self.has_editor:
+            return
+        self.write("look.txt", "key Ctrl+Alt+Q\nwait 0.1\n")
+        self.write("keys.txt", 'key F3\ntype "import keys"\nkey Return\ntype keys.json\nkey Return\nwait-job\nexpect widget:dialog/Keymap\n')
+        self.write("keys.json", (ASSETS / "keymap.json").read_bytes())
+        self.write("script.txt", 'move 300 200\nwheel "3D view/view" 2\nkey-down Shift\nkey-up Shift\ndrop rig.json\nwait-job\nresize 700 500\n'
+                                 'type "a\u00e9"\nwait 0.1\nexpect workspace rig\n')
+        (self.folder / "config/limber").mkdir(parents=True)
+        self.write("config/limber/remembered.json", json.dumps({
+            "schema": "limber-remembered/1", "recent": [{"path": str(self.folder / "volume.nrrd"), "time": 1}], "folders": {"keymap": str(self.folder.parent / "run/work")},
+            "recent_folders": ["/"], "show_start": True, "hidden_files": False, "tour_step": 1}))
+        self.leave_journal()
+        editor = ["editor", "--size", "640x480"]
+        for name in ["volume.nrrd", "v.mha", "v.nii", "v.txt", "body.limber", "body.limber#editor", "body.limber#thumbnail"]:
+            self.add(name, [*editor, "{}", "--play", "look.txt"])
+        for name in ["rig.json", "rig.vtk", "rig.arm", "body.gltf", "body.glb", "motion.bvh", "tissues.json", "table.label"]:
+            self.add(name, [*editor, "volume.nrrd", "{}", "--play", "look.txt"])
+        for name in ["weights.nrrd", "pose.json"]:
+            self.add(name, [*editor, "volume.nrrd", "rig.json", "{}", "--play", "look.txt"])
+        self.add("keys.json", [*editor, "--play", "keys.txt"])
+        self.add("script.txt", [*editor, "volume.nrrd", "--play", "{}"])
+        self.add("config/limber/remembered.json", [*editor, "--play", "look.txt"])
+        self.add("edited.limber-edits", [*editor, "edited.limber", "--play", "look.txt"], ["info", "edited.limber"],
+                 ["project", "edited.limber", "verify"], ["project", "edited.limber", "recover", "-o", "{out}/r.limber"])
+
+    def leave_journal(self):
+        """An editor that is killed leaves its project's journal behind."""
+        shutil.copyfile(self.folder / "body.limber", self.folder / "edited.limber")
+        self.write("edit.txt", "drop pose.json\nwait-job\nwait 1000\n")
+        process = subprocess.Popen([self.program, "editor", "--size", "640x480", "edited.limber", "--play", "edit.txt"], cwd=self.folder,
+                                   env=environment_of(self.folder.parent, self.folder), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        journal, latest = self.folder / "edited.limber-edits", time.monotonic() + WALL_SECONDS
+        while not (journal.exists() and journal.stat().st_size > 0) and time.monotonic() < latest and process.poll() is None:
+            time.sleep(0.02)
+        time.sleep(0.5)
+        process.kill()
+        process.wait()
 
     def bender_rig(self):
         return ("# vtk DataFile Version 3.0\nArmature\nASCII\nDATASET POLYDATA\nPOINTS 2 double\n0 0 0 0 0 100\nLINES 1 3\n2 0 1\n"
@@ -162,6 +249,15 @@ def mutated(data, name, chance):
     return data
 
 
+def mutate_state(project, state, chance):
+    """A state beside the chunks of a project, mutated inside the project's database."""
+    with sqlite3.connect(project) as database:
+        name = state.encode()
+        held = database.execute("SELECT value FROM state WHERE name = ?", (name,)).fetchone()
+        database.execute("REPLACE INTO state VALUES (?, ?)", (name, mutated(held[0] if held and held[0] else EDITOR_STATE, state + ".json", chance)))
+    database.close()
+
+
 def state_of(folder):
     """Every file below the folder: what it is and what it holds."""
     state = {}
@@ -177,8 +273,14 @@ def state_of(folder):
     return state
 
 
-def limit():
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
+def environment_of(folder, work):
+    home = str(folder / "home")
+    return {"PATH": os.environ.get("PATH", "/usr/bin:/bin"), "HOME": home, "TMPDIR": str(folder / "tmp"), "XDG_CONFIG_HOME": str(work / "config"),
+            "XDG_CACHE_HOME": home, "XDG_DATA_HOME": home, "MESA_SHADER_CACHE_DISABLE": "true", "LP_NUM_THREADS": "1"}
+
+
+def limit(cpu_seconds):
+    resource.setrlimit(resource.RLIMIT_CPU, (cpu_seconds, cpu_seconds))
     resource.setrlimit(resource.RLIMIT_AS, (ADDRESS_BYTES, ADDRESS_BYTES))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 30, 1 << 30))
@@ -186,10 +288,10 @@ def limit():
 
 def run(program, words, folder):
     """Exit code (negative: signal), what it printed, peak memory in kB."""
-    environment = {"PATH": os.environ.get("PATH", "/usr/bin:/bin"), "HOME": str(folder / "home"), "TMPDIR": str(folder / "tmp"),
-                   "XDG_CONFIG_HOME": str(folder / "home"), "XDG_CACHE_HOME": str(folder / "home"), "XDG_DATA_HOME": str(folder / "home")}
+    seconds = EDITOR_SECONDS if words[0] == "editor" else CPU_SECONDS
     with open(folder / "printed", "wb") as out, open(folder / "told", "wb") as err:
-        process = subprocess.Popen([program, *words], cwd=folder / "work", env=environment, stdin=subprocess.DEVNULL, stdout=out, stderr=err, preexec_fn=limit)
+        process = subprocess.Popen([program, *words], cwd=folder / "work", env=environment_of(folder, folder / "work"), stdin=subprocess.DEVNULL, stdout=out,
+                                   stderr=err, preexec_fn=lambda: limit(seconds))
         latest = time.monotonic() + WALL_SECONDS
         while True:
             ended, status, usage = os.wait4(process.pid, os.WNOHANG)
@@ -212,19 +314,23 @@ def problems_of(code, out, err, memory, before, after, folder):
         problems.append("memory %d MB" % (memory // 1000))
     if b"mistake of the program" in err:
         problems.append("mistake of the program")
-    if code == 1 and sum(not line.startswith(b"limber: warning:") for line in err.splitlines()) != 1:
+    told = [line for line in err.splitlines() if not line.startswith(b"limber: warning:") and not re.match(rb"\d+ of \d+  ", line)]
+    if code == 1 and len(told) != 1:
         problems.append("error that is no single line")
     if re.search(rb"[\x00-\x08\x0b-\x1f\x7f]|\xc2[\x80-\x9f]", out + err):
         problems.append("control character printed")
     named = str(folder / "work" / "out") + os.sep
+    # What the editor remembers, what it sets aside there, its small pictures of files, the journal of what it opened, and its note
+    # of a journal that it has set aside.
+    own = tuple(str(folder / part) for part in ("work/config/limber/", "home/limber", "work/edited.limber-edits", "home/.local/state/limber/edits/"))
     # The folders in which the program notes what it has not finished; no note may stay.
-    notes = [str(folder / "home" / part) for part in (".local", ".local/state", ".local/state/limber", ".local/state/limber/unfinished")]
+    notes = [str(folder / "home" / part) for part in (".local", ".local/state", ".local/state/limber", ".local/state/limber/unfinished", ".local/state/limber/edits")]
     for path in sorted(set(before) | set(after)):
         if after.get(path) == "folder" and path in notes:
             continue
-        if before.get(path) != after.get(path) and not path.startswith(named):
+        if before.get(path) != after.get(path) and not path.startswith(named) and not path.startswith(own):
             problems.append("file made, changed or deleted: " + os.path.relpath(path, folder))
-    if code == 1 and any(path.startswith(named) and after[path] != "folder" for path in after):
+    if code == 1 and any(path.startswith(named) and after[path] != "folder" and path not in before for path in after):
         problems.append("output left behind after an error")
     return problems
 
@@ -234,6 +340,7 @@ def main():
     parser.add_argument("--program", required=True)
     parser.add_argument("--count", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0, help="number of the first input: to repeat one, with --count 1")
     parser.add_argument("--malformed", type=pathlib.Path)
     parser.add_argument("--keep", type=pathlib.Path)
     options = parser.parse_args()
@@ -243,23 +350,28 @@ def main():
     with tempfile.TemporaryDirectory(prefix="limber-hostile-") as top:
         (pathlib.Path(top) / "samples").mkdir()
         samples = Samples(program, pathlib.Path(top) / "samples")
-        for number in range(options.count):
+        order = random.Random(options.seed).sample(samples.cases, len(samples.cases))
+        for number in range(options.first, options.first + options.count):
             chance = random.Random(options.seed * 1_000_003 + number)
             folder = pathlib.Path(top) / "run"
             shutil.rmtree(folder, ignore_errors=True)
             for name in ["home", "tmp"]:
                 (folder / name).mkdir(parents=True)
             shutil.copytree(samples.folder, folder / "work")
-            (folder / "work" / "out").mkdir()
+            (folder / "work" / "out").mkdir(exist_ok=True)
             if malformed and number % 5 == 0:
                 source = chance.choice(malformed)
                 name = source.name
                 shutil.copyfile(source, folder / "work" / name)
                 words = ["info", name]
             else:
-                name, words = samples.cases[number % len(samples.cases)] if number < len(samples.cases) else chance.choice(samples.cases)
+                name, words = order[number] if number < len(order) else chance.choice(samples.cases)
+                name, _, state = name.partition("#")
                 path = folder / "work" / name
-                path.write_bytes(mutated(path.read_bytes(), name, chance))
+                if state:
+                    mutate_state(path, state, chance)
+                else:
+                    path.write_bytes(mutated(path.read_bytes(), name, chance))
                 words = [word.replace("{out}", "out").replace("{}", name) for word in words]
             (folder / "printed").touch()
             (folder / "told").touch()
