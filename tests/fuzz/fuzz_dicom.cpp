@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Whatever GDCM says of the images of a series: they become a volume whose grid can be believed and whose voxels are
+// all there, or are refused with Error. GDCM itself, which has a process of its own for what it does on damaged files,
+// is not in here: the two functions that the program takes from it read a plain list of elements instead.
+//   an image: its number of elements, then for each group and element (4 bytes), length (1 byte) and bytes; then pixels
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "core/base/module.h"
+#include "core/volume/dicom.h"
+#include "core/volume/dicom_codec.h"
+
+namespace {
+constexpr std::size_t kMostImages = 4;
+
+struct Image {
+  std::string bytes;
+  std::size_t at = 0;
+  explicit Image(int descriptor) {
+    char buffer[4096];
+    for (ssize_t got; (got = ::pread(descriptor, buffer, sizeof buffer, static_cast<off_t>(bytes.size()))) > 0;)
+      bytes.append(buffer, static_cast<std::size_t>(got));
+  }
+  std::string_view take(std::size_t size) {
+    const std::string_view part = std::string_view(bytes).substr(at, size);
+    at += part.size();
+    return part;
+  }
+  std::size_t byte() {
+    const std::string_view one = take(1);
+    return one.empty() ? 0 : static_cast<unsigned char>(one[0]);
+  }
+};
+}  // namespace
+
+// In the place of the module's.
+extern "C" int limber_dicom_elements(int descriptor, LimberDicomElement visit, void* context) {
+  Image image(descriptor);
+  for (std::size_t left = image.byte(); left > 0; --left) {
+    const std::size_t group = image.byte() << 8 | image.byte(), element = image.byte() << 8 | image.byte();
+    const std::string_view value = image.take(image.byte());
+    visit(context, static_cast<std::uint16_t>(group), static_cast<std::uint16_t>(element), value.data(), value.size());
+  }
+  return 0;
+}
+
+extern "C" int limber_dicom_pixels(int descriptor, char* pixels, std::size_t size) {
+  const Image image(descriptor);
+  for (std::size_t i = 0; i < size; ++i) pixels[i] = image.bytes[i % image.bytes.size()];
+  return 0;
+}
+
+namespace limber {
+void* open_module(const std::string&) { return ::dlopen(nullptr, RTLD_NOW); }
+std::optional<Path> find_own_program(const std::string&) { return std::nullopt; }
+std::optional<Path> find_program(const std::string&) { return std::nullopt; }
+}  // namespace limber
+
+// Images come one after another, each behind its length (two bytes).
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace limber;
+  static const Path folder = [] {
+    const auto path = std::filesystem::temp_directory_path() / ("fuzz-dicom-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(path);
+    return path;
+  }();
+  VolumeLocation location{folder, true, {}};
+  for (std::size_t at = 0; at + 2 < size && location.headers.size() < kMostImages;) {
+    const std::size_t length = std::min<std::size_t>(data[at] | data[at + 1] << 8, size - at - 2);
+    location.headers.push_back(folder / std::to_string(location.headers.size()));
+    std::ofstream(location.headers.back(), std::ios::binary)
+        .write(reinterpret_cast<const char*>(data) + at + 2, static_cast<std::streamsize>(length));
+    at += 2 + length;
+  }
+  if (location.headers.empty()) return 0;
+  try {
+    const OpenedVolume opened = open_dicom(std::make_shared<LocalFiles>(location));
+    const Grid& grid = opened.header.grid;
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(grid.spacing[axis] > 0) || !std::isfinite(grid.spacing[axis]) || !std::isfinite(grid.origin[axis]))
+        std::abort();
+    std::vector<char> slice(static_cast<std::size_t>(grid.size.x) * grid.size.y * size_of(opened.header.voxel_type));
+    for (int z = 0; z < grid.size.z; ++z) opened.voxels->read(slice.data(), slice.size());
+    opened.voxels->finish();
+  } catch (const Error&) {
+  }
+  return 0;
+}
