@@ -72,6 +72,13 @@ class LabelWalls {
 
 }  // namespace
 
+void BoneGraph::resize(std::int64_t count) {
+  place.resize(count);
+  voxel.resize(count);
+  neighbour.resize(count);
+  want_large_pages(neighbour.data(), count * static_cast<std::int64_t>(sizeof(neighbour[0])));
+}
+
 BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds) {
   // Bricks of tissue that know their bone: where a voxel stands in the graph is found by counting bits.
   const auto bricks = std::ssize(tissue.bricks());
@@ -89,9 +96,7 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
   for (TissueVoxels::Brick& brick : bone) brick.first = std::exchange(size, size + brick.count());
 
   BoneGraph graph;
-  graph.place.resize(size);
-  graph.voxel.resize(size);
-  graph.neighbour.resize(size);
+  graph.resize(size);
   const LabelWalls walls(volume, tissue, kinds);
   const auto neighbour = [&](const glm::ivec3& v, const glm::ivec3& w) {
     if (!volume.grid.contains(w)) return kOutside;

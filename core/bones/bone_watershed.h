@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/zeroed_vector.h"
 #include "core/volume/tissue_table.h"
 #include "core/volume/tissue_voxels.h"
 
@@ -17,8 +18,10 @@ namespace limber {
 struct BoneGraph {
   std::vector<std::int64_t> place;  // in the tissue list
   std::vector<glm::ivec3> voxel;
-  std::vector<std::array<std::int32_t, 26>> neighbour;  // place in this list, kNotBone or kOutside
+  ZeroedVector<std::array<std::int32_t, 26>> neighbour;  // place in this list, kNotBone or kOutside
   std::int64_t size() const { return std::ssize(place); }
+  // Makes room for so many voxels, which threads are going to fill.
+  void resize(std::int64_t count);
 };
 constexpr std::int32_t kNotBone = -1, kOutside = -2;
 

@@ -171,9 +171,7 @@ Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named) {
     if (named.bone[i] < 0) number[i] = static_cast<std::int32_t>(part.from.size()), part.from.push_back(i);
   const bool is_all = part.from.size() == static_cast<std::size_t>(whole.size());
   const auto count = std::ssize(part.from);
-  part.graph.place.resize(count);
-  part.graph.voxel.resize(count);
-  part.graph.neighbour.resize(count);
+  part.graph.resize(count);
   parallel_for(count, 4096, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t k = begin; k < end; ++k) {
       const std::int32_t i = part.from[k];

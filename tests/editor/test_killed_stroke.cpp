@@ -27,7 +27,7 @@ TEST_CASE("painting: kill -9 during a stroke loses that stroke alone, layers and
   std::ofstream(script) << "key Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-idle\nkey Shift+Ctrl+L\nwait-idle\n"
                            "press \"3D view/view\"\nrelease\nwait-idle\n"
                            "key ]\nkey ]\npress \"3D view/view\"\nmove \"3D view/view\"\nshot "
-                        << picture << "\nwait 1000000\n";
+                        << picture << "\nwait 3600\n";
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
   if (child == 0) {

@@ -161,7 +161,7 @@ TEST_CASE("project: a sitting that ends well leaves nothing to recover, not even
 
 TEST_CASE("project: after kill -9 of the program its edits are offered on the start screen, and come back") {
   const Home home;
-  std::ofstream(home / "script") << "click Muscle/17/eye\nclick Skin/143/eye\nwait 1000000\n";
+  std::ofstream(home / "script") << "click Muscle/17/eye\nclick Skin/143/eye\nwait 3600\n";
   const std::string script = home / "script", volume = home / "scans/ball.nrrd", folder = home.folder.path();
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
