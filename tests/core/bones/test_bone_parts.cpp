@@ -124,7 +124,8 @@ TEST_CASE("bone parts: a breastbone grown to a collarbone is the trunk's also wh
   CHECK(bone_at(body, parts, tissue, {100, 50, 40}) == "Thorax");
 }
 
-TEST_CASE("bone parts: in a whole body with one bone label the chest is whole, and shoulder blades go with their shoulders") {
+TEST_CASE("bone parts: in a whole body with one bone label the chest is whole, and shoulder blades go with their shoulders"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body_3mm_tissue.nrrd");
   const VolumeFile file = read_volume(shared_path("data/bp3d/body_3mm_tissue.nrrd")), named = read_volume(shared_path("data/bp3d/body_3mm_structures.nii.gz"));
   const TissueTable user = read_tissue_table(shared_path("data/bp3d/tissue.labels.json")), names = read_tissue_table(shared_path("data/bp3d/body_structures.labels.json"));

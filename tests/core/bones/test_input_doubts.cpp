@@ -107,7 +107,7 @@ TEST_CASE("input doubts: a grey image is told from an atlas of as many labels") 
   CHECK_FALSE(doubts(atlas, "grey image"));
 }
 
-TEST_CASE("input doubts: real bodies with their own rigs raise none") {
+TEST_CASE("input doubts: real bodies with their own rigs raise none" * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body_2mm_tissue.mha");
   const struct {
     const char *volume, *rig;

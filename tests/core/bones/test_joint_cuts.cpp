@@ -133,7 +133,8 @@ TEST_CASE("joint cuts: the thin shaft beside a broad joint is not cut in its pla
   }
 }
 
-TEST_CASE("joint cuts: a kneecap that leans on the femur stays whole, also where its tip hangs below the joint") {
+TEST_CASE("joint cuts: a kneecap that leans on the femur stays whole, also where its tip hangs below the joint"
+          * doctest::test_suite("slow")) {
   for (const double low : {-5.0, 5.0, 15.0}) {
     INFO("tip ", low, " mm below the joint");
     CHECK(wrong_bones(leg_with_kneecap(low)).voxels < 10);

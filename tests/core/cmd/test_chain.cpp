@@ -62,7 +62,8 @@ int exit_code_after(int signal, std::chrono::milliseconds wait, const std::vecto
 
 }  // namespace
 
-TEST_CASE("command chain: a phantom is weighted and posed, weights from a file give the volume that weights on the way give") {
+TEST_CASE("command chain: a phantom is weighted and posed, weights from a file give the volume that weights on the way give"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const std::string weights = arm.folder / "w.nrrd", direct = arm.folder / "direct.nrrd", by_file = arm.folder / "by-file.nrrd",
                     report = arm.folder / "report.json";
@@ -129,7 +130,8 @@ TEST_CASE("resample: --frames writes one volume and report for each frame, as --
   refused({"--frames", "0:3", "--fit-joints", "-o", out}, "joints are fitted to one pose");
 }
 
-TEST_CASE("resample: --mass-exact gives soft tissues their rest volumes and reports it, and refuses to make up more than is allowed") {
+TEST_CASE("resample: --mass-exact gives soft tissues their rest volumes and reports it, and refuses to make up more than is allowed"
+          * doctest::test_suite("slow")) {
   const Arm arm("4");
   const std::string out = arm.folder / "out.nrrd", report = arm.folder / "report.json";
   const auto posed = [&](const char* degrees, const std::vector<std::string>& more) {
@@ -218,7 +220,8 @@ TEST_CASE("convert: volumes go through every format and come back bit for bit, r
   CHECK(info_of(motion)["frames"] == info_of(arm.motion)["frames"]);
 }
 
-TEST_CASE("command line: an output that cannot be written is refused in one line before anything is computed") {
+TEST_CASE("command line: an output that cannot be written is refused in one line before anything is computed"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const std::string volume = arm.volume, rig = arm.rig, out = arm.folder / "out.nrrd";
   const size_t files = files_in(arm.folder.path());
@@ -262,7 +265,8 @@ TEST_CASE("command line: --progress json tells stages and rising fractions, one 
   CHECK(objects > 0);
 }
 
-TEST_CASE("command line: Ctrl-C ends with 3, a kill with nothing left, whenever it comes") {
+TEST_CASE("command line: Ctrl-C ends with 3, a kill with nothing left, whenever it comes"
+          * doctest::test_suite("slow")) {
   const Arm arm("5");
   const size_t files = files_in(arm.folder.path());
   for (const int wait : {20, 80, 200}) {
@@ -283,7 +287,8 @@ TEST_CASE("command line: Ctrl-C ends with 3, a kill with nothing left, whenever 
   }
 }
 
-TEST_CASE("weights: a rig 900 km away still gives every voxel its weights, one beyond any number of millimetres is refused") {
+TEST_CASE("weights: a rig 900 km away still gives every voxel its weights, one beyond any number of millimetres is refused"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const auto rig = nlohmann::json::parse(bytes_of(arm.rig));
   const auto move_away = [&](double mm) {

@@ -75,7 +75,8 @@ TEST_CASE("prepare: --close-skin warns where the volume's border cuts the body")
   CHECK(read_volume(body.out).volume.at({12, 12, 19}) == 2);
 }
 
-TEST_CASE("prepare: without a label of skin --close-skin is refused in one line, and --skin-label names one") {
+TEST_CASE("prepare: without a label of skin --close-skin is refused in one line, and --skin-label names one"
+          * doctest::test_suite("slow")) {
   const Ball body(R"({"1": "fat", "2": "muscle", "3": "femur"})");
   const auto refused = [&](const std::vector<std::string>& more, int code = 1) {
     const ProgramRun run = body.close(more);

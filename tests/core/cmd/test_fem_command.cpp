@@ -44,7 +44,8 @@ struct Arm {
 
 }  // namespace
 
-TEST_CASE("fem command: options of finite elements are refused with other methods, unknown ones with it, in one line and without output") {
+TEST_CASE("fem command: options of finite elements are refused with other methods, unknown ones with it, in one line and without output"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const std::string out = arm.folder / "out.nrrd";
   for (const std::vector<std::string>& wrong :
@@ -69,7 +70,8 @@ TEST_CASE("fem command: options of finite elements are refused with other method
   CHECK_FALSE(std::filesystem::exists(out));
 }
 
-TEST_CASE("fem command: the steps that it leaves for a watcher end where the mesh does") {
+TEST_CASE("fem command: the steps that it leaves for a watcher end where the mesh does"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const auto run = arm.resample({"--method", "fem", "--quality", "draft", "--mesher", "tetgen", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--mesh-out", arm.folder / "posed", "--steps", arm.folder / "solve"});
   INFO(run.err);
@@ -114,7 +116,8 @@ TEST_CASE("fem command: the steps that it leaves for a watcher end where the mes
   CHECK(arm.resample({"--method", "dqs", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--steps", arm.folder / "solve"}).err.starts_with("limber: --steps"));
 }
 
-TEST_CASE("fem command: writes volume, report and mesh, tells angle, iteration, residual and time left, a job does the same bit for bit") {
+TEST_CASE("fem command: writes volume, report and mesh, tells angle, iteration, residual and time left, a job does the same bit for bit"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const auto run = arm.resample({"--method", "fem", "--quality", "draft", "--flex", "Forearm=25", "-o", arm.folder / "out.nrrd", "--report",
                                  arm.folder / "r.json", "--mesh-out", arm.folder / "posed", "--progress", "json"});

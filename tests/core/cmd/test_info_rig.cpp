@@ -20,7 +20,8 @@ bool is_motion_file(const std::string& path) {
 size_t lines_of(const std::string& text) { return static_cast<size_t>(std::count(text.begin(), text.end(), '\n')); }
 }  // namespace
 
-TEST_CASE("info: each rig, motion and model is taken, warned of or refused as it must be") {
+TEST_CASE("info: each rig, motion and model is taken, warned of or refused as it must be"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/EXPECT.tsv");
   std::ifstream in(test::shared_path("data/EXPECT.tsv"));
   int rows = 0;

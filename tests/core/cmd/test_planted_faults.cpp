@@ -155,7 +155,8 @@ TEST_CASE("planted faults: half of a bone under the label of the next one is cau
   CHECK(std::filesystem::exists(folder / "w.nrrd"));
 }
 
-TEST_CASE("planted faults: a rig that is mirrored, in RAS axes, or beside the body is caught") {
+TEST_CASE("planted faults: a rig that is mirrored, in RAS axes, or beside the body is caught"
+          * doctest::test_suite("slow")) {
   struct Case {
     std::function<glm::dvec3(const glm::dvec3&)> move;
     const char* sentence;
@@ -272,7 +273,8 @@ TEST_CASE("planted faults: an organ that vanished and a muscle that fell apart a
 
 TEST_CASE(
     "planted faults: a hand that grew to the hip is caught by the band that a raised arm pulls out, by a field of "
-    "another program") {
+    "another program"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   Figure figure = block_figure();
   fill_where(figure.volume, {44, 7, 46}, {48, 17, 54}, 0, kFigureMuscle);

@@ -141,7 +141,8 @@ TEST_CASE("convert: openEMS reads the boxes and finds in every cell the tissue t
   READ_BACK("openems", folder / "material_dump.vtr", nifti, csv);
 }
 
-TEST_CASE("convert: a deck without frequency, or of tissue without properties, is refused in one line and leaves nothing") {
+TEST_CASE("convert: a deck without frequency, or of tissue without properties, is refused in one line and leaves nothing"
+          * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "10", "-o", folder.path()}).exit_code == 0);
   const std::string volume = folder / "volume.nrrd";

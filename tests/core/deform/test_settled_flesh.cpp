@@ -87,7 +87,7 @@ double volume_error(const Limb& limb, const std::vector<RigidTransform>& motions
 
 }  // namespace
 
-TEST_CASE("settled flesh: a bent limb keeps its volume where blending does not") {
+TEST_CASE("settled flesh: a bent limb keeps its volume where blending does not" * doctest::test_suite("slow")) {
   const Limb limb;
   for (const Blend blend : {Blend::Linear, Blend::DualQuaternion, Blend::Mixed})
     for (const double degrees : {60.0, 100.0, -100.0}) {

@@ -60,7 +60,8 @@ TEST_CASE("skinned surface: it lies on the body, is closed, and knows the tissue
   CHECK(skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 100).V.empty());
 }
 
-TEST_CASE("skinned surface: of a volume of many voxels it lies no further off and fills the vertices it may have") {
+TEST_CASE("skinned surface: of a volume of many voxels it lies no further off and fills the vertices it may have"
+          * doctest::test_suite("slow")) {
   const Ball ball(270);
   const SkinnedSurface surface = skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 10'000);
   CHECK(surface.V.size() <= 10'000);

@@ -111,7 +111,8 @@ TEST_CASE("skinning: many points at once equal one at a time") {
   }
 }
 
-TEST_CASE("skinning: points of Blender's reference cases agree within 1e-6 of their extent") {
+TEST_CASE("skinning: points of Blender's reference cases agree within 1e-6 of their extent"
+          * doctest::test_suite("slow")) {
   for (const std::string name : {"elbow90", "man_arm", "scale", "twist170"}) {
     const std::string file = "reference/lbs_dq/" + name + ".json";
     NEEDS_SHARED(file);

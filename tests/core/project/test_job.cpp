@@ -121,7 +121,8 @@ TEST_CASE("job: a cancel ends it soon, is no error, and what it would have chang
   CHECK(history.current() == before);
 }
 
-TEST_CASE("job: one that hangs after its cancel is shown as stopping, lets the next one start and is left behind in the end") {
+TEST_CASE("job: one that hangs after its cancel is shown as stopping, lets the next one start and is left behind in the end"
+          * doctest::test_suite("slow")) {
   static std::atomic<bool> release = false, gone = false;
   std::atomic<int> calls = 0;
   History history;

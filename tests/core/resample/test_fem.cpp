@@ -91,7 +91,8 @@ TEST_CASE("fem: the bent arm keeps the volume of its tissues where dual quaterni
   CHECK(fem < 0.3 * dqs);
 }
 
-TEST_CASE("fem: the arm's tendons, thousands of times stiffer than its flesh, do not keep the elbow from bending") {
+TEST_CASE("fem: the arm's tendons, thousands of times stiffer than its flesh, do not keep the elbow from bending"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   CHECK(std::any_of(arm.phantom.tissues.tissues.begin(), arm.phantom.tissues.tissues.end(), [](const Tissue& tissue) { return tissue.kind == TissueKind::Tendon && tissue.young_modulus > 1e6; }));
   const Posed posed = arm.posed(arm.flexed(60), Fem{.contact = true, .quality = FemQuality::Draft});
@@ -148,7 +149,8 @@ TEST_CASE("fem: with contact two parts of a limb that meet share no voxels, with
   CHECK(*touching.report.mesh->min_gap_mm > 0);
 }
 
-TEST_CASE("fem: a pose out of reach ends at the last good place on the way, and says what stands in the way") {
+TEST_CASE("fem: a pose out of reach ends at the last good place on the way, and says what stands in the way"
+          * doctest::test_suite("slow")) {
   const Posed result = folded(179, {.contact = true, .spacing_mm = 4});
   REQUIRE(result.report.solve);
   CHECK_FALSE(result.report.solve->converged);

@@ -38,7 +38,8 @@ std::vector<Landmark> points_in(const VolumeFile& file) {
 }
 }  // namespace
 
-TEST_CASE("landmarks: at rest they stay, in a pose they lie in the tissue that they were in, and those of the hand move as one, by blending and by finite elements") {
+TEST_CASE("landmarks: at rest they stay, in a pose they lie in the tissue that they were in, and those of the hand move as one, by blending and by finite elements"
+          * doctest::test_suite("slow")) {
   const Arm arm;
   const auto points = points_in(read_volume(arm.volume));
   REQUIRE(points.size() > 20);

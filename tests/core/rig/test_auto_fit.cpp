@@ -133,7 +133,8 @@ TEST_CASE("auto-fit: where bones are labelled, a thick layer of fat does not mov
   }
 }
 
-TEST_CASE("auto-fit: the template that suits an arm is the arm, with a hand of five fingers too") {
+TEST_CASE("auto-fit: the template that suits an arm is the arm, with a hand of five fingers too"
+          * doctest::test_suite("slow")) {
   CHECK(suggest_template(arm().volume) == "arm");
 }
 

@@ -276,7 +276,8 @@ TEST_CASE("fit error: a rig of another kind of body than the tissue's is said to
   CHECK(Tally::median(stated) > 100);
 }
 
-TEST_CASE("fit error: a rig that is merely scaled to the tissue says how far it may be off") {
+TEST_CASE("fit error: a rig that is merely scaled to the tissue says how far it may be off"
+          * doctest::test_suite("slow")) {
   Armature snake;
   for (int b = 0; b < 4; ++b) snake.bones.push_back({.name = "S" + std::to_string(b), .parent = b - 1, .head = {0, 0, 10.0 * b}, .tail = {0, 0, 10.0 * (b + 1)}});
   const FitBody animal = four_legged("animal", {});

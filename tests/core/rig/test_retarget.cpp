@@ -290,7 +290,8 @@ TEST_CASE("retarget: feet that stand slide no more than the source's, stance by 
     }
 }
 
-TEST_CASE("retarget: toes that stand while the heel is up slide no more than the source's, and ankles all the same") {
+TEST_CASE("retarget: toes that stand while the heel is up slide no more than the source's, and ankles all the same"
+          * doctest::test_suite("slow")) {
   for (const std::string file : {"data/bvh/Boxing_Toes.bvh", "data/bvh/cmu_12_01_walk.bvh", "data/bvh/cmu_01_01.bvh", "data/bvh/freebvh_fingers.bvh"})
     for (const auto& [rig_file, toes] : {std::pair{"data/bp3d/body.armature.json", "Toes"}, std::pair{"data/makehuman/body.armature.json", "ToeBase"}}) {
       NEEDS_SHARED(file);

@@ -259,7 +259,8 @@ TEST_CASE("brush reach: fingers that touch by an edge of voxels are apart") {
   for (const auto& [place, distance] : distances(tissue, reach.dab({11, 11, 11}, 15, BrushDistance::Geodesic))) CHECK(std::get<0>(place) < 12);
 }
 
-TEST_CASE("brush reach: between fingers, and between arm and trunk, only what tissue joins within the radius is touched") {
+TEST_CASE("brush reach: between fingers, and between arm and trunk, only what tissue joins within the radius is touched"
+          * doctest::test_suite("slow")) {
   for (const bool whole : {false, true}) {
     const Phantom body = whole ? make_body_phantom(8) : make_arm_phantom(3);
     const TissueVoxels tissue(body.volume);
@@ -388,7 +389,7 @@ TEST_CASE("brush reach: beside the tissue a dab starts from what is nearest, and
   CHECK(reach.dab({10, 10, 10}, 0, BrushDistance::Euclidean).size() == 0);
 }
 
-TEST_CASE("brush reach: memory follows the ball and does not grow from dab to dab") {
+TEST_CASE("brush reach: memory follows the ball and does not grow from dab to dab" * doctest::test_suite("slow")) {
   std::mt19937 random(5);
   const LabelVolume volume = cheese(random, {96, 96, 96}, glm::dvec3(1), 300);
   const TissueVoxels tissue(volume);

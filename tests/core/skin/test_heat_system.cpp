@@ -159,7 +159,7 @@ TEST_CASE("heat system: iterations stay few when the body grows and when voxels 
   }
 }
 
-TEST_CASE("heat system: 1, 2 and 4 threads give the same bits") {
+TEST_CASE("heat system: 1, 2 and 4 threads give the same bits" * doctest::test_suite("slow")) {
   const RandomBody body({60, 50, 70}, glm::dvec3(1), 9);
   std::vector<std::vector<std::vector<float>>> results;
   for (const int threads : {1, 2, 4}) {

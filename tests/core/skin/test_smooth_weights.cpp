@@ -124,7 +124,8 @@ TEST_CASE("smooth weights: nothing spreads through air or across a seam") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("smooth weights: a stroke widens a blend by as many mm at 1 mm as at 2 mm, and the same with more threads") {
+TEST_CASE("smooth weights: a stroke widens a blend by as many mm at 1 mm as at 2 mm, and the same with more threads"
+          * doctest::test_suite("slow")) {
   std::array<double, 2> wider{};
   for (const int fine : {0, 1}) {
     Painted body = cylinder(fine ? 1 : 2);

@@ -413,7 +413,8 @@ TEST_CASE("stroke: weights handed on share the bricks that did not change since,
   }
 }
 
-TEST_CASE("stroke: on a whole body one of 200 dabs takes less than 5 MB, and leaves all bricks but its own shared") {
+TEST_CASE("stroke: on a whole body one of 200 dabs takes less than 5 MB, and leaves all bricks but its own shared"
+          * doctest::test_suite("slow")) {
   const Phantom phantom = make_body_phantom(8);
   Painted painted({phantom.volume, phantom.tissues, phantom.armature});
   StrokeSettings settings = brush_of(BrushKind::Add, 16 * 8.0, 2);

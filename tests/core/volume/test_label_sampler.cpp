@@ -168,7 +168,8 @@ Agreement dice(const LabelVolume& a, const LabelVolume& b) {
 }
 }  // namespace
 
-TEST_CASE("label sampler: the arm turned by 45 degrees and back agrees better than by any known interpolation") {
+TEST_CASE("label sampler: the arm turned by 45 degrees and back agrees better than by any known interpolation"
+          * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   const LabelVolume arm = read_volume(test::shared_path("data/bender/man-arm-2mm.mha")).volume;
   const glm::dvec2 centre = glm::dvec2(arm.grid.size.x - 1, arm.grid.size.y - 1) / 2.0;

@@ -338,7 +338,7 @@ TEST_CASE("volume io: bad files are refused with one line, whatever their format
   refuse(".xyz", "hello", "no volume");
 }
 
-TEST_CASE("volume io: more than 65 535 distinct labels are refused, 65 535 are read") {
+TEST_CASE("volume io: more than 65 535 distinct labels are refused, 65 535 are read" * doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const auto with = [&](std::uint32_t first, std::uint32_t count) {
     std::string data;
