@@ -10,7 +10,8 @@ namespace {
 
 std::string_view text_of(std::string_view name) {
   const auto& files = shader_files();
-  const auto found = std::find_if(files.begin(), files.end(), [&](const ShaderFile& file) { return file.name == name; });
+  const auto has_name = [&](const ShaderFile& file) { return file.name == name; };
+  const auto found = std::find_if(files.begin(), files.end(), has_name);
   if (found == files.end()) throw std::logic_error("no shader is called " + std::string(name));
   return found->text;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The shaders by themselves: a reference compiler accepts each with every combination of its switches, and none is left over.
+// The shaders by themselves, by another compiler than the driver's.
 #include "render/gl/shader_source.h"
 
 #include <cstdlib>
@@ -25,15 +25,18 @@ std::set<std::string> switches_of(const std::string& source) {
     names.insert(source.substr(at, end - at));
   };
   for (const std::string_view ask : {"#ifdef ", "defined("})
-    for (std::size_t at = source.find(ask); at != std::string::npos; at = source.find(ask, at + 1)) add(at + ask.size());
+    for (std::size_t at = source.find(ask); at != std::string::npos; at = source.find(ask, at + 1))
+      add(at + ask.size());
   return names;
 }
 
 std::string constants(int atlases) {
   using gl::define;
-  return define("ATLASES", atlases) + define("SLOT", 36) + define("APRON", 2) + define("BLOCK", 32) + define("BLOCK_SHIFT", 5) +
-         define("BRICK", 4) + define("SURFACE", 98) + define("RAMP_COLOURS", "vec3(0), vec3(1), vec3(0), vec3(1), vec3(0), vec3(1), vec3(0)") +
-         define("EXACT_ZERO", "vec3(0)") + define("EXACT_ONE", "vec3(1)");
+  const std::string layout = define("ATLASES", atlases) + define("SLOT", 36) + define("APRON", 2) +
+                             define("BLOCK", 32) + define("BLOCK_SHIFT", 5) + define("BRICK", 4);
+  const std::string ramp = "vec3(0), vec3(1), vec3(0), vec3(1), vec3(0), vec3(1), vec3(0)";
+  return layout + define("SURFACE", 98) + define("RAMP_COLOURS", ramp) + define("EXACT_ZERO", "vec3(0)") +
+         define("EXACT_ONE", "vec3(1)");
 }
 
 }  // namespace
